@@ -1,0 +1,1 @@
+"""Launch files, configurations and the demonstration of the HASEL swimmer stack."""

@@ -1,0 +1,1 @@
+"""High-voltage supply: protocol, limits, watchdog, waveforms, virtual supply."""

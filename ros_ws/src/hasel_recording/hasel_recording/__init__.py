@@ -1,0 +1,1 @@
+"""Crash-safe recordings of experiments: MCAP and CSV."""

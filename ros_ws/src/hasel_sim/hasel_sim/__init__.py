@@ -1,0 +1,1 @@
+"""Planar finite elements of the swimmer, its muscles and the physical effects on it."""

@@ -1,0 +1,20 @@
+from setuptools import find_packages, setup
+
+PACKAGE = "hasel_sim"
+
+setup(
+    name=PACKAGE,
+    version="0.1.0",
+    packages=find_packages(exclude=["test"]),
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
+        (f"share/{PACKAGE}", ["package.xml"]),
+    ],
+    install_requires=["setuptools"],
+    zip_safe=True,
+    maintainer="HASEL swimmer maintainers",
+    maintainer_email="maintainers@example.org",
+    description="Planar finite elements of the swimmer, its muscles and the physical effects on it.",
+    license="Apache-2.0",
+    entry_points={"console_scripts": []},
+)

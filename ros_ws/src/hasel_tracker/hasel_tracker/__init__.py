@@ -1,0 +1,1 @@
+"""From a camera or a video to three markers and the bending angle."""
