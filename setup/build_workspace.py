@@ -26,7 +26,7 @@ def source_files(package: Path) -> Iterator[Path]:
 
 
 def fingerprint(package: Path) -> str:
-    """Return a digest of the names and contents of a package's source files and of the Python that builds it."""
+    """Return a digest of a package's source files, names and contents, and of the Python that builds it."""
     digest = hashlib.sha256(sys.version.encode() + sys.prefix.encode())
     for path in source_files(package):
         content = path.read_bytes()

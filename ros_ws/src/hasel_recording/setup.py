@@ -16,5 +16,10 @@ setup(
     maintainer_email="maintainers@example.org",
     description="Crash-safe recordings of experiments: MCAP and CSV.",
     license="Apache-2.0",
-    entry_points={"console_scripts": []},
+    entry_points={
+        "console_scripts": [
+            "convert = hasel_recording.command_line:convert_main",
+            "info = hasel_recording.command_line:info_main",
+        ]
+    },
 )

@@ -1,0 +1,72 @@
+"""The commands `convert` and `info`."""
+
+import argparse
+import sys
+import warnings
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from hasel_recording.convert import convert
+from hasel_recording.errors import RecordingError, RecordingWarning
+from hasel_recording.reading import read_recording
+
+
+def convert_main(arguments: Sequence[str] | None = None) -> int:
+    """Convert the recordings named on the command line; return an exit code."""
+    parser = argparse.ArgumentParser(
+        prog="convert",
+        description="Turn CSV recordings into MCAP (for rosbag2, Foxglove and PlotJuggler) and MCAP into CSV. "
+        "The header lines go along; numbers are kept exactly, times to the nanosecond.",
+    )
+    parser.add_argument("recordings", metavar="RECORDING", nargs="+", type=Path, help="a .csv or .mcap file")
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="PATH",
+        type=Path,
+        help="file or folder to write (default: beside the recording)",
+    )
+    parser.add_argument("-f", "--force", action="store_true", help="replace files that exist")
+    options = parser.parse_args(arguments)
+    if len(options.recordings) > 1 and options.output is not None and options.output.suffix:
+        parser.error(
+            f"--output {options.output} names one file for {len(options.recordings)} recordings: name a folder"
+        )
+    return _for_each(
+        options.recordings, lambda path: f"{path} -> {convert(path, options.output, replace=options.force)}"
+    )
+
+
+def info_main(arguments: Sequence[str] | None = None) -> int:
+    """Describe the recordings named on the command line; return an exit code."""
+    parser = argparse.ArgumentParser(prog="info", description="Say what a recording holds.")
+    parser.add_argument("recordings", metavar="RECORDING", nargs="+", type=Path, help="a .csv or .mcap file")
+    return _for_each(parser.parse_args(arguments).recordings, _description)
+
+
+def _description(path: Path) -> str:
+    recording = read_recording(path)
+    lines = [str(recording), *(f"    {key}: {value}" for key, value in recording.metadata.items())]
+    if recording.markers is not None:
+        lines.append(f"    markers in {recording.marker_unit}")
+    if recording.drive_time_s is not None:
+        lines.append(f"    voltage changes at {len(recording.drive_time_s)} instants, not all on frames")
+    if recording.simulated_time_s is not None:
+        lines.append(f"    simulated angle at {len(recording.simulated_time_s)} instants")
+    return "\n".join(lines)
+
+
+def _for_each(paths: Sequence[Path], work: Callable[[Path], str]) -> int:
+    """Print the work's result for each path; errors and warnings go to stderr, one line each."""
+    failed = False
+    for path in paths:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", RecordingWarning)
+            try:
+                print(work(path))
+            except RecordingError as error:
+                failed = True
+                print(f"error: {error}", file=sys.stderr)
+        for warning in caught:
+            print(f"warning: {warning.message}", file=sys.stderr)
+    return int(failed)

@@ -1,0 +1,34 @@
+"""Turn a recording of one kind into the other, without losing a digit."""
+
+from pathlib import Path
+
+from hasel_recording.errors import RecordingError
+from hasel_recording.reading import read_recording, write_recording
+
+OTHER_SUFFIX = {".csv": ".mcap", ".mcap": ".csv"}
+
+
+def target_path(source: Path, output: Path | None = None) -> Path:
+    """Return where a conversion goes: `output` when it is a file name, else the source's name in that folder.
+
+    Without output the new file lies beside the source.
+    """
+    if output is not None and output.suffix.lower() in OTHER_SUFFIX:
+        return output
+    suffix = OTHER_SUFFIX.get(source.suffix.lower(), ".csv")  # a rosbag2 folder has no suffix
+    folder = source.parent if output is None else output
+    return folder / (source.stem + suffix)
+
+
+def convert(source: Path, output: Path | None = None, *, replace: bool = False) -> Path:
+    """Convert CSV to MCAP or MCAP to CSV and return the new file; raises RecordingError.
+
+    An existing file is replaced only when `replace` is set.
+    """
+    recording = read_recording(source)
+    target = target_path(source, output)
+    if target.exists() and not replace:
+        raise RecordingError(f"{target} exists already: give --force to replace it, or another --output.")
+    target.parent.mkdir(parents=True, exist_ok=True)
+    write_recording(recording, target)
+    return target
