@@ -15,7 +15,7 @@ def convert_main(arguments: Sequence[str] | None = None) -> int:
     """Convert the recordings named on the command line; return an exit code."""
     parser = argparse.ArgumentParser(
         prog="convert",
-        description="Turn CSV recordings into MCAP (for rosbag2, Foxglove and PlotJuggler) and MCAP into CSV. "
+        description="Turn CSV recordings into MCAP (for rosbag2, Foxglove, PlotJuggler) and MCAP into CSV. "
         "The header lines go along; numbers are kept exactly, times to the nanosecond.",
     )
     parser.add_argument("recordings", metavar="RECORDING", nargs="+", type=Path, help="a .csv or .mcap file")
@@ -30,7 +30,7 @@ def convert_main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     if len(options.recordings) > 1 and options.output is not None and options.output.suffix:
         parser.error(
-            f"--output {options.output} names one file for {len(options.recordings)} recordings: name a folder"
+            f"--output {options.output} is one file for {len(options.recordings)} recordings: name a folder"
         )
     return _for_each(
         options.recordings, lambda path: f"{path} -> {convert(path, options.output, replace=options.force)}"
