@@ -1,0 +1,121 @@
+"""Where a marker is, to some thousandths of a pixel: the moment of its luma, corrected for the background.
+
+Colour says which pixels belong to the marker, but its edges are unreliable: video stores colour at half
+resolution. Luma is stored in full. Inside the marker every pixel counts one, outside none, and in the narrow
+band around its edge a pixel counts by how far its luma is from the background's towards the marker's. So a
+highlight inside the marker changes nothing, and noise enters only through the band. The background is a plane
+(uneven light). Directions in which something else crosses it (the spine, an edge of the body) are left out
+together with the opposite ones: what remains of a disc, an ellipse or a motion-blurred disc is still symmetric
+about its centre.
+"""
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import cv2
+import numpy as np
+
+from hasel_tracker.marker_surroundings import Surroundings, look_around, sector_of
+
+RING_WIDTH_PX = 3
+MINIMUM_CONTRAST = 12.0
+MINIMUM_INSIDE_PX = 5
+REFINEMENTS = 2
+
+
+@dataclass(frozen=True)
+class MarkerMeasurement:
+    """Centre (2,) [px], area [px²], luma contrast to the background and noise around it [grey levels], solidity."""
+
+    centre: np.ndarray
+    area: float
+    contrast: float
+    noise: float
+    solidity: float
+
+    def moved_by(self, offset: np.ndarray) -> "MarkerMeasurement":
+        """The same in pixels whose origin lies `offset` (2,) before."""
+        return replace(self, centre=self.centre + offset)
+
+
+def measure_marker(image: np.ndarray, blob_mask: np.ndarray, edge_px: int) -> MarkerMeasurement | None:
+    """Measure the marker that `blob_mask` (255 on its pixels) roughly covers in an 8-bit BGR region.
+
+    `edge_px` is half the width of the band in which its edge lies. The centre is in the region's pixels. None if
+    the marker has no inside left, no contrast, or its surroundings leave the region.
+    """
+    filled, solidity = _filled_outline(blob_mask)
+    x, y, width, height = cv2.boundingRect(filled)
+    reach = edge_px + RING_WIDTH_PX + 1
+    left, top, right, bottom = x - reach, y - reach, x + width + reach, y + height + reach
+    if left < 0 or top < 0 or right > image.shape[1] or bottom > image.shape[0]:
+        return None
+    filled = filled[top:bottom, left:right]
+    inside = cv2.erode(filled, _disc(edge_px))
+    outer = cv2.dilate(filled, _disc(edge_px))
+    ring = cv2.dilate(outer, _disc(RING_WIDTH_PX)) ^ outer
+    if cv2.countNonZero(inside) < MINIMUM_INSIDE_PX:
+        return None
+    luma = cv2.cvtColor(image[top:bottom, left:right], cv2.COLOR_BGR2GRAY).astype(np.float32)
+    surroundings = look_around(luma, inside, ring)
+    share, contrast = _marker_share(luma, inside, outer, surroundings)
+    if contrast < MINIMUM_CONTRAST:
+        return None
+    centre, area = _symmetric_centre(share, outer, surroundings)
+    return MarkerMeasurement(centre + [left, top], area, contrast, surroundings.noise, solidity)
+
+
+def _filled_outline(blob_mask: np.ndarray) -> tuple[np.ndarray, float]:
+    """Convex filling of the mask (a highlight or a notch does not count) and the share of it that was set."""
+    points = cv2.findNonZero(cv2.morphologyEx(blob_mask, cv2.MORPH_OPEN, _disc(1)))
+    filled = np.zeros_like(blob_mask)
+    if points is None:
+        return filled, 0.0
+    cv2.fillConvexPoly(filled, cv2.convexHull(points), 255)
+    return filled, len(points) / max(cv2.countNonZero(filled), 1)
+
+
+def _marker_share(
+    luma: np.ndarray, inside: np.ndarray, outer: np.ndarray, surroundings: Surroundings
+) -> tuple[np.ndarray, float]:
+    """How much of each pixel is marker (from luma alone), and the contrast [grey levels]."""
+    level = surroundings.level(luma.shape)
+    # The light on the marker varies as the light on its surroundings.
+    marker_level = np.median(luma[inside > 0]) / surroundings.plane[0] * level
+    contrast = level - marker_level
+    share = (level - luma) / np.where(np.abs(contrast) > 1.0, contrast, 1.0)
+    share[inside > 0] = 1.0
+    share[outer == 0] = 0.0
+    return share, float(abs(contrast.mean()))
+
+
+def _symmetric_centre(
+    share: np.ndarray, outer: np.ndarray, surroundings: Surroundings
+) -> tuple[np.ndarray, float]:
+    """Centre (2,) and area of the marker, from the directions that nothing else crosses."""
+    rows, columns = np.nonzero(outer)
+    weights = share[rows, columns]
+    positions = np.column_stack([columns, rows]).astype(float)
+    area = float(weights.sum())
+    centre = weights @ positions / area
+    window = surroundings.symmetric_window()
+    if window is None:
+        return centre, area
+    pull = _shift_response(window) * area / np.pi
+    for _ in range(REFINEMENTS):
+        offset = positions - centre
+        seen = weights * window[sector_of(offset[:, 0], offset[:, 1])]
+        centre = centre + np.linalg.solve(pull, seen @ offset)
+    return centre, area
+
+
+def _shift_response(window: np.ndarray) -> np.ndarray:
+    """How a unit disc's windowed first moment changes as it moves: ∮ w n nᵀ dφ, shape (2, 2)."""
+    angle = (np.arange(len(window)) + 0.5) / len(window) * 2.0 * np.pi
+    normal = np.stack([np.cos(angle), np.sin(angle)])
+    return (window * normal) @ normal.T * (2.0 * np.pi / len(window))
+
+
+@lru_cache(maxsize=32)
+def _disc(radius: int) -> np.ndarray:
+    return cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1))

@@ -1,0 +1,86 @@
+"""What lies around a marker: the background's luma, its noise, and the directions in which something crosses it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+DIRECTIONS = 48
+FINE_SECTORS = 8 * DIRECTIONS
+WIDENING = 2
+MINIMUM_OPEN_SHARE = 0.3
+REWEIGHTINGS = 4
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """Background plane about `origin` (2,) [px]: level, slope in x and in y; noise [grey levels]; crossed (48,)."""
+
+    origin: np.ndarray
+    plane: np.ndarray
+    noise: float
+    crossed: np.ndarray
+
+    def level(self, shape: tuple[int, int]) -> np.ndarray:
+        """Luma of the background on every pixel of a region of this shape."""
+        x = np.arange(shape[1], dtype=np.float32) - self.origin[0]
+        y = np.arange(shape[0], dtype=np.float32) - self.origin[1]
+        across = (self.plane[0] + self.plane[1] * x).astype(np.float32)
+        return across[None, :] + (self.plane[2] * y).astype(np.float32)[:, None]
+
+    def symmetric_window(self) -> np.ndarray | None:
+        """Smooth weight by fine sector, zero where something crosses here or opposite; None if nothing needs it.
+
+        Also None when too few directions are left to locate the marker both ways.
+        """
+        if not self.crossed.any():
+            return None
+        closed = self.crossed | np.roll(self.crossed, DIRECTIONS // 2)
+        near = sum(np.roll(closed, shift) for shift in range(-WIDENING, WIDENING + 1)) > 0
+        if 1.0 - near.mean() < MINIMUM_OPEN_SHARE:
+            return None
+        hat = np.array([1.0, 2.0, 3.0, 2.0, 1.0]) / 9.0
+        opening = np.repeat(~near, FINE_SECTORS // DIRECTIONS).astype(float)
+        kernel = np.repeat(hat, FINE_SECTORS // DIRECTIONS)
+        kernel /= kernel.sum()
+        reach = len(kernel) // 2
+        return np.convolve(np.concatenate([opening[-reach:], opening, opening[:reach]]), kernel, "same")[
+            reach:-reach
+        ]
+
+
+def look_around(luma: np.ndarray, inside: np.ndarray, ring: np.ndarray) -> Surroundings:
+    """Describe the background in `ring` around the marker whose `inside` is given (masks, same shape as `luma`)."""
+    rows, columns = np.nonzero(inside)
+    origin = np.array([columns.mean(), rows.mean()])
+    rows, columns = np.nonzero(ring)
+    x, y, values = columns - origin[0], rows - origin[1], luma[rows, columns]
+    direction = sector_of(x, y) // (FINE_SECTORS // DIRECTIONS)
+    count = np.bincount(direction, minlength=DIRECTIONS)
+    seen = count > 0
+    share = 1.0 / np.maximum(count, 1)
+    mean_x, mean_y, mean_value = (np.bincount(direction, each, DIRECTIONS) * share for each in (x, y, values))
+    design = np.column_stack([np.ones(DIRECTIONS), mean_x, mean_y])
+    plane, left, spread = _robust_plane(design, mean_value, seen)
+    crossed = seen & (np.abs(left) > 4.0 * spread + 1.0)
+    noise = spread / np.sqrt(np.median(share[seen]))
+    return Surroundings(origin, plane, float(noise), crossed)
+
+
+def _robust_plane(
+    design: np.ndarray, values: np.ndarray, seen: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, float]:
+    """Plane through most of the sector means, what is left of each, and its typical size."""
+    weight = seen.astype(float)
+    for _ in range(REWEIGHTINGS):
+        weighted = design * weight[:, None]
+        plane = np.linalg.solve(weighted.T @ design + 1e-9 * np.eye(3), weighted.T @ values)
+        left = values - design @ plane
+        spread = 1.5 * float(np.median(np.abs(left[seen]))) + 0.1
+        weight = seen / np.maximum(np.abs(left) / spread, 1.0) ** 2
+    return plane, left, spread
+
+
+def sector_of(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Number of the fine sector, 0 to FINE_SECTORS − 1 counted from +x towards +y, in which an offset lies."""
+    turn = np.arctan2(y, x) * (0.5 / np.pi)
+    return np.floor(turn * FINE_SECTORS).astype(np.int64) % FINE_SECTORS

@@ -1,0 +1,42 @@
+"""What the tracker needs to know about markers and regions; the defaults suit 4 mm blue dots at 6 px per mm."""
+
+from dataclasses import dataclass, field
+
+from hasel_tracker.colour_gate import ColourRange
+from hasel_tracker.errors import TrackerError
+
+HEAD_SIDES = ("auto", "left", "right", "top", "bottom")
+METHODS = ("moment", "csrt")
+
+
+@dataclass(frozen=True)
+class TrackerSettings:
+    """Settings of the markers' search.
+
+    marker_radius_px: expected radius; 0 learns it from the first frame. region_px: how far a marker may be from where
+    it is predicted. edge_px: half width of the band in which a marker's edge lies (more for blurred pictures).
+    head: on which side of the picture the head starts; `auto` takes the thicker half of the body for the front.
+    minimum_quality: below it a marker counts as lost.
+    """
+
+    colour: ColourRange = field(default_factory=ColourRange)
+    marker_radius_px: float = 0.0
+    smallest_radius_px: float = 4.0
+    largest_radius_px: float = 60.0
+    region_px: int = 16
+    edge_px: int = 3
+    head: str = "auto"
+    minimum_quality: float = 0.5
+
+    def __post_init__(self) -> None:
+        if self.head not in HEAD_SIDES:
+            raise TrackerError(f"The head side is '{self.head}'; expected one of {', '.join(HEAD_SIDES)}.")
+        if not 0.0 < self.smallest_radius_px < self.largest_radius_px:
+            raise TrackerError(
+                f"The smallest marker radius is {self.smallest_radius_px} px and the largest "
+                f"{self.largest_radius_px} px; expected 0 < smallest < largest."
+            )
+        if self.edge_px < 2 or self.region_px < 2:
+            raise TrackerError(
+                f"edge_px is {self.edge_px} and region_px {self.region_px}; expected at least 2 px each."
+            )
