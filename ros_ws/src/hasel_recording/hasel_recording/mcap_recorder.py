@@ -13,7 +13,7 @@ from mcap_ros2._dynamic import (
 )  # the package's own writer offers neither flush nor channel metadata
 
 from hasel_recording.errors import RecordingError, nearest
-from hasel_recording.message_definitions import schema_text
+from hasel_recording.message_definitions import has_header, schema_text
 from hasel_recording.message_fields import plain_fields, stamp, type_of
 from hasel_recording.rosbag2_metadata import TopicCount, bag_metadata, channel_metadata
 from hasel_recording.topics import TOPIC_TYPES
@@ -65,7 +65,7 @@ class McapRecorder:
         topic that is not one of the stack's.
         """
         type_name = type_name or type_of(message) or self._type_of_topic(topic)
-        if isinstance(message, Mapping) and "header" not in message:
+        if isinstance(message, Mapping) and "header" not in message and has_header(type_name):
             message = {"header": {"stamp": stamp(stamp_ns), "frame_id": ""}, **message}
         fields = plain_fields(message, type_name)
         with self._lock:

@@ -40,6 +40,11 @@ def nested_types(type_name: str) -> list[str]:
     return [f"{t.pkg_name}/msg/{t.type}" for t in types if not t.is_primitive_type()]
 
 
+def has_header(type_name: str) -> bool:
+    """Return whether a message of this type begins with a std_msgs/Header."""
+    return "std_msgs/msg/Header" in nested_types(type_name)[:1]
+
+
 @cache
 def schema_text(type_name: str) -> str:
     """Return the definition followed by those of all types in it, as rosbag2 stores it (`ros2msg`)."""

@@ -1,0 +1,142 @@
+import math
+
+import numpy as np
+import pytest
+from hasel_recording import McapRecorder, RecordingError, RecordingWarning, read_recording
+from hasel_recording.topics import COMMAND, MEASURED, SIMULATED, STATE
+from mcap.writer import Writer
+
+EPOCH_NS = 1_790_000_000_000_000_000
+
+
+def angle(sin_theta: float, valid: bool = True) -> dict:
+    """Return a BendingAngle."""
+    pixels = [400.0, 800.0, 1200.0]
+    return {
+        "sin_theta": sin_theta,
+        "theta": math.asin(sin_theta) if valid else math.nan,
+        "marker_x": pixels,
+        "marker_y": [540.0, 540.0, 540.0 - 400 * sin_theta],
+        "marker_quality": [1.0, 1.0, 1.0],
+        "valid": valid,
+    }
+
+
+def state(upper: float, lower: float) -> dict:
+    """Return a SupplyState with this voltage [V]."""
+    unknown = [math.nan, math.nan]
+    supply = {"commanded_voltage": [upper, lower], "measured_voltage": unknown, "current": unknown}
+    return supply | {"mode": 2, "fault_code": 0, "fault_text": ""}
+
+
+@pytest.fixture
+def recorder(tmp_path):
+    """An open recorder of run.mcap."""
+    with McapRecorder(tmp_path / "run.mcap") as opened:
+        yield opened
+
+
+def read(recorder: McapRecorder):
+    """Close the recorder and read what it wrote."""
+    recorder.close()
+    return read_recording(recorder.path)
+
+
+def test_live_run_is_sampled_at_the_frames(recorder):
+    """Frames have the voltage that held at their stamp; the exact instants of switching are kept beside."""
+    for milliseconds, upper in ((0, 0.0), (10, 4000.0), (20, 4000.0), (25, 0.0)):
+        recorder.write(STATE, state(upper, -upper), EPOCH_NS + milliseconds * 1_000_000)
+    for milliseconds in (8, 16, 24, 32):
+        recorder.write(MEASURED, angle(milliseconds / 100), EPOCH_NS + milliseconds * 1_000_000)
+    run = read(recorder)
+    assert run.time_s.tolist() == [0.008, 0.016, 0.024, 0.032]
+    assert run.sin_theta.tolist() == [0.08, 0.16, 0.24, 0.32]
+    assert run.voltage.tolist() == [[0, 0], [4000, -4000], [4000, -4000], [0, 0]]
+    assert run.drive_time_s.tolist() == [0.0, 0.010, 0.025]
+    assert run.drive_voltage.tolist() == [[0, 0], [4000, -4000], [0, 0]]
+    assert run.markers[1].tolist() == [[400, 540], [800, 540], [1200, 540 - 400 * 0.16]]
+    assert run.marker_unit == "px"
+
+
+def test_lost_frames_stay_as_nan(recorder):
+    """A frame marked invalid keeps its place in time without an angle, whatever number it carries."""
+    for index, valid in enumerate((True, False, True)):
+        recorder.write(MEASURED, angle(0.1, valid), EPOCH_NS + index)
+    run = read(recorder)
+    assert np.isnan(run.sin_theta).tolist() == [False, True, False]
+    assert run.voltage is None
+
+
+def test_frames_before_the_first_state_are_left_out_aloud(recorder):
+    """The voltage before the supply first spoke is not known, so these frames are not used."""
+    recorder.write(STATE, state(0, 0), EPOCH_NS + 15)
+    for offset in (0, 10, 20):
+        recorder.write(MEASURED, angle(0.1), EPOCH_NS + offset)
+    with pytest.warns(RecordingWarning, match="2 frames before the first /hasel/state"):
+        run = read(recorder)
+    assert run.time_s == pytest.approx([20e-9])
+
+
+def test_simulated_angle_is_read_too(recorder):
+    """What a simulator published during the run comes with its own times."""
+    recorder.write(MEASURED, angle(0.1), EPOCH_NS)
+    recorder.write(SIMULATED, angle(0.2), EPOCH_NS + 500_000_000)
+    run = read(recorder)
+    assert (run.simulated_time_s.tolist(), run.simulated_sin_theta.tolist()) == ([0.5], [0.2])
+
+
+def test_no_measured_angle(recorder):
+    """A file without the angle says which topics there are and which one is nearest."""
+    recorder.write("/hasel/bending/measurd", angle(0.1), 1, "hasel_interfaces/msg/BendingAngle")
+    recorder.write(COMMAND, {"voltage": [0.0, 0.0]}, 1)
+    with pytest.raises(
+        RecordingError, match=r"no topic /hasel/bending/measured, only .*is /hasel/bending/measurd meant"
+    ):
+        read(recorder)
+
+
+def test_misspelt_state_is_not_a_passive_body(recorder):
+    """A topic that looks like a misspelt state is asked about rather than ignored."""
+    recorder.write(MEASURED, angle(0.1), 1)
+    recorder.write("/hasel/states", state(0, 0), 1, "hasel_interfaces/msg/SupplyState")
+    with pytest.raises(RecordingError, match=r"no topic /hasel/state,.*is /hasel/states meant"):
+        read(recorder)
+
+
+def test_wrong_type(recorder):
+    """The right topic with another type is named with both types."""
+    recorder.write(MEASURED, {"data": 0.1}, 1, "std_msgs/msg/Float64")
+    with pytest.raises(
+        RecordingError, match="holds std_msgs/msg/Float64, but hasel_interfaces/msg/BendingAngle"
+    ):
+        read(recorder)
+
+
+def test_unknown_encoding(tmp_path):
+    """A file in another encoding than ROS 2's says which is expected."""
+    with (tmp_path / "json.mcap").open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        schema = writer.register_schema("hasel_interfaces/msg/BendingAngle", "jsonschema", b"{}")
+        writer.add_message(writer.register_channel(MEASURED, "json", schema), 1, b"{}", 1)
+        writer.finish()
+    with pytest.raises(RecordingError, match="json with a jsonschema definition, but cdr with ros2msg"):
+        read_recording(tmp_path / "json.mcap")
+
+
+@pytest.mark.parametrize("voltage", [10_001.0, -20_000.0, math.nan])
+def test_impossible_voltage(recorder, voltage):
+    """More than the supply can give, or no number, is an error with the message's number."""
+    recorder.write(STATE, state(0, 0), 1)
+    recorder.write(STATE, state(0, voltage), 2)
+    recorder.write(MEASURED, angle(0.1), 2)
+    with pytest.raises(RecordingError, match="message 2 on /hasel/state commands"):
+        read(recorder)
+
+
+def test_time_that_runs_backwards(recorder):
+    """Stamps that do not increase are an error."""
+    for stamp_ns in (10, 30, 20):
+        recorder.write(MEASURED, angle(0.1), stamp_ns)
+    with pytest.raises(RecordingError, match="message 3 on /hasel/bending/measured is not later"):
+        read(recorder)

@@ -1,0 +1,150 @@
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hasel_interfaces.msg import SupplyState
+from hasel_recording import McapRecorder, RecordingError, RecordingWarning, mcap_recorder
+from hasel_recording.mcap_file import read_file
+from hasel_recording.topics import COMMAND, MEASURED, STATE
+from mcap.reader import make_reader
+from rclpy.serialization import deserialize_message, serialize_message
+from rosbags.highlevel import AnyReader
+
+
+def state_at(stamp_ns: int) -> SupplyState:
+    """Return a message with something in every kind of field."""
+    message = SupplyState(mode=SupplyState.FAULT, fault_code=7, fault_text="over-current on the upper side")
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp_ns, 1_000_000_000)
+    message.commanded_voltage = np.array([5500.25, -1200.5])
+    message.measured_voltage = np.array([np.nan, -1199.0])
+    return message
+
+
+@pytest.mark.parametrize("rate_hz", [120, 8])
+def test_killed_writer_loses_at_most_a_second(rate_hz, tmp_path):
+    """A writing process that is killed outright leaves a file that lacks less than its last second."""
+    path = tmp_path / "killed.mcap"
+    program = Path(__file__).with_name("killed_writer.py")
+    writer = subprocess.Popen(
+        [sys.executable, program, path, str(rate_hz)], stdout=subprocess.PIPE, text=True
+    )
+    first_ns = int(writer.stdout.readline())
+    last_ns = first_ns
+    while last_ns < first_ns + 2_500_000_000:
+        last_ns = int(writer.stdout.readline())
+    writer.send_signal(signal.SIGKILL)
+    unread = writer.stdout.read().split()
+    writer.wait()
+    last_ns = int(unread[-1]) if unread else last_ns
+    with pytest.warns(RecordingWarning, match="truncated"):
+        stamps = [message.log_time for message in read_file(path).messages[MEASURED]]
+    assert stamps[0] == first_ns
+    assert (last_ns - stamps[-1]) / 1e9 < 1.0
+
+
+def test_rclpy_decodes_the_same_message(tmp_path):
+    """A recorded message is as long as rclpy's own and decodes to the same fields there."""
+    message = state_at(1_700_000_000_123_456_789)
+    with McapRecorder(tmp_path / "run.mcap") as recorder:
+        recorder.write(STATE, message, 1_700_000_000_123_456_789)
+    (recorded,) = read_file(tmp_path / "run.mcap").messages[STATE]
+    assert len(recorded.data) == len(serialize_message(message))
+    assert str(deserialize_message(recorded.data, SupplyState)) == str(message)
+
+
+def test_independent_reader_gives_the_same_message(tmp_path):
+    """rosbags, which shares no code with the writer, reads back every field."""
+    with McapRecorder(tmp_path / "run.mcap") as recorder:
+        recorder.write(STATE, state_at(5_000_000_001), 5_000_000_001)
+    with AnyReader([tmp_path / "run.mcap"]) as reader:
+        ((connection, log_time, data),) = reader.messages()
+        message = reader.deserialize(data, connection.msgtype)
+    assert log_time == 5_000_000_001
+    assert message.header.stamp.nanosec == 1
+    assert message.commanded_voltage.tolist() == [5500.25, -1200.5]
+    assert (message.mode, message.fault_text) == (SupplyState.FAULT, "over-current on the upper side")
+
+
+def test_closed_file_has_profile_index_and_statistics(tmp_path):
+    """Viewers get what they look for: profile ros2, ros2msg, cdr, an index in chunks of 32 KiB or less."""
+    path = tmp_path / "run.mcap"
+    with McapRecorder(path, {"model": "beam"}) as recorder:
+        for index in range(2000):
+            recorder.write(COMMAND, {"voltage": [float(index), 0.0]}, index)
+    with path.open("rb") as file:
+        reader = make_reader(file, validate_crcs=True)
+        summary = reader.get_summary()
+        assert reader.get_header().profile == "ros2"
+    (channel,), (schema,) = summary.channels.values(), summary.schemas.values()
+    assert (channel.message_encoding, schema.encoding) == ("cdr", "ros2msg")
+    assert summary.statistics.message_count == 2000
+    assert len(summary.chunk_indexes) > 1
+    assert max(chunk.uncompressed_size for chunk in summary.chunk_indexes) <= 32 * 1024
+
+
+def test_flushes_to_the_disk_while_open(tmp_path, monkeypatch):
+    """What was written reaches the disk (fsync) soon, without another message having to come."""
+    synced = []
+    monkeypatch.setattr(os, "fsync", synced.append)
+    monkeypatch.setattr(mcap_recorder, "FLUSH_PERIOD_S", 0.02)
+    with McapRecorder(tmp_path / "run.mcap") as recorder:
+        recorder.write(COMMAND, {"voltage": [1.0, 2.0]}, 1)
+        deadline = time.monotonic() + 5
+        while not synced and time.monotonic() < deadline:
+            time.sleep(0.01)
+        assert synced
+        with pytest.warns(RecordingWarning, match="truncated"):
+            assert len(read_file(tmp_path / "run.mcap").messages[COMMAND]) == 1
+
+
+def test_full_disk_is_reported_at_the_next_write(tmp_path, monkeypatch):
+    """When the disk fails, the writer of the next message is told instead of losing data silently."""
+
+    def fail(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(mcap_recorder, "FLUSH_PERIOD_S", 0.02)
+    recorder = McapRecorder(tmp_path / "run.mcap")
+    with monkeypatch.context() as broken:
+        broken.setattr(os, "fsync", fail)
+        recorder._flusher.join(timeout=5)
+    with pytest.raises(RecordingError, match="No space left on device"):
+        recorder.write(COMMAND, {"voltage": [1.0, 2.0]}, 1)
+    recorder.close()
+
+
+def test_unknown_topic_needs_a_type(tmp_path):
+    """A mapping on a topic of unknown type is refused with the nearest topic of the stack."""
+    with (
+        McapRecorder(tmp_path / "run.mcap") as recorder,
+        pytest.raises(RecordingError, match="did you mean '/hasel/command'"),
+    ):
+        recorder.write("/hasel/comand", {"voltage": [1.0, 2.0]}, 1)
+
+
+def test_one_topic_holds_one_type(tmp_path):
+    """A second type on the same topic is refused."""
+    with McapRecorder(tmp_path / "run.mcap") as recorder:
+        recorder.write(COMMAND, {"voltage": [1.0, 2.0]}, 1)
+        with pytest.raises(RecordingError, match="holds hasel_interfaces/msg/Actuation"):
+            recorder.write(COMMAND, state_at(2), 2)
+
+
+def test_writing_after_closing_is_refused(tmp_path):
+    """A closed recording takes no more messages, and closing twice is fine."""
+    recorder = McapRecorder(tmp_path / "run.mcap")
+    recorder.close()
+    recorder.close()
+    with pytest.raises(RecordingError, match="is closed"):
+        recorder.write(COMMAND, {"voltage": [1.0, 2.0]}, 1)
+
+
+def test_folder_that_does_not_exist(tmp_path):
+    """A place that cannot be written to is one sentence."""
+    with pytest.raises(RecordingError, match="cannot be written"):
+        McapRecorder(tmp_path / "nowhere" / "run.mcap")
