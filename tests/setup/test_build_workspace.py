@@ -1,0 +1,82 @@
+from pathlib import Path
+
+import build_workspace
+import pytest
+
+
+@pytest.fixture
+def root(tmp_path: Path, monkeypatch) -> Path:
+    """A workspace of two packages whose builds are listed instead of run."""
+    for name in ("alpha", "beta"):
+        package = tmp_path / "ros_ws" / "src" / name
+        (package / name).mkdir(parents=True)
+        (package / "test").mkdir()
+        (package / "package.xml").write_text("<package/>")
+        (package / name / "module.py").write_text("A = 1\n")
+    (tmp_path / "built").write_text("")
+
+    def colcon_build(root: Path, packages: list[str]) -> int:
+        (root / "install").mkdir(exist_ok=True)
+        for name in packages:
+            (root / "build" / name).mkdir(exist_ok=True)
+        with (root / "built").open("a") as log:
+            log.write(" ".join(packages) + "\n")
+        return 1 if (root / "broken").exists() else 0
+
+    monkeypatch.setattr(build_workspace, "colcon_build", colcon_build)
+    return tmp_path
+
+
+def built(root: Path) -> list[str]:
+    """Return what was built since it was last asked for."""
+    lines = (root / "built").read_text().splitlines()
+    (root / "built").write_text("")
+    return lines
+
+
+def test_only_what_changed_is_built(root):
+    """First all, then nothing, then the package with a changed, a new or a deleted file."""
+    module = root / "ros_ws" / "src" / "beta" / "beta"
+    build_workspace.build(root)
+    assert built(root) == ["alpha beta"]
+    build_workspace.build(root)
+    assert built(root) == []
+    for change in (
+        lambda: (module / "module.py").write_text("A = 2\n"),
+        lambda: (module / "new.py").write_text(""),
+        (module / "new.py").unlink,
+    ):
+        change()
+        build_workspace.build(root)
+        assert built(root) == ["beta"]
+
+
+def test_touching_and_testing_build_nothing(root):
+    """A new time stamp, a changed test and Python's caches are no change."""
+    build_workspace.build(root)
+    built(root)
+    package = root / "ros_ws" / "src" / "alpha"
+    (package / "alpha" / "module.py").touch()
+    (package / "test" / "test_module.py").write_text("")
+    (package / "alpha" / "__pycache__").mkdir()
+    (package / "alpha" / "__pycache__" / "module.pyc").write_text("")
+    build_workspace.build(root)
+    assert built(root) == []
+
+
+def test_failed_build_is_tried_again(root):
+    """A package that failed to build counts as changed, and the failure is the exit code."""
+    (root / "broken").write_text("")
+    assert build_workspace.build(root) == 1
+    (root / "broken").unlink()
+    assert build_workspace.build(root) == 0
+    assert built(root) == ["alpha beta", "alpha beta"]
+
+
+def test_removed_install_builds_all(root):
+    """Without install/ everything is built again."""
+    build_workspace.build(root)
+    built(root)
+    (root / "install").rmdir()
+    build_workspace.build(root)
+    assert built(root) == ["alpha beta"]
