@@ -1,0 +1,1 @@
+"""Accuracy, speed and robustness of the tracker against rendered truth."""

@@ -1,0 +1,1 @@
+"""Pictures of a moving swimmer with known truth, as a camera would take them."""

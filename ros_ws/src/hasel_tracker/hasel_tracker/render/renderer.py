@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from hasel_tracker.bending_angle import bending_angle
+from hasel_tracker.tracking.bending_angle import bending_angle
 from hasel_tracker.render.body_shape import BodyShape
 from hasel_tracker.render.camera_view import CameraView
 from hasel_tracker.render.degradation import Degradation, add_glints, add_noise, compress, uneven_light

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from hasel_tracker.colour_gate import ColourRange
+from hasel_tracker.tracking.colour_gate import ColourRange
 
 LEAST_AREA_SHARE = 0.4
 MOST_AREA_SHARE = 2.5
+SINGLE_PIXELS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 
 
 @dataclass(frozen=True)
@@ -48,12 +49,18 @@ def blobs_in_frame(image: np.ndarray, gate: ColourRange, step: int, minimum_radi
     return [Blob(blob.centre * step, blob.area * step**2, blob.roundness) for blob in found]
 
 
-def nearest_blob(mask: np.ndarray, predicted: np.ndarray, area: float) -> np.ndarray | None:
-    """Mask of the patch of about `area` [px²] that is nearest to `predicted` (2,) [px]; None if there is none."""
-    count, labels, statistics, centres = cv2.connectedComponentsWithStats(mask, connectivity=8)
-    areas = statistics[1:count, cv2.CC_STAT_AREA]
-    fitting = np.flatnonzero((areas > LEAST_AREA_SHARE * area) & (areas < MOST_AREA_SHARE * area)) + 1
-    if not len(fitting):
-        return None
-    distance = np.linalg.norm(centres[fitting] - predicted, axis=1)
-    return np.where(labels == fitting[distance.argmin()], np.uint8(255), np.uint8(0))
+def nearest_outline(mask: np.ndarray, predicted: np.ndarray, area: float) -> np.ndarray | None:
+    """Outer contour (n, 1, 2) of the patch of about `area` [px²] nearest to `predicted` (2,) [px]; None if none fits."""
+    opened = cv2.morphologyEx(mask, cv2.MORPH_OPEN, SINGLE_PIXELS)
+    outlines, _ = cv2.findContours(opened, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    nearest, shortest = None, np.inf
+    for outline in outlines:
+        # A contour runs through the centres of the outermost pixels.
+        enclosed = cv2.contourArea(outline) + 0.5 * len(outline) + 1.0
+        if not LEAST_AREA_SHARE * area < enclosed < MOST_AREA_SHARE * area:
+            continue
+        x, y, width, height = cv2.boundingRect(outline)
+        distance = np.hypot(x + 0.5 * width - predicted[0], y + 0.5 * height - predicted[1])
+        if distance < shortest:
+            nearest, shortest = outline, distance
+    return nearest

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from hasel_tracker.blobs import Blob, blobs_in_frame, nearest_blob
-from hasel_tracker.head_side import starts_at_head
-from hasel_tracker.marker_moment import RING_WIDTH_PX, MarkerMeasurement, measure_marker
-from hasel_tracker.marker_order import CHORD_TOLERANCE, assign_lost, body_line
-from hasel_tracker.marker_set import MarkerSet
-from hasel_tracker.tracker_settings import TrackerSettings
+from hasel_tracker.tracking.blobs import Blob, blobs_in_frame, nearest_outline
+from hasel_tracker.tracking.head_side import starts_at_head
+from hasel_tracker.tracking.marker_moment import RING_WIDTH_PX, MarkerMeasurement, measure_marker
+from hasel_tracker.tracking.marker_order import CHORD_TOLERANCE, assign_lost, body_line
+from hasel_tracker.tracking.marker_set import MarkerSet
+from hasel_tracker.tracking.tracker_settings import TrackerSettings
 
 WIDER_REGION = 3
 AREA_MEMORY = 0.02
@@ -37,6 +37,11 @@ class MomentTracker:
         measured = [self._follow(image, number, predicted[number]) for number in range(3)]
         measured = self._reacquire(image, measured)
         return self._accept(measured, time_s, step_s)
+
+    @property
+    def radius_px(self) -> float:
+        """Radius of the markers as followed so far [px]; 0 before the start."""
+        return float(np.sqrt(np.median(self._areas) / np.pi))
 
     def _start(self, image: np.ndarray) -> bool:
         blobs = self._candidates(image)
@@ -83,10 +88,10 @@ class MomentTracker:
         if min(region.shape[:2]) < 2 * radius:
             return None
         mask = self.settings.colour.mask(region)
-        blob_mask = nearest_blob(mask, predicted - [left, top], area)
-        if blob_mask is None:
+        outline = nearest_outline(mask, predicted - [left, top], area)
+        if outline is None:
             return None
-        measurement = measure_marker(region, blob_mask, self.settings.edge_px)
+        measurement = measure_marker(region, outline, self.settings.edge_px)
         if measurement is None:
             return None
         return measurement.moved_by(np.array([left, top], float))

@@ -15,7 +15,7 @@ from functools import lru_cache
 import cv2
 import numpy as np
 
-from hasel_tracker.marker_surroundings import Surroundings, look_around, sector_of
+from hasel_tracker.tracking.marker_surroundings import Surroundings, look_around, middle_value, sector_of
 
 RING_WIDTH_PX = 3
 MINIMUM_CONTRAST = 12.0
@@ -38,19 +38,21 @@ class MarkerMeasurement:
         return replace(self, centre=self.centre + offset)
 
 
-def measure_marker(image: np.ndarray, blob_mask: np.ndarray, edge_px: int) -> MarkerMeasurement | None:
-    """Measure the marker that `blob_mask` (255 on its pixels) roughly covers in an 8-bit BGR region.
+def measure_marker(image: np.ndarray, outline: np.ndarray, edge_px: int) -> MarkerMeasurement | None:
+    """Measure the marker that the contour `outline`, shape (n, 1, 2), roughly encloses in an 8-bit BGR region.
 
     `edge_px` is half the width of the band in which its edge lies. The centre is in the region's pixels. None if
     the marker has no inside left, no contrast, or its surroundings leave the region.
     """
-    filled, solidity = _filled_outline(blob_mask)
-    x, y, width, height = cv2.boundingRect(filled)
+    # Convex: a highlight or a notch at the edge is part of the marker.
+    hull = cv2.convexHull(outline)
+    x, y, width, height = cv2.boundingRect(hull)
     reach = edge_px + RING_WIDTH_PX + 1
     left, top, right, bottom = x - reach, y - reach, x + width + reach, y + height + reach
     if left < 0 or top < 0 or right > image.shape[1] or bottom > image.shape[0]:
         return None
-    filled = filled[top:bottom, left:right]
+    filled = np.zeros((bottom - top, right - left), np.uint8)
+    cv2.fillConvexPoly(filled, hull - np.array([left, top], np.int32), 255)
     inside = cv2.erode(filled, _disc(edge_px))
     outer = cv2.dilate(filled, _disc(edge_px))
     ring = cv2.dilate(outer, _disc(RING_WIDTH_PX)) ^ outer
@@ -62,17 +64,8 @@ def measure_marker(image: np.ndarray, blob_mask: np.ndarray, edge_px: int) -> Ma
     if contrast < MINIMUM_CONTRAST:
         return None
     centre, area = _symmetric_centre(share, outer, surroundings)
+    solidity = min(cv2.contourArea(outline) / max(cv2.contourArea(hull), 1.0), 1.0)
     return MarkerMeasurement(centre + [left, top], area, contrast, surroundings.noise, solidity)
-
-
-def _filled_outline(blob_mask: np.ndarray) -> tuple[np.ndarray, float]:
-    """Convex filling of the mask (a highlight or a notch does not count) and the share of it that was set."""
-    points = cv2.findNonZero(cv2.morphologyEx(blob_mask, cv2.MORPH_OPEN, _disc(1)))
-    filled = np.zeros_like(blob_mask)
-    if points is None:
-        return filled, 0.0
-    cv2.fillConvexPoly(filled, cv2.convexHull(points), 255)
-    return filled, len(points) / max(cv2.countNonZero(filled), 1)
 
 
 def _marker_share(
@@ -81,7 +74,7 @@ def _marker_share(
     """How much of each pixel is marker (from luma alone), and the contrast [grey levels]."""
     level = surroundings.level(luma.shape)
     # The light on the marker varies as the light on its surroundings.
-    marker_level = np.median(luma[inside > 0]) / surroundings.plane[0] * level
+    marker_level = middle_value(luma[inside > 0]) / surroundings.plane[0] * level
     contrast = level - marker_level
     share = (level - luma) / np.where(np.abs(contrast) > 1.0, contrast, 1.0)
     share[inside > 0] = 1.0

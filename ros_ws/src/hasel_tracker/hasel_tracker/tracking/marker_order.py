@@ -4,7 +4,7 @@ from itertools import combinations, permutations
 
 import numpy as np
 
-from hasel_tracker.blobs import Blob
+from hasel_tracker.tracking.blobs import Blob
 
 MOST_CANDIDATES = 8
 LARGEST_START_COST = 60.0

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from hasel_tracker.colour_gate import ColourRange
+from hasel_tracker.tracking.colour_gate import ColourRange
 from hasel_tracker.errors import TrackerError
 
 HEAD_SIDES = ("auto", "left", "right", "top", "bottom")

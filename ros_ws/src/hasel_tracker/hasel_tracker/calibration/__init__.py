@@ -1,0 +1,1 @@
+"""Lens and perspective from a board, marker colours from a frame."""

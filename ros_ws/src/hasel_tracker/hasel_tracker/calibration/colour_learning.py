@@ -1,0 +1,106 @@
+"""Learn the markers' colour range and size from one frame."""
+
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+
+from hasel_tracker.errors import TrackerError
+from hasel_tracker.tracking.blobs import blobs_in_frame
+from hasel_tracker.tracking.colour_gate import HUE_CIRCLE, ColourRange
+from hasel_tracker.tracking.marker_order import body_line
+from hasel_tracker.tracking.moment_tracker import MomentTracker
+from hasel_tracker.tracking.tracker_settings import TrackerSettings
+
+SEED_RADIUS_PX = 3
+HUE_MARGIN = 8
+MARGIN_SHARE = 0.6
+
+
+@dataclass(frozen=True)
+class LearnedColour:
+    """The settings learned, the markers found with them (3, 2) [px], and the share of other pixels in the range."""
+
+    settings: TrackerSettings
+    markers_px: np.ndarray
+    stray_share: float
+
+    def __str__(self) -> str:
+        colour, radius = self.settings.colour, self.settings.marker_radius_px
+        return (
+            f"Markers of hue {colour.hue_low} to {colour.hue_high}, saturation from {colour.saturation_low}, value from "
+            f"{colour.value_low}, radius {radius:.1f} px; {100.0 * self.stray_share:.2g} % of the other pixels have "
+            "that colour too."
+        )
+
+
+def learn_colour(
+    image: np.ndarray, points_px: np.ndarray | None = None, start: TrackerSettings = TrackerSettings()  # noqa: B008
+) -> LearnedColour:
+    """Learn from an 8-bit BGR frame; `points_px` (3, 2) are pixels on the three markers, or None to find them.
+
+    Raises TrackerError if no three markers are found with what was learned.
+    """
+    centres = _found_centres(image, start) if points_px is None else np.asarray(points_px, float)
+    colour = _range_around(cv2.cvtColor(image, cv2.COLOR_BGR2HSV), centres)
+    radius = _radius(colour.mask(image), centres)
+    settings = replace(start, colour=colour, marker_radius_px=round(radius, 1))
+    tracker = MomentTracker(settings)
+    markers = tracker.update(image, 0.0)
+    if not markers.found.all():
+        raise TrackerError(
+            f"With the colour learned the markers are not found ({tracker.note}); point at them with --at."
+        )
+    return LearnedColour(settings, markers.positions, _stray_share(colour.mask(image), markers.positions, radius))
+
+
+def _found_centres(image: np.ndarray, start: TrackerSettings) -> np.ndarray:
+    blobs = blobs_in_frame(image, start.colour, 2, start.smallest_radius_px)
+    row = body_line([blob for blob in blobs if blob.radius <= start.largest_radius_px])
+    if row is None:
+        raise TrackerError(
+            f"Found {len(blobs)} blobs in the starting colour range, of which no three look like markers in a row; "
+            "point at the markers with --at X,Y X,Y X,Y."
+        )
+    kept = [blob for blob in blobs if blob.radius <= start.largest_radius_px]
+    return np.array([kept[index].centre for index in row])
+
+
+def _range_around(hsv: np.ndarray, centres: np.ndarray) -> ColourRange:
+    height, width = hsv.shape[:2]
+    samples = []
+    for x, y in np.rint(centres).astype(int):
+        if not (0 <= x < width and 0 <= y < height):
+            raise TrackerError(f"The point {x},{y} is outside the image of {width} × {height} px.")
+        patch = hsv[
+            max(y - SEED_RADIUS_PX, 0) : y + SEED_RADIUS_PX + 1, max(x - SEED_RADIUS_PX, 0) : x + SEED_RADIUS_PX + 1
+        ]
+        samples.append(patch.reshape(-1, 3))
+    pixels = np.vstack(samples).astype(float)
+    angle = pixels[:, 0] * (2.0 * np.pi / HUE_CIRCLE)
+    middle = np.arctan2(np.sin(angle).mean(), np.cos(angle).mean()) * HUE_CIRCLE / (2.0 * np.pi)
+    apart = (pixels[:, 0] - middle + HUE_CIRCLE / 2) % HUE_CIRCLE - HUE_CIRCLE / 2
+    low, high = np.percentile(apart, [1, 99]) + [-HUE_MARGIN, HUE_MARGIN]
+    saturation, value = np.percentile(pixels[:, 1:], 5, axis=0) * MARGIN_SHARE
+    return ColourRange(
+        int(round(middle + low)) % HUE_CIRCLE, int(round(middle + high)) % HUE_CIRCLE, int(saturation), int(value)
+    )
+
+
+def _radius(mask: np.ndarray, centres: np.ndarray) -> float:
+    _, labels, statistics, _ = cv2.connectedComponentsWithStats(mask)
+    areas = []
+    for x, y in np.rint(centres).astype(int):
+        near = labels[max(y - 2, 0) : y + 3, max(x - 2, 0) : x + 3]
+        if near.any():
+            areas.append(statistics[near[near > 0][0], cv2.CC_STAT_AREA])
+    if len(areas) < 3:
+        raise TrackerError("The colour at the points given does not make three patches; point at the markers' middles.")
+    return float(np.sqrt(np.median(areas) / np.pi))
+
+
+def _stray_share(mask: np.ndarray, markers: np.ndarray, radius: float) -> float:
+    outside = mask.copy()
+    for x, y in np.rint(markers).astype(int):
+        cv2.circle(outside, (int(x), int(y)), int(1.5 * radius) + 2, 0, cv2.FILLED)
+    return cv2.countNonZero(outside) / outside.size

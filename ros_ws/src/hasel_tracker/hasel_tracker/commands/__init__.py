@@ -1,0 +1,1 @@
+"""The command lines: track, render, calibrate, bench."""

@@ -1,0 +1,1 @@
+"""From a video to a recording of the run."""

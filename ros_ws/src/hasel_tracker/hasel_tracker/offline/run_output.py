@@ -1,0 +1,86 @@
+"""Write a tracked run as a recording that compare, fit and diagnose read."""
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+from hasel_recording import McapRecorder, Recording, RecordingError, RecordingWarning, write_recording
+from hasel_recording.topics import MEASURED, STATE
+
+from hasel_tracker.errors import TrackerError
+from hasel_tracker.offline.drive import Alignment, Drive
+from hasel_tracker.offline.tracked_run import TrackedRun
+
+ACTIVE = 2  # SupplyState.ACTIVE
+UNKNOWN = [float("nan")] * 2
+
+
+def write_run(
+    path: Path, run: TrackedRun, drive: Drive | None, alignment: Alignment | None, metadata: dict[str, str]
+) -> str:
+    """Write .csv or .mcap; times start at the run's first frame. Returns what could not be kept, or ''."""
+    origin = float(run.time_s[0])
+    shifted = None
+    if drive is not None:
+        shifted = Drive(drive.time_s + alignment.lag_s - origin, drive.voltage)
+        metadata = metadata | {"drive_lag_s": f"{alignment.lag_s:.6f}", "drive_merged": alignment.means}
+    try:
+        if path.suffix.lower() == ".mcap":
+            _write_mcap(path, run, shifted, metadata)
+            return ""
+        return _write_csv(path, run, shifted, metadata)
+    except RecordingError as error:
+        raise TrackerError(str(error)) from error
+
+
+def _write_csv(path: Path, run: TrackedRun, drive: Drive | None, metadata: dict[str, str]) -> str:
+    time_s = run.time_s - run.time_s[0]
+    voltage = None if drive is None else drive.at(time_s)
+    recording = Recording(
+        path.stem, time_s, run.sin_theta, voltage, run.markers_px, "px", metadata=metadata
+    )
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", RecordingWarning)
+        write_recording(recording, path)
+    return " ".join(str(each.message) for each in caught)
+
+
+def _write_mcap(path: Path, run: TrackedRun, drive: Drive | None, metadata: dict[str, str]) -> None:
+    time_s = run.time_s - run.time_s[0]
+    messages = [(float(when), MEASURED, _angle(run, index)) for index, when in enumerate(time_s)]
+    if drive is not None:
+        messages += _states(drive, time_s[-1])
+    start_ns = (run.start_stamp_ns or 0) + round(float(run.time_s[0]) * 1e9) if run.start_stamp_ns else 0
+    with McapRecorder(path, metadata, time_origin_ns=start_ns) as recorder:
+        for when, topic, message in sorted(messages, key=lambda each: each[0]):
+            recorder.write(topic, message, start_ns + round(when * 1e9))
+
+
+def _angle(run: TrackedRun, index: int) -> dict[str, object]:
+    return {
+        "sin_theta": float(run.sin_theta[index]),
+        "theta": float(run.theta[index]),
+        "marker_x": run.markers_px[index, :, 0].tolist(),
+        "marker_y": run.markers_px[index, :, 1].tolist(),
+        "marker_quality": run.quality[index].tolist(),
+        "valid": bool(run.valid[index]),
+    }
+
+
+def _states(drive: Drive, end_s: float) -> list[tuple[float, str, dict[str, object]]]:
+    """The voltage at the start and every change of it up to the end of the run."""
+    within = (drive.time_s > 0.0) & (drive.time_s <= end_s)
+    times = np.concatenate([[0.0], drive.time_s[within]])
+    voltages = np.vstack([drive.at(np.zeros(1)), drive.voltage[within]])
+    return [(float(when), STATE, _state(voltage)) for when, voltage in zip(times, voltages, strict=True)]
+
+
+def _state(voltage: np.ndarray) -> dict[str, object]:
+    return {
+        "commanded_voltage": voltage.tolist(),
+        "measured_voltage": UNKNOWN,
+        "current": UNKNOWN,
+        "mode": ACTIVE,
+        "fault_code": 0,
+        "fault_text": "",
+    }

@@ -1,0 +1,104 @@
+"""A camera through OpenCV: ask for format and rate, read back what it gives, stamp every frame."""
+
+import time
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from hasel_tracker.errors import TrackerError
+from hasel_tracker.sources.frame import Frame
+
+RATE_SHARE = 0.95
+LONGEST_CLOCK_DIFFERENCE_S = 2.0
+
+
+@dataclass(frozen=True)
+class CameraFormat:
+    """Width and height [px], frame rate [1/s] and four-character pixel format."""
+
+    width: int = 1920
+    height: int = 1080
+    frame_rate_hz: float = 120.0
+    pixel_format: str = "MJPG"
+
+    def __str__(self) -> str:
+        return f"{self.width} × {self.height} px {self.pixel_format} at {self.frame_rate_hz:g} frames/s"
+
+
+class CameraSource:
+    """An open camera. `exposure` in the driver's units; None leaves it to the camera."""
+
+    def __init__(
+        self,
+        device: int | str,
+        asked: CameraFormat = CameraFormat(),  # noqa: B008
+        exposure: float | None = None,
+        capture: cv2.VideoCapture | None = None,
+    ) -> None:
+        self._capture = capture if capture is not None else cv2.VideoCapture(device, cv2.CAP_V4L2)
+        if not self._capture.isOpened():
+            raise TrackerError(
+                f"The camera {device} cannot be opened; check that it is plugged in, not in use by another program, "
+                "and readable for you (group `video`)."
+            )
+        self.asked = asked
+        self._configure(exposure)
+        self.given = self._read_back()
+        self._index = 0
+        self._first_ns: int | None = None
+
+    @property
+    def complaint(self) -> str:
+        """One sentence if the camera does not give what was asked for, else empty."""
+        if self.given == self.asked:
+            return ""
+        return f"Asked the camera for {self.asked}, it gives {self.given}."
+
+    def read(self) -> Frame | None:
+        """The next frame, decoded or as JPEG, stamped by the driver if it does; None when the camera fails."""
+        received, picture = self._capture.read()
+        if not received or picture is None:
+            return None
+        stamp_ns = self._stamp_ns()
+        self._first_ns = stamp_ns if self._first_ns is None else self._first_ns
+        index, self._index = self._index, self._index + 1
+        time_s = (stamp_ns - self._first_ns) * 1e-9
+        if picture.ndim == 3 and picture.shape[2] == 3:
+            return Frame(index, time_s, image=picture, stamp_ns=stamp_ns)
+        return Frame(index, time_s, jpeg=picture.astype(np.uint8).tobytes(), stamp_ns=stamp_ns)
+
+    def close(self) -> None:
+        """Release the device."""
+        self._capture.release()
+
+    def _configure(self, exposure: float | None) -> None:
+        # The pixel format comes first: it decides which sizes and rates there are.
+        self._capture.set(cv2.CAP_PROP_FOURCC, cv2.VideoWriter_fourcc(*self.asked.pixel_format))
+        self._capture.set(cv2.CAP_PROP_FRAME_WIDTH, self.asked.width)
+        self._capture.set(cv2.CAP_PROP_FRAME_HEIGHT, self.asked.height)
+        self._capture.set(cv2.CAP_PROP_FPS, self.asked.frame_rate_hz)
+        if self.asked.pixel_format == "MJPG":
+            # Leave decoding to several threads of ours: one cannot keep up with 1080p at 120 frames/s.
+            self._capture.set(cv2.CAP_PROP_CONVERT_RGB, 0)
+        if exposure is not None:
+            self._capture.set(cv2.CAP_PROP_AUTO_EXPOSURE, 1)
+            self._capture.set(cv2.CAP_PROP_EXPOSURE, exposure)
+
+    def _read_back(self) -> CameraFormat:
+        code = int(self._capture.get(cv2.CAP_PROP_FOURCC))
+        letters = "".join(chr((code >> shift) & 0xFF) for shift in (0, 8, 16, 24))
+        return CameraFormat(
+            int(self._capture.get(cv2.CAP_PROP_FRAME_WIDTH)),
+            int(self._capture.get(cv2.CAP_PROP_FRAME_HEIGHT)),
+            float(self._capture.get(cv2.CAP_PROP_FPS)),
+            letters,
+        )
+
+    def _stamp_ns(self) -> int:
+        """The driver's stamp of exposure (monotonic clock) as time since the epoch; else the time of arrival."""
+        now_ns = time.time_ns()
+        age_s = time.monotonic() - 1e-3 * self._capture.get(cv2.CAP_PROP_POS_MSEC)
+        if 0.0 <= age_s < LONGEST_CLOCK_DIFFERENCE_S:
+            return now_ns - round(age_s * 1e9)
+        return now_ns

@@ -1,0 +1,1 @@
+"""Writing video, and pictures that show what the tracker sees."""

@@ -1,0 +1,103 @@
+"""Write video: H.264 for people, MJPEG for measuring and for live recording; both keep the frames' times."""
+
+from fractions import Fraction
+from pathlib import Path
+
+import av
+import cv2
+import numpy as np
+
+from hasel_tracker.errors import TrackerError
+
+TIME_BASE = Fraction(1, 90_000)
+JPEG_QUALITY = 90
+# A file in fragments is readable up to the last half second when its writer is killed.
+FRAGMENTED = {"movflags": "frag_keyframe+empty_moov+default_base_moof", "frag_duration": "500000"}
+
+
+class H264Writer:
+    """H.264 in MP4 or MKV; `constant_rate_factor` 0 (lossless) to 51, 23 is usual."""
+
+    def __init__(self, path: Path, frame_rate_hz: float, constant_rate_factor: int = 20) -> None:
+        self._path = path
+        self._rate = Fraction(frame_rate_hz).limit_denominator(1000)
+        self._quality = {"crf": str(constant_rate_factor), "preset": "veryfast"}
+        self._container = _open(path, {})
+        self._stream: av.VideoStream | None = None
+        self._count = 0
+
+    def write(self, image: np.ndarray, time_s: float | None = None) -> None:
+        """Append an 8-bit BGR image; without a time it follows at the frame rate."""
+        if self._stream is None:
+            self._stream = self._container.add_stream("libx264", rate=self._rate, options=self._quality)
+            self._stream.height, self._stream.width = image.shape[:2]
+            self._stream.pix_fmt = "yuv420p"
+            self._stream.codec_context.time_base = TIME_BASE
+        frame = av.VideoFrame.from_ndarray(image, format="bgr24")
+        seconds = self._count / float(self._rate) if time_s is None else time_s
+        frame.pts, frame.time_base = round(seconds / TIME_BASE), TIME_BASE
+        self._count += 1
+        self._container.mux(self._stream.encode(frame))
+
+    def close(self) -> None:
+        """Finish the file."""
+        if self._stream is not None:
+            self._container.mux(self._stream.encode())
+        self._container.close()
+
+
+class JpegWriter:
+    """MJPEG in MP4, MOV, MKV or AVI. JPEG pictures are stored as they are; images are compressed first.
+
+    `start_stamp_ns` [ns since the epoch] of time zero is kept in the file, so that it can be merged by stamp.
+    """
+
+    def __init__(
+        self, path: Path, frame_rate_hz: float, quality: int = JPEG_QUALITY, start_stamp_ns: int | None = None
+    ) -> None:
+        self._rate = Fraction(frame_rate_hz).limit_denominator(1000)
+        self._quality = quality
+        suffix = Path(path).suffix.lower()
+        self._container = _open(path, FRAGMENTED if suffix in (".mp4", ".mov") else {})
+        self._time_base = 1 / self._rate if suffix == ".avi" else TIME_BASE
+        if start_stamp_ns is not None:
+            self._container.metadata["comment"] = f"start_stamp_ns={start_stamp_ns}"
+        self._stream: av.VideoStream | None = None
+        self._count = 0
+
+    def write(self, image: np.ndarray, time_s: float | None = None) -> None:
+        """Append an 8-bit BGR image; without a time it follows at the frame rate."""
+        settings = [cv2.IMWRITE_JPEG_QUALITY, self._quality]
+        settings += [cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_420]
+        self.write_jpeg(cv2.imencode(".jpg", image, settings)[1].tobytes(), image.shape[1::-1], time_s)
+
+    def write_jpeg(self, jpeg: bytes, size_px: tuple[int, int], time_s: float | None = None) -> None:
+        """Append a picture of (width, height) that is JPEG code already."""
+        if self._stream is None:
+            self._stream = self._container.add_stream("mjpeg", rate=self._rate)
+            self._stream.width, self._stream.height = size_px
+            self._stream.pix_fmt = "yuvj420p"
+            self._stream.codec_context.time_base = self._time_base
+            self._stream.time_base = self._time_base
+        seconds = self._count / float(self._rate) if time_s is None else time_s
+        packet = av.Packet(jpeg)
+        packet.stream, packet.time_base = self._stream, self._time_base
+        packet.pts = packet.dts = round(seconds / self._time_base)
+        packet.duration = round(1 / (self._rate * self._time_base))
+        packet.is_keyframe = True
+        self._count += 1
+        self._container.mux(packet)
+
+    def close(self) -> None:
+        """Finish the file."""
+        self._container.close()
+
+
+def _open(path: Path, options: dict[str, str]) -> av.container.OutputContainer:
+    try:
+        return av.open(str(path), "w", options=options)
+    except (av.FFmpegError, OSError, ValueError) as error:
+        raise TrackerError(
+            f"The video {path} cannot be written ({str(error).splitlines()[0]}); "
+            "choose a writable place and a name ending in .mp4, .mkv or .avi."
+        ) from error
