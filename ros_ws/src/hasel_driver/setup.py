@@ -11,10 +11,16 @@ setup(
         (f"share/{PACKAGE}", ["package.xml"]),
     ],
     install_requires=["setuptools"],
+    extras_require={"test": ["pytest"]},
     zip_safe=True,
     maintainer="HASEL swimmer maintainers",
     maintainer_email="maintainers@example.org",
     description="High-voltage supply: protocol, limits, watchdog, waveforms, virtual supply.",
     license="Apache-2.0",
-    entry_points={"console_scripts": []},
+    entry_points={
+        "console_scripts": [
+            "driver_node = hasel_driver.driver_node:main",
+            "virtual_supply = hasel_driver.virtual_supply:main",
+        ]
+    },
 )

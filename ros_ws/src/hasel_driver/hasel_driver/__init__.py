@@ -1,1 +1,1 @@
-"""High-voltage supply: protocol, limits, watchdog, waveforms, virtual supply."""
+"""High-voltage supply on a serial port: protocol, limits, watchdog, waveforms, virtual supply, ROS 2 node."""

@@ -1,0 +1,23 @@
+"""Makes the supply that the parameters name."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from hasel_driver.errors import LimitError
+from hasel_driver.hasel_supply import HaselSupply
+from hasel_driver.limits import Limits
+from hasel_driver.serial_port import SerialPort
+from hasel_driver.supply import Supply
+
+
+def make_supply(parameters: Mapping[str, Any]) -> Supply:
+    """A supply, not yet opened. Raises LimitError where a parameter makes no sense."""
+    limits = Limits(
+        maximum_voltage_v=parameters["maximum_voltage"],
+        slew_v_per_ms=parameters["slew_rate"],
+        trip_current_a=parameters["trip_current"],
+        heartbeat_s=parameters["heartbeat_timeout"],
+    )
+    if parameters["backend"] == "hasel":
+        return HaselSupply(SerialPort(parameters["port"]), limits)
+    raise LimitError(f"backend is {parameters['backend']!r}, hasel or shvps was expected.")

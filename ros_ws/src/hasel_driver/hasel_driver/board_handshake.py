@@ -1,0 +1,114 @@
+"""The conversation with a board whose port was just opened: who are you, disarm, these are your limits."""
+
+import time
+from collections.abc import Callable
+
+from hasel_driver import protocol
+from hasel_driver.errors import PortError, ProtocolError
+from hasel_driver.faults import Fault, FaultCode
+from hasel_driver.limits import Limits
+from hasel_driver.line_buffer import LineBuffer
+from hasel_driver.mode import Mode
+from hasel_driver.serial_port import SerialPort
+
+BOOT_TIMEOUT_S = 2.5  # an Arduino's boot loader takes up to 2 s after the port is opened
+RESET_S = 0.3  # a reset at opening has begun by then: telemetry after it comes from a running board
+ANSWER_TIMEOUT_S = 1.0
+
+
+class BoardHandshake:
+    """Waits for each answer, so it is for use before anything is armed only."""
+
+    def __init__(self, port: SerialPort, lines: LineBuffer, clock: Callable[[], float]) -> None:
+        self._port, self._lines, self._clock = port, lines, clock
+        self._sequence = 0
+
+    def perform(self, limits: Limits) -> tuple[str, Fault | None]:
+        """The board's name, and the fault it had kept; afterwards it is in STANDBY with `limits` applied.
+
+        Raises:
+            PortError: no board, another program on it, or a limit it does not accept.
+            SupplyFaultError: the port went away meanwhile.
+        """
+        self._await_boot()
+        name = " ".join(self._transact("GET", "IDENTITY")[1:])
+        if name.split()[2:] != ["protocol", str(protocol.PROTOCOL_VERSION)]:
+            raise PortError(
+                f"{name!r} answers on {self._port.path}, protocol {protocol.PROTOCOL_VERSION} was expected:"
+                " load the sketch in firmware/ onto the board."
+            )
+        self._transact("DISARM")
+        fault = self._inherited_fault()
+        if fault is not None:
+            self._transact("CLEAR")
+        self._apply(limits)
+        return name, fault
+
+    def _await_boot(self) -> None:
+        """Until the banner of a board that resets when its port is opened, or proof that this one did not."""
+        opened_s = self._clock()
+        while self._clock() < opened_s + BOOT_TIMEOUT_S:
+            for message in self._messages():
+                booted = isinstance(message, protocol.Event) and message.words[0] == "BOOT"
+                running = isinstance(message, protocol.Telemetry) and self._clock() > opened_s + RESET_S
+                if booted or running:
+                    return
+
+    def _inherited_fault(self) -> Fault | None:
+        report = self._await(lambda message: isinstance(message, protocol.Telemetry), "telemetry")
+        return Fault(board_fault(report.fault_code)) if report.mode is Mode.FAULT else None
+
+    def _apply(self, limits: Limits) -> None:
+        for quantity, value in (
+            ("MAXIMUM", limits.maximum_voltage_v),
+            ("SLEW", limits.slew_v_per_ms),
+            ("TRIP", limits.trip_current_a * 1e6),
+            ("HEARTBEAT", limits.heartbeat_s * 1e3),
+        ):
+            applied = self._transact("SET", quantity, round(value))
+            if applied != (quantity, str(round(value))):
+                raise PortError(
+                    f"The board applied {' '.join(applied)}, {round(value)} was asked for:"
+                    " choose a limit within the range in firmware/PROTOCOL.md."
+                )
+
+    def _transact(self, *words: object) -> tuple[str, ...]:
+        self._sequence += 1
+        self._port.write(protocol.encode_command(self._sequence, *words))
+        text = " ".join(str(word) for word in words)
+        reply = self._await(
+            lambda message: isinstance(message, protocol.Reply) and message.sequence == self._sequence,
+            f"answer to {text}",
+        )
+        if not reply.accepted:
+            raise PortError(
+                f"The board on {self._port.path} answered {' '.join(reply.words)} to {text}:"
+                " reset it and try again."
+            )
+        return reply.words
+
+    def _await(self, wanted: Callable[[protocol.Line], bool], what: str) -> protocol.Line:
+        deadline_s = self._clock() + ANSWER_TIMEOUT_S
+        while self._clock() < deadline_s:
+            for message in self._messages():
+                if wanted(message):
+                    return message
+        raise PortError(
+            f"The device on {self._port.path} sent no {what} within {ANSWER_TIMEOUT_S} s: check that it is"
+            " the supply, that it is powered, and that it runs the sketch in firmware/."
+        )
+
+    def _messages(self) -> list[protocol.Line]:
+        messages = []
+        for line in self._lines.feed(self._port.read()):
+            try:
+                messages.append(protocol.parse_device_line(line))
+            except ProtocolError:
+                continue  # a boot loader, or a line that began before we listened
+        time.sleep(0.002)
+        return messages
+
+
+def board_fault(code: int) -> FaultCode:
+    """The board's fault code in words; one that this driver does not know is UNEXPECTED_STATE."""
+    return FaultCode(code) if code in FaultCode.__members__.values() else FaultCode.UNEXPECTED_STATE

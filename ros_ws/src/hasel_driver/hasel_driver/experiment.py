@@ -1,0 +1,115 @@
+"""One run: rest, waveform, rest; advanced step by step by the supply's thread."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from hasel_driver.errors import LimitError
+from hasel_driver.limits import Voltages
+from hasel_driver.mode import Mode
+from hasel_driver.supervisor import Supervisor
+from hasel_driver.waveform import Waveform
+
+LONGEST_REST_S = 600.0
+
+
+@dataclass(frozen=True)
+class ExperimentPlan:
+    """What to run; `rest_s` [s] at 0 V before and after."""
+
+    waveform: Waveform
+    rest_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.rest_s <= LONGEST_REST_S:
+            raise LimitError(f"rest_time is {self.rest_s} s, 0 to {LONGEST_REST_S:g} s was expected.")
+
+    @property
+    def duration_s(self) -> float:
+        """Time from begin to end [s]."""
+        return self.waveform.duration_s + 2 * self.rest_s
+
+    def check_against(self, maximum_v: float, bipolar: bool) -> None:
+        """Raises LimitError where the supply would have to clip: such a run is not the one asked for."""
+        if self.waveform.voltage_v > maximum_v:
+            raise LimitError(
+                f"The experiment asks for {self.waveform.voltage_v:g} V, the limit is {maximum_v:g} V:"
+                " lower the voltage, or raise the parameter `maximum_voltage`."
+            )
+        if not bipolar and self.waveform.polarity != "positive":
+            raise LimitError(
+                f"The polarity is {self.waveform.polarity!r}, this supply gives positive voltages only."
+            )
+
+
+class Experiment:
+    """Runs a plan on a supervisor. `step` is called often; `failure` tells why it ended early."""
+
+    def __init__(self, plan: ExperimentPlan, supervisor: Supervisor, clock: Callable[[], float]) -> None:
+        self.plan = plan
+        self._supervisor, self._clock = supervisor, clock
+        self.began_s = clock()
+        self.ended_s: float | None = None
+        self.failure: str | None = None
+        self.voltage_v: Voltages = (0.0, 0.0)
+        self._drive_began_s: float | None = None
+        self._drive_ended_s: float | None = None
+
+    @property
+    def finished(self) -> bool:
+        """Whether the run is over, for good or ill."""
+        return self.ended_s is not None
+
+    @property
+    def elapsed_s(self) -> float:
+        """Time since the begin [s]."""
+        return (self._clock() if self.ended_s is None else self.ended_s) - self.began_s
+
+    def begin(self) -> None:
+        """Raises LimitError or RefusedError; then nothing has happened."""
+        self.plan.check_against(self._supervisor.maximum_voltage_v, self._supervisor.capabilities.bipolar)
+        self._supervisor.begin_experiment()
+        self.began_s = self._clock()
+
+    def cancel(self) -> None:
+        """0 V at once."""
+        self._finish("it was cancelled")
+
+    def step(self) -> None:
+        """Do what is due now."""
+        if self.finished:
+            return
+        status = self._supervisor.status()
+        self.voltage_v = status.commanded_v
+        if not status.mode.may_be_live:
+            self._finish(f"the supply left the armed state: {status}")
+        elif self._drive_began_s is None:
+            self._begin_drive_when_rested()
+        elif self._drive_ended_s is None:
+            self._drive(status.mode)
+        elif self._clock() >= self._drive_ended_s + self.plan.rest_s:
+            self._finish(None)
+
+    def _begin_drive_when_rested(self) -> None:
+        if self.elapsed_s >= self.plan.rest_s:
+            self._drive_began_s = self._clock()
+            if self._supervisor.capabilities.waveforms:
+                self._supervisor.start(self.plan.waveform)
+
+    def _drive(self, mode: Mode) -> None:
+        driven_s = self._clock() - self._drive_began_s
+        duration_s = self.plan.waveform.duration_s
+        if not self._supervisor.capabilities.waveforms:
+            self._supervisor.hold(self.plan.waveform.voltage(driven_s))
+            over = driven_s >= duration_s
+        else:
+            over = driven_s >= duration_s and mode is Mode.ARMED
+        if over:
+            self._drive_ended_s = self._clock()
+        elif driven_s > 1.02 * duration_s + 0.5:  # a ceramic resonator is within 0.5 %
+            self._finish(f"the waveform did not end within {duration_s:.3g} s")
+
+    def _finish(self, failure: str | None) -> None:
+        if not self.finished:
+            self.failure = failure
+            self._supervisor.end_experiment()
+            self.ended_s = self._clock()

@@ -1,0 +1,104 @@
+"""The recording of one experiment, and the proof from the file itself that it holds what it should."""
+
+import math
+import threading
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from hasel_recording.mcap_file import McapFile, read_file
+from hasel_recording.mcap_recorder import McapRecorder
+from hasel_recording.topics import STATE, TOPIC_TYPES
+
+from hasel_driver.experiment import ExperimentPlan
+from hasel_driver.waveform import MUSCLES
+
+MOST_STATE_GAP_S = 0.2
+MOST_TOPIC_GAP_S = 1.0
+SAMPLE_S = 0.02  # longest usual distance of two states
+
+
+@dataclass
+class ExperimentRecording:
+    """Writes messages while the run lasts; `missing` reads the closed file back."""
+
+    path: Path
+    plan: ExperimentPlan
+    required_topics: tuple[str, ...] = ()
+    _recorder: McapRecorder = field(init=False)
+    _last_ns: dict[str, int] = field(default_factory=dict)
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def __post_init__(self) -> None:
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        waveform = self.plan.waveform
+        self._recorder = McapRecorder(
+            self.path,
+            {
+                "waveform": waveform.shape,
+                "voltage_v": f"{waveform.voltage_v:g}",
+                "frequency_hz": f"{waveform.frequency_hz:g}",
+                "periods": waveform.periods,
+                "duty": f"{waveform.duty:g}",
+                "polarity": waveform.polarity,
+                "muscles": waveform.muscles,
+                "rest_time_s": f"{self.plan.rest_s:g}",
+            },
+        )
+
+    def write(self, topic: str, message: Any) -> None:
+        """Append a message at its header's stamp; one not later than the last of its topic is dropped."""
+        stamp_ns = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
+        with self._lock:
+            if stamp_ns > self._last_ns.get(topic, -1):
+                self._last_ns[topic] = stamp_ns
+                self._recorder.write(topic, message, stamp_ns)
+
+    def close(self) -> None:
+        """Finish the file."""
+        self._recorder.close()
+
+    def missing(self, duration_s: float) -> list[str]:
+        """What the closed file lacks of a run of `duration_s` [s], in words; empty if it is complete."""
+        content = read_file(self.path)
+        lacking = [_coverage(content, STATE, duration_s, MOST_STATE_GAP_S)]
+        lacking += [_coverage(content, topic, duration_s, MOST_TOPIC_GAP_S) for topic in self.required_topics]
+        if not any(lacking):
+            lacking += _drive_lacking(content, self.plan)
+        return [text for text in lacking if text]
+
+
+def _coverage(content: McapFile, topic: str, duration_s: float, most_gap_s: float) -> str | None:
+    stamps_s = np.array([message.log_time for message in content.messages.get(topic, [])]) * 1e-9
+    if stamps_s.size == 0:
+        return f"no message of {topic}"
+    span_s = stamps_s[-1] - stamps_s[0]
+    if span_s < duration_s - 2 * most_gap_s:
+        return f"{topic} covers {span_s:.2f} s of {duration_s:.2f} s"
+    longest_s = float(np.diff(stamps_s).max(initial=0.0))
+    if longest_s > most_gap_s:
+        return f"{topic} has a gap of {longest_s:.2f} s"
+    return None
+
+
+def _drive_lacking(content: McapFile, plan: ExperimentPlan) -> list[str]:
+    states = content.decoded(STATE, TOPIC_TYPES[STATE])
+    voltage = np.abs([state.commanded_voltage for state in states])  # [n, 2]
+    waveform = plan.waveform
+    window_s = 0.5 * waveform.duty / waveform.frequency_hz
+    if window_s < 2 * SAMPLE_S or waveform.voltage_v < 1.0:
+        return []  # too short for the states to show
+    tolerance_v = 1.0
+    if waveform.shape != "box":
+        tolerance_v += waveform.voltage_v * 2 * SAMPLE_S / window_s
+    lacking = []
+    for muscle, delay, series in zip(("upper", "lower"), MUSCLES[waveform.muscles], voltage.T, strict=True):
+        expected_v = 0.0 if delay is None else waveform.voltage_v
+        peak_v = float(series.max())
+        if not math.isclose(peak_v, expected_v, abs_tol=tolerance_v if expected_v else 1.0):
+            lacking.append(f"the {muscle} muscle reached {peak_v:.0f} V of {expected_v:.0f} V")
+        drives = int(np.count_nonzero(np.diff((series > 0).astype(int)) == 1))
+        if expected_v and drives != waveform.periods:
+            lacking.append(f"the {muscle} muscle was driven {drives} times of {waveform.periods}")
+    return lacking

@@ -1,0 +1,164 @@
+"""The action `/hasel/run_experiment`: runs a plan, records it, and vouches for the recording."""
+
+import time
+from collections.abc import Callable, Iterable
+from datetime import datetime
+from pathlib import Path
+
+from hasel_interfaces.action import RunExperiment
+from hasel_interfaces.msg import SupplyState
+from hasel_recording.errors import RecordingError
+from hasel_recording.topics import STATE, TOPIC_TYPES
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.callback_groups import CallbackGroup
+from rclpy.node import Node
+from rosidl_runtime_py.utilities import get_message
+
+from hasel_driver.errors import DriverError, RefusedError
+from hasel_driver.experiment import Experiment, ExperimentPlan
+from hasel_driver.experiment_recording import ExperimentRecording
+from hasel_driver.supply_thread import SupplyThread
+from hasel_driver.waveform import Waveform
+
+FEEDBACK_PERIOD_S = 0.1
+
+
+class ExperimentServer:
+    """One experiment at a time, on the node's supply thread."""
+
+    def __init__(self, node: Node, thread: Callable[[], SupplyThread | None], group: CallbackGroup) -> None:
+        self._node, self._thread, self._group = node, thread, group
+        self._experiment: Experiment | None = None
+        self._recording: ExperimentRecording | None = None
+        self._watched: list = []
+        self._server = ActionServer(
+            node,
+            RunExperiment,
+            "/hasel/run_experiment",
+            self._execute,
+            goal_callback=self._accept,
+            cancel_callback=lambda _: CancelResponse.ACCEPT,
+            callback_group=group,
+        )
+
+    def watch_topics(self, topics: Iterable[str]) -> None:
+        """Subscribe to what is to be recorded, before it is needed: discovery takes time."""
+        for subscription in self._watched:
+            self._node.destroy_subscription(subscription)
+        known = [topic for topic in topics if topic in TOPIC_TYPES]
+        for topic in set(topics) - set(known):
+            self._node.get_logger().warning(f"The type of {topic} is not known: it will not be recorded.")
+        self._watched = [
+            self._node.create_subscription(
+                get_message(TOPIC_TYPES[topic]), topic, self._writer(topic), 200, callback_group=self._group
+            )
+            for topic in known
+        ]
+
+    def step(self) -> None:
+        """Called in the supply's thread."""
+        if self._experiment is not None:
+            self._experiment.step()
+
+    def record_state(self, message: SupplyState) -> None:
+        """Called in the supply's thread; a state that does not know the voltage is not a sample of it."""
+        recording = self._recording
+        if recording is not None and message.commanded_voltage[0] == message.commanded_voltage[0]:
+            recording.write(STATE, message)
+
+    def _writer(self, topic: str) -> Callable:
+        def write(message) -> None:
+            recording = self._recording
+            if recording is not None:
+                recording.write(topic, message)
+
+        return write
+
+    def _accept(self, _: RunExperiment.Goal) -> GoalResponse:
+        return GoalResponse.REJECT if self._experiment is not None else GoalResponse.ACCEPT
+
+    def _execute(self, goal_handle) -> RunExperiment.Result:
+        result = RunExperiment.Result()
+        try:
+            plan = _plan(goal_handle.request)
+            path = self._path(goal_handle.request)
+            experiment = self._run(plan, path, goal_handle)
+            result.recording = str(path)
+            problems = [experiment.failure] if experiment.failure else []
+            problems += self._recording_problems(experiment)
+        except (DriverError, RecordingError, OSError) as error:
+            problems = [str(error)]
+        finally:
+            self._experiment = self._recording = None
+        result.success = not problems
+        result.message = "; ".join(problems) or f"Recorded {plan.duration_s:.2f} s in {path}."
+        if goal_handle.is_cancel_requested:
+            goal_handle.canceled()
+        elif result.success:
+            goal_handle.succeed()
+        else:
+            self._node.get_logger().error(f"The experiment failed: {result.message}")
+            goal_handle.abort()
+        return result
+
+    def _run(self, plan: ExperimentPlan, path: Path, goal_handle) -> Experiment:
+        thread = self._thread()
+        if thread is None:
+            raise RefusedError("The port is closed: configure the node (lifecycle) first.")
+        topics = tuple(s.topic_name for s in self._watched if self._node.count_publishers(s.topic_name))
+        experiment = Experiment(plan, thread.supervisor, time.monotonic)
+        thread.call(experiment.begin).result(timeout=5.0)
+        try:
+            self._recording = ExperimentRecording(path, plan, topics)
+        except (OSError, RecordingError):
+            thread.call(experiment.cancel)
+            raise
+        self._experiment = experiment
+        while not experiment.finished:
+            if goal_handle.is_cancel_requested:
+                thread.call(experiment.cancel)
+            if not thread.is_alive():
+                raise RefusedError("The supply's thread has ended; the board grounds itself.")
+            goal_handle.publish_feedback(_feedback(experiment))
+            time.sleep(FEEDBACK_PERIOD_S)
+        return experiment
+
+    def _recording_problems(self, experiment: Experiment) -> list[str]:
+        recording = self._recording
+        self._recording = None
+        recording.close()
+        if experiment.failure:
+            return []
+        return [f"the recording lacks: {text}" for text in recording.missing(experiment.elapsed_s)]
+
+    def _path(self, goal: RunExperiment.Goal) -> Path:
+        if goal.output:
+            path = Path(goal.output).expanduser()
+            return path if path.suffix == ".mcap" else path.with_name(path.name + ".mcap")
+        folder = Path(self._node.get_parameter("recording_directory").value).expanduser()
+        moment = datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
+        return folder / f"{moment}_{goal.voltage:.0f}V_{goal.frequency:g}Hz.mcap"
+
+
+def _plan(goal: RunExperiment.Goal) -> ExperimentPlan:
+    waveform = Waveform(
+        shape=goal.waveform or "box",
+        voltage_v=goal.voltage,
+        frequency_hz=goal.frequency,
+        periods=goal.periods,
+        duty=goal.duty or 1.0,
+        polarity=goal.polarity or "positive",
+        muscles=goal.muscles or "both",
+    )
+    return ExperimentPlan(waveform, goal.rest_time)
+
+
+def _feedback(experiment: Experiment) -> RunExperiment.Feedback:
+    duration_s = experiment.plan.duration_s
+    elapsed_s = min(experiment.elapsed_s, duration_s)
+    return RunExperiment.Feedback(
+        progress=elapsed_s / duration_s,
+        elapsed=elapsed_s,
+        remaining=duration_s - elapsed_s,
+        voltage=list(experiment.voltage_v),
+    )

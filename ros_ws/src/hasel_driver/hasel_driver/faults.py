@@ -1,0 +1,73 @@
+"""Codes and plain words of every latched fault: below 100 the board's own, from 100 on the driver's."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+
+class FaultCode(IntEnum):
+    """`fault_code` of `/hasel/state`; the board's codes are those of `firmware/PROTOCOL.md`."""
+
+    NONE = 0
+    HEARTBEAT = 1
+    OVERCURRENT = 2
+    STOP = 3
+    INTERLOCK = 4
+    SEQUENCE = 5
+    GARBAGE = 6
+    OVERVOLTAGE = 7
+    EMERGENCY_STOP = 100
+    LINK_LOST = 101
+    NO_TELEMETRY = 102
+    NO_REPLY = 103
+    DEVICE_RESET = 104
+    GARBAGE_RECEIVED = 105
+    COMMAND_REFUSED = 106
+    TWO_MASTERS = 107
+    INVALID_COMMAND = 108
+    HOST_STALLED = 109
+    ILLEGAL_TRANSITION = 110
+    UNEXPECTED_STATE = 111
+
+
+EXPLANATIONS: dict[FaultCode, str] = {
+    FaultCode.NONE: "no fault",
+    FaultCode.HEARTBEAT: "the board heard no valid command within its heartbeat timeout",
+    FaultCode.OVERCURRENT: "the current exceeded the trip level",
+    FaultCode.STOP: "the board received a stop",
+    FaultCode.INTERLOCK: "the interlock is open",
+    FaultCode.SEQUENCE: "the board missed a command, or a second master speaks on the port",
+    FaultCode.GARBAGE: "the board received a garbled line",
+    FaultCode.OVERVOLTAGE: "the measured voltage exceeded the maximum",
+    FaultCode.EMERGENCY_STOP: "emergency stop",
+    FaultCode.LINK_LOST: "the serial port is gone",
+    FaultCode.NO_TELEMETRY: "the board's telemetry ceased",
+    FaultCode.NO_REPLY: "the board did not answer a command",
+    FaultCode.DEVICE_RESET: "the board was reset",
+    FaultCode.GARBAGE_RECEIVED: "a garbled line came from the board",
+    FaultCode.COMMAND_REFUSED: "the board refused a command",
+    FaultCode.TWO_MASTERS: "more than one source of commands",
+    FaultCode.INVALID_COMMAND: "a command was not a number",
+    FaultCode.HOST_STALLED: "the driver node stopped responding",
+    FaultCode.ILLEGAL_TRANSITION: "an illegal lifecycle transition was requested while armed",
+    FaultCode.UNEXPECTED_STATE: "the board is in a state that nobody asked for",
+}
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A latched fault; prints as a sentence."""
+
+    code: FaultCode
+    detail: str = ""
+
+    def __str__(self) -> str:
+        words = EXPLANATIONS[self.code]
+        return f"{words}: {self.detail}" if self.detail else words
+
+
+class SupplyFaultError(Exception):
+    """Raised where a fault is found; whoever catches it grounds the output and latches `fault`."""
+
+    def __init__(self, code: FaultCode, detail: str = "") -> None:
+        self.fault = Fault(code, detail)
+        super().__init__(str(self.fault))

@@ -1,0 +1,164 @@
+"""The supply that speaks `firmware/PROTOCOL.md`."""
+
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+
+from hasel_driver import protocol
+from hasel_driver.board_handshake import BoardHandshake, board_fault
+from hasel_driver.device_clock import DeviceClock
+from hasel_driver.errors import PortError, ProtocolError
+from hasel_driver.faults import Fault, FaultCode, SupplyFaultError
+from hasel_driver.limits import Limits, Voltages
+from hasel_driver.line_buffer import LineBuffer
+from hasel_driver.mode import Mode
+from hasel_driver.serial_port import SerialPort
+from hasel_driver.supply import Capabilities, Connection, Reading, Supply
+from hasel_driver.waveform import Waveform
+
+REPLY_TIMEOUT_S = 0.2
+HEARTBEAT_PERIOD_S = 0.05
+MOST_UNANSWERED = 2  # two commands fit into the board's receive buffer
+
+
+@dataclass(frozen=True)
+class _Pending:
+    words: tuple[str, ...]
+    deadline_s: float
+
+
+class HaselSupply(Supply):
+    """Two bipolar channels behind one Arduino."""
+
+    capabilities = Capabilities(deadman=True, proves_grounded=True, bipolar=True, waveforms=True)
+
+    def __init__(self, port: SerialPort, limits: Limits, clock: Callable[[], float] = time.monotonic) -> None:
+        super().__init__(limits)
+        self._port, self._clock = port, clock
+        self._forget_link()
+
+    def _forget_link(self) -> None:
+        self._lines = LineBuffer()
+        self._device_clock = DeviceClock()
+        self._pending: dict[int, _Pending] = {}
+        self._sequence = 0
+        self._sent_s = 0.0
+        self._wanted: Voltages | None = None  # voltage waiting for room on the line
+
+    def open(self) -> Connection:
+        self._forget_link()
+        self._port.open()
+        try:
+            name, fault = BoardHandshake(self._port, self._lines, self._clock).perform(self.limits)
+        except SupplyFaultError as problem:
+            self._port.close()
+            raise PortError(
+                f"The board on {self._port.path} failed while it was opened: {problem}."
+            ) from problem
+        except PortError:
+            self._port.close()
+            raise
+        return Connection(name, fault)
+
+    def close(self) -> None:
+        if self._port.fileno() is not None:
+            with suppress(SupplyFaultError):  # a port that is gone: the board's heartbeat timeout grounds it
+                self.disarm()
+        self._port.close()
+
+    def descriptors(self) -> list[int]:
+        descriptor = self._port.fileno()
+        return [] if descriptor is None else [descriptor]
+
+    def service(self, now_s: float, heartbeat: bool) -> list[Reading]:
+        readings = []
+        for line in self._lines.feed(self._port.read()):
+            reading = self._take(line, now_s)
+            if reading is not None:
+                readings.append(reading)
+        overdue = [pending for pending in self._pending.values() if pending.deadline_s < now_s]
+        if overdue:
+            self._pending.clear()
+            raise SupplyFaultError(FaultCode.NO_REPLY, " ".join(overdue[0].words))
+        self._send_due(now_s, heartbeat)
+        return readings
+
+    def arm(self) -> None:
+        self.refusal = None
+        self._send("ARM")
+
+    def disarm(self) -> None:
+        self._send("DISARM")
+
+    def stop(self) -> None:
+        self._send("STOP")
+
+    def set_voltage(self, voltage_v: Voltages) -> None:
+        if len(self._pending) < MOST_UNANSWERED:
+            self._send("SET", "VOLTAGE", *(round(value) for value in voltage_v))
+        else:
+            self._wanted = voltage_v
+
+    def start(self, waveform: Waveform) -> None:
+        numbers = (waveform.voltage_v, waveform.frequency_hz * 1e3, waveform.periods, waveform.duty * 1e3)
+        integers = [round(number) for number in numbers]
+        self._send("SET", "WAVEFORM", waveform.shape, *integers, waveform.polarity, waveform.muscles)
+        self._send("START")
+
+    def _send(self, *words: object) -> None:
+        self._wanted = None  # any later command makes a voltage that still waits obsolete
+        self._sequence = (self._sequence + 1) % protocol.SEQUENCE_MODULUS
+        self._port.write(protocol.encode_command(self._sequence, *words))
+        self._sent_s = self._clock()
+        texts = tuple(str(word) for word in words)
+        self._pending[self._sequence] = _Pending(texts, self._sent_s + REPLY_TIMEOUT_S)
+
+    def _send_due(self, now_s: float, heartbeat: bool) -> None:
+        if len(self._pending) >= MOST_UNANSWERED:
+            return
+        if self._wanted is not None:
+            self.set_voltage(self._wanted)
+        elif heartbeat and now_s - self._sent_s >= HEARTBEAT_PERIOD_S:
+            self._send("PING")
+
+    def _take(self, line: bytes, now_s: float) -> Reading | None:
+        try:
+            message = protocol.parse_device_line(line)
+        except ProtocolError as error:
+            raise SupplyFaultError(FaultCode.GARBAGE_RECEIVED, str(error)) from error
+        if isinstance(message, protocol.Telemetry):
+            return self._read(message, now_s)
+        if isinstance(message, protocol.Reply):
+            self._take_reply(message)
+        elif message.words[0] == "BOOT":
+            raise SupplyFaultError(FaultCode.DEVICE_RESET, " ".join(message.words[1:]))
+        return None
+
+    def _take_reply(self, reply: protocol.Reply) -> None:
+        text = " ".join(reply.words)
+        if reply.sequence is None:
+            raise SupplyFaultError(FaultCode.GARBAGE, f"the board answered {text}")
+        pending = self._pending.pop(reply.sequence, None)
+        if pending is None:
+            raise SupplyFaultError(
+                FaultCode.TWO_MASTERS, f"the board answered {text}, which was not asked here"
+            )
+        if reply.accepted:
+            return
+        if pending.words[0] == "ARM":
+            self.refusal = f"the board answered {text}"
+        elif reply.words[0] != "STATE":  # a voltage may cross a fault on the line; telemetry tells that fault
+            raise SupplyFaultError(FaultCode.COMMAND_REFUSED, text)
+
+    def _read(self, report: protocol.Telemetry, now_s: float) -> Reading:
+        fault = Fault(board_fault(report.fault_code)) if report.mode is Mode.FAULT else None
+        return Reading(
+            time_s=self._device_clock.host_time(report.time_us, now_s),
+            mode=report.mode,
+            grounded=report.grounded,
+            fault=fault,
+            commanded_v=(float(report.voltage[0]), float(report.voltage[1])),
+            measured_v=(float(report.measured[0]), float(report.measured[1])),
+            current_a=(report.current[0] * 1e-6, report.current[1] * 1e-6),
+        )

@@ -1,0 +1,36 @@
+"""The limits a supply is run within, and the clipping of commands to them."""
+
+import math
+from dataclasses import dataclass
+
+from hasel_driver.errors import LimitError
+
+HARDWARE_MAXIMUM_V = 10_000.0
+LONGEST_HEARTBEAT_S = 2.0
+
+Voltages = tuple[float, float]  # V, order upper, lower
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits given to the board when the port is opened."""
+
+    maximum_voltage_v: float = 6000.0
+    slew_v_per_ms: float = 400.0
+    trip_current_a: float = 450e-6
+    heartbeat_s: float = 0.3
+
+
+def clip(requested: Voltages, maximum_v: float, bipolar: bool = True) -> Voltages:
+    """`requested` [V] within ± `maximum_v`, or 0 to `maximum_v` for a supply of one polarity.
+
+    Raises:
+        LimitError: a value is NaN or infinite; such a command must not be guessed at.
+    """
+    if not all(math.isfinite(value) for value in requested):
+        raise LimitError(
+            f"the voltages {requested} are not finite numbers: the controller that sent them is broken"
+        )
+    least = -maximum_v if bipolar else 0.0
+    upper, lower = (min(max(value, least), maximum_v) for value in requested)
+    return upper, lower

@@ -1,0 +1,52 @@
+"""ROS messages from the driver's own data."""
+
+import time
+
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from hasel_interfaces.msg import SupplyState
+
+from hasel_driver.mode import Mode
+from hasel_driver.supervisor import Status
+
+OUTPUT_WORDS = {
+    "grounded": "The supply reports its output grounded.",
+    "live": "The supply does not report its output grounded: treat it as live.",
+    "unknown": "Nothing proves the output grounded: treat it as live.",
+}
+
+
+def to_time(monotonic_s: float) -> Time:
+    """The system time at which the monotonic clock showed `monotonic_s`."""
+    nanoseconds = time.time_ns() + int((monotonic_s - time.monotonic()) * 1e9)
+    return Time(sec=nanoseconds // 1_000_000_000, nanosec=nanoseconds % 1_000_000_000)
+
+
+def to_supply_state(status: Status) -> SupplyState:
+    """`/hasel/state`; in FAULT its text also tells whether the output is proven grounded."""
+    message = SupplyState()
+    message.header.stamp = to_time(status.time_s)
+    message.commanded_voltage = list(status.commanded_v)
+    message.measured_voltage = list(status.measured_v)
+    message.current = list(status.current_a)
+    message.mode = int(status.mode)
+    message.fault_code = int(status.fault.code) if status.fault else 0
+    if status.mode is Mode.FAULT:
+        sentence = str(status.fault) if status.fault else "The supply is not connected"
+        message.fault_text = f"{sentence[:1].upper()}{sentence[1:]}. {OUTPUT_WORDS[status.output]}"
+    return message
+
+
+def to_diagnostics(status: Status | None, stamp: Time, details: dict[str, object]) -> DiagnosticArray:
+    """`/diagnostics`; no status means that the node is not configured."""
+    entry = DiagnosticStatus(name="hasel_driver: supply", hardware_id=str(details.get("device", "")))
+    if status is None:
+        entry.level, entry.message = DiagnosticStatus.WARN, "not configured: the port is closed"
+    else:
+        entry.level = DiagnosticStatus.ERROR if status.mode is Mode.FAULT else DiagnosticStatus.OK
+        entry.message = str(status)
+        details = {"mode": status.mode.name, "output": status.output, **details}
+    entry.values = [KeyValue(key=key, value=str(value)) for key, value in details.items()]
+    array = DiagnosticArray(status=[entry])
+    array.header.stamp = stamp
+    return array

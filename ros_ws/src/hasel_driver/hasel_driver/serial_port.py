@@ -1,0 +1,82 @@
+"""A serial port opened for one host alone, read and written without waiting."""
+
+import contextlib
+import os
+import select
+
+import serial
+
+from hasel_driver.errors import PortError
+from hasel_driver.faults import FaultCode, SupplyFaultError
+
+
+class SerialPort:
+    """Raw bytes to and from a device; a port that goes away raises SupplyFaultError(LINK_LOST)."""
+
+    def __init__(self, path: str, baud: int = 115_200) -> None:
+        self.path = path
+        self._baud = baud
+        self._serial: serial.Serial | None = None
+
+    def open(self) -> None:
+        """Open and lock the port.
+
+        Raises:
+            PortError: there is no such port, it is in use, or access is denied.
+        """
+        try:
+            self._serial = serial.Serial(self.path, self._baud, timeout=0, write_timeout=0, exclusive=True)
+        except (OSError, ValueError) as error:
+            reason = "another program has it open" if "lock" in str(error) else str(error)
+            raise PortError(
+                f"The serial port {self.path} cannot be opened ({reason}): check the cable, the parameter"
+                " `port`, that the user is in the group dialout, and that no other program uses it."
+            ) from error
+
+    def close(self) -> None:
+        """Close the port; a port that is already gone counts as closed."""
+        if self._serial is not None:
+            with contextlib.suppress(OSError):
+                self._serial.close()
+        self._serial = None
+
+    def fileno(self) -> int | None:
+        """File descriptor to wait on; None while closed."""
+        return None if self._serial is None else self._serial.fileno()
+
+    def read(self) -> bytes:
+        """What has arrived; empty if nothing."""
+        descriptor = self._descriptor()
+        try:
+            data = os.read(descriptor, 4096)
+        except BlockingIOError:
+            return b""
+        except OSError as error:
+            raise SupplyFaultError(FaultCode.LINK_LOST, f"{self.path}: {error.strerror}") from error
+        if not data and _hung_up(descriptor):
+            raise SupplyFaultError(FaultCode.LINK_LOST, f"{self.path} was hung up")
+        return data
+
+    def write(self, data: bytes) -> None:
+        """Send all of `data` now; a full buffer means that nobody takes it."""
+        descriptor = self._descriptor()
+        try:
+            sent = os.write(descriptor, data)
+        except BlockingIOError:
+            sent = 0
+        except OSError as error:
+            raise SupplyFaultError(FaultCode.LINK_LOST, f"{self.path}: {error.strerror}") from error
+        if sent < len(data):
+            raise SupplyFaultError(FaultCode.LINK_LOST, f"{self.path} takes no more data")
+
+    def _descriptor(self) -> int:
+        if self._serial is None:
+            raise SupplyFaultError(FaultCode.LINK_LOST, f"{self.path} is not open")
+        return self._serial.fileno()
+
+
+def _hung_up(descriptor: int) -> bool:
+    poll = select.poll()
+    poll.register(descriptor, select.POLLIN)
+    gone = select.POLLHUP | select.POLLERR | select.POLLNVAL
+    return any(event & gone for _, event in poll.poll(0))

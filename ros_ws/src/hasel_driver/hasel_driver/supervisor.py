@@ -1,0 +1,286 @@
+"""Decides what the supply may do: arming, limits, timeouts, latched faults. No threads, no ROS.
+
+What it tells about the output comes from the supply's own recent report, never from what was asked for.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from hasel_driver.errors import LimitError, RefusedError
+from hasel_driver.faults import Fault, FaultCode, SupplyFaultError
+from hasel_driver.limits import Voltages, clip
+from hasel_driver.mode import Mode
+from hasel_driver.supply import Capabilities, Reading, Supply
+from hasel_driver.waveform import Waveform
+
+COMMAND_TIMEOUT_S = 0.2
+STALE_S = 0.2
+TRANSITION_S = 0.3  # time the board has to follow a request
+STOP_REPEAT_S = 0.05
+UNKNOWN: Voltages = (math.nan, math.nan)
+
+
+@dataclass(frozen=True)
+class Status:
+    """What is known about the supply now; `commanded_v` and the rest are NaN where it is not known."""
+
+    time_s: float
+    mode: Mode
+    fault: Fault | None
+    grounded: bool | None
+    commanded_v: Voltages
+    measured_v: Voltages
+    current_a: Voltages
+
+    @property
+    def output(self) -> str:
+        """`grounded` only where the supply itself reports it, else `live` or `unknown`."""
+        return {True: "grounded", False: "live", None: "unknown"}[self.grounded]
+
+    def __str__(self) -> str:
+        fault = f" ({self.fault})" if self.fault else ""
+        return f"{self.mode.name}{fault}, output {self.output}"
+
+
+class Supervisor:
+    """One supply, one master. Every method is called by the same thread."""
+
+    def __init__(self, supply: Supply, clock: Callable[[], float]) -> None:
+        self._supply, self._clock = supply, clock
+        self.name: str | None = None  # of the device; None while not connected
+        self.fault: Fault | None = None
+        self.rejected_commands = 0
+        self._reading: Reading | None = None
+        self._armed_wanted = False
+        self._requested_s = -math.inf  # when a change of mode was last asked for
+        self._stop_sent_s = -math.inf
+        self._command_expires_s: float | None = None
+        self._experiment_running = False
+        self._clearing = False
+
+    @property
+    def maximum_voltage_v(self) -> float:
+        """Limit to which commands are clipped [V]."""
+        return self._supply.limits.maximum_voltage_v
+
+    @property
+    def connected(self) -> bool:
+        """Whether the port is open and has not failed."""
+        return self.name is not None
+
+    def connect(self) -> None:
+        """Open the supply, disarmed; a fault the board had kept is latched here. Raises PortError."""
+        inherited = self._open()
+        self.fault = self.fault or inherited
+
+    def disconnect(self) -> None:
+        """Disarm and close the port."""
+        self._armed_wanted = False
+        self.name = None
+        self._reading = None
+        self._supply.close()
+
+    @property
+    def capabilities(self) -> Capabilities:
+        """What this kind of supply can do."""
+        return self._supply.capabilities
+
+    @property
+    def armed(self) -> bool:
+        """Whether high voltage was asked for and not withdrawn."""
+        return self._armed_wanted
+
+    @property
+    def refusal(self) -> str | None:
+        """Why the supply did not arm, in its own words."""
+        return self._supply.refusal
+
+    def status(self) -> Status:
+        """The present state, as far as it is known."""
+        now_s = self._clock()
+        reading = self._fresh_reading(now_s)
+        if reading is None:
+            mode = Mode.STANDBY if self.connected and self._starting(now_s) else Mode.FAULT
+            mode = Mode.FAULT if self.fault else mode
+            return Status(now_s, mode, self.fault, None, UNKNOWN, UNKNOWN, UNKNOWN)
+        mode = Mode.FAULT if self.fault else reading.mode
+        values = (reading.commanded_v, reading.measured_v, reading.current_a)
+        return Status(reading.time_s, mode, self.fault, reading.grounded, *values)
+
+    def arm(self) -> None:
+        """Ask the supply to arm. Raises RefusedError unless STANDBY is proven."""
+        status = self.status()
+        if status.mode is not Mode.STANDBY or not self.connected or self._reading is None:
+            raise RefusedError(
+                f"Arming is allowed in STANDBY only, the state is {status}: see to that first."
+            )
+        self._command_expires_s = None
+        self._armed_wanted = True
+        self._requested_s = self._clock()
+        self._guard(self._supply.arm)
+
+    def disarm(self) -> None:
+        """Ask the supply for STANDBY; allowed in every state."""
+        self._armed_wanted = False
+        self._requested_s = self._clock()
+        self._command_expires_s, self._experiment_running = None, False
+        if self.connected:
+            self._guard(self._supply.disarm)
+
+    def fail(self, fault: Fault) -> None:
+        """Latch `fault` and ground the output; the first fault stays, but an emergency stop replaces it."""
+        if self.fault is None or fault.code is FaultCode.EMERGENCY_STOP:
+            self.fault = fault
+        self._armed_wanted = False
+        self._clearing = False
+        self._command_expires_s, self._experiment_running = None, False
+        if fault.code is FaultCode.LINK_LOST:
+            self.name = None
+            self._supply.close()
+        self._send_stop()
+
+    def clear_fault(self) -> None:
+        """Connect anew, to prove board and limits; the fault goes when the board then reports STANDBY.
+
+        Raises RefusedError while the output is live, or PortError; then the fault stays.
+        """
+        if self.fault is None:
+            raise RefusedError(f"There is no fault to clear: the state is {self.status()}.")
+        if self.status().grounded is False:
+            raise RefusedError(
+                "The supply does not report its output grounded: wait, or take away its power."
+            )
+        self.disconnect()
+        self._open()
+        self._clearing = True
+
+    def command(self, voltage_v: Voltages, age_s: float = 0.0) -> None:
+        """A voltage from outside [V], `age_s` old; clipped, held for 200 ms from its making, else ignored."""
+        try:
+            applied = clip(voltage_v, self.maximum_voltage_v, self._supply.capabilities.bipolar)
+        except LimitError as error:
+            self.rejected_commands += 1
+            if self._armed_wanted:
+                self.fail(Fault(FaultCode.INVALID_COMMAND, str(error)))
+            return
+        if self._experiment_running:
+            self.fail(Fault(FaultCode.TWO_MASTERS, "a voltage was commanded while an experiment runs"))
+            return
+        if not self._armed_wanted or not abs(age_s) < COMMAND_TIMEOUT_S or not self.status().mode.may_be_live:
+            self.rejected_commands += 1
+            return
+        self._command_expires_s = self._clock() + COMMAND_TIMEOUT_S - max(age_s, 0.0)
+        self._guard(lambda: self._supply.set_voltage(applied))
+
+    def begin_experiment(self) -> None:
+        """From here on commands from outside are a second master. Raises RefusedError unless armed at 0 V."""
+        status = self.status()
+        if status.mode is not Mode.ARMED or not self._armed_wanted:
+            raise RefusedError(
+                f"An experiment needs the state ARMED, it is {status}: arm first, and command nothing else."
+            )
+        self._command_expires_s = None
+        self._experiment_running = True
+
+    def start(self, waveform: Waveform) -> None:
+        """Run the experiment's waveform on the board."""
+        if self._experiment_running:
+            self._guard(lambda: self._supply.start(waveform))
+
+    def hold(self, voltage_v: Voltages) -> None:
+        """The experiment's voltage [V], where the driver makes the waveform; expires as a command does."""
+        if self._experiment_running:
+            applied = clip(voltage_v, self.maximum_voltage_v, self._supply.capabilities.bipolar)
+            self._command_expires_s = self._clock() + COMMAND_TIMEOUT_S
+            self._guard(lambda: self._supply.set_voltage(applied))
+
+    def end_experiment(self) -> None:
+        """0 V now, still armed."""
+        self._experiment_running, self._command_expires_s = False, None
+        if self._armed_wanted:
+            self._guard(lambda: self._supply.set_voltage((0.0, 0.0)))
+
+    def service(self) -> bool:
+        """Read, check, and send what is due; True when a new reading came."""
+        if not self.connected:
+            return False
+        now_s = self._clock()
+        readings: list[Reading] = []
+        self._guard(lambda: readings.extend(self._supply.service(now_s, self._may_keep_alive())))
+        for reading in readings:
+            self._reading = reading
+            self._judge(reading, now_s)
+        self._watch(now_s)
+        return bool(readings)
+
+    def _open(self) -> Fault | None:
+        connection = self._supply.open()
+        self.name = connection.name
+        self._reading = None
+        self._armed_wanted = False
+        self._requested_s = self._clock()
+        return connection.fault
+
+    def _judge(self, reading: Reading, now_s: float) -> None:
+        if reading.fault is not None:
+            self._latch_board_fault(reading.fault)
+        elif self._clearing and reading.mode is Mode.STANDBY:
+            self.fault, self._clearing = None, False
+        elif self._armed_wanted and self._supply.refusal is not None:
+            self._armed_wanted = False
+        elif self.fault is None and reading.mode.may_be_live != self._armed_wanted:
+            self._await_transition(reading.mode, now_s)
+
+    def _await_transition(self, mode: Mode, now_s: float) -> None:
+        if now_s - self._requested_s > TRANSITION_S:
+            wanted = "armed" if self._armed_wanted else "disarmed"
+            self.fail(Fault(FaultCode.UNEXPECTED_STATE, f"{mode.name}, {wanted} was asked for"))
+
+    def _latch_board_fault(self, fault: Fault) -> None:
+        self.fault = self.fault or fault
+        self._armed_wanted = self._clearing = False
+        self._command_expires_s, self._experiment_running = None, False
+
+    def _watch(self, now_s: float) -> None:
+        if self.fault is None and self._fresh_reading(now_s) is None and not self._starting(now_s):
+            self.fail(Fault(FaultCode.NO_TELEMETRY, f"none for {STALE_S} s"))
+        if self._command_expires_s is not None and now_s > self._command_expires_s:
+            self._command_expires_s = None
+            self._guard(lambda: self._supply.set_voltage((0.0, 0.0)))
+        fresh = self._fresh_reading(now_s)
+        proven = self._clearing or (fresh is not None and not fresh.mode.may_be_live)
+        if (
+            self.fault is not None
+            and not proven
+            and not self._clearing
+            and now_s - self._stop_sent_s > STOP_REPEAT_S
+        ):
+            self._send_stop()
+
+    def _may_keep_alive(self) -> bool:
+        """An armed board gets heartbeats only while nothing is wrong, so that its own timeout can work."""
+        return self._armed_wanted or (self._reading is not None and not self._reading.mode.may_be_live)
+
+    def _starting(self, now_s: float) -> bool:
+        return self._reading is None and now_s - self._requested_s <= STALE_S
+
+    def _fresh_reading(self, now_s: float) -> Reading | None:
+        if self._reading is None or not self.connected or now_s - self._reading.time_s > STALE_S:
+            return None
+        return self._reading
+
+    def _send_stop(self) -> None:
+        self._stop_sent_s = self._clock()
+        if self.connected:
+            try:
+                self._supply.stop()
+            except SupplyFaultError:
+                self.name = None
+                self._supply.close()
+
+    def _guard(self, action: Callable[[], None]) -> None:
+        try:
+            action()
+        except SupplyFaultError as problem:
+            self.fail(problem.fault)

@@ -1,0 +1,124 @@
+"""Runs a supervisor in a thread of its own, woken by the port and by requests, never held up by the node."""
+
+import contextlib
+import os
+import queue
+import select
+import threading
+import time
+from collections.abc import Callable
+from concurrent.futures import Future
+from dataclasses import dataclass
+from typing import Any
+
+from hasel_driver.faults import Fault, FaultCode
+from hasel_driver.supervisor import Status, Supervisor
+from hasel_driver.supply import Supply
+
+LOOP_PERIOD_S = 0.01
+STATUS_PERIOD_S = 0.1  # when no readings come
+HOST_STALL_S = 0.3
+
+
+@dataclass(frozen=True)
+class _Expectation:
+    condition: Callable[[], bool]
+    deadline_s: float
+    future: Future
+
+
+class SupplyThread(threading.Thread):
+    """`on_status` is called in this thread for each reading, or every 100 ms; `on_step` once per loop."""
+
+    def __init__(
+        self,
+        supervisor: Supervisor,
+        supply: Supply,
+        on_status: Callable[[Status], None],
+        on_step: Callable[[], None] = lambda: None,
+    ) -> None:
+        super().__init__(name="supply", daemon=True)
+        self.supervisor = supervisor
+        self._supply = supply
+        self._on_status, self._on_step = on_status, on_step
+        self._requests: queue.SimpleQueue[tuple[Callable[[], Any], Future]] = queue.SimpleQueue()
+        self._expectations: list[_Expectation] = []
+        self._wake_reader, self._wake_writer = os.pipe()
+        os.set_blocking(self._wake_reader, False)
+        os.set_blocking(self._wake_writer, False)
+        self._host_alive_s = time.monotonic()
+        self._stopping = False
+        self._status_s = 0.0
+
+    def call(self, request: Callable[[], Any]) -> Future:
+        """Run `request` in this thread as soon as possible; its result or exception is the future's."""
+        future: Future = Future()
+        self._requests.put((request, future))
+        self._wake()
+        return future
+
+    def expect(self, condition: Callable[[], bool], timeout_s: float) -> Future:
+        """A future that becomes True once `condition` holds, False after `timeout_s`."""
+        future: Future = Future()
+        deadline_s = time.monotonic() + timeout_s
+        self.call(lambda: self._expectations.append(_Expectation(condition, deadline_s, future)))
+        return future
+
+    def host_is_alive(self) -> None:
+        """To be called by whoever sends commands; while armed, silence of 300 ms is a fault."""
+        self._host_alive_s = time.monotonic()
+
+    def stop(self) -> None:
+        """Disarm, close the port and end."""
+        self._stopping = True
+        self._wake()
+        self.join(timeout=5.0)
+
+    def run(self) -> None:
+        """The loop; however it ends, the supply is disarmed and its heartbeat ends."""
+        try:
+            while not self._stopping:
+                self._wait()
+                self._step()
+        finally:
+            self.supervisor.disconnect()
+            os.close(self._wake_reader)
+            self._wake_reader = -1
+
+    def _wake(self) -> None:
+        with contextlib.suppress(BlockingIOError):  # a full pipe: it is awake already
+            os.write(self._wake_writer, b"w")
+
+    def _wait(self) -> None:
+        descriptors = [self._wake_reader, *self._supply.descriptors()]
+        ready, _, _ = select.select(descriptors, [], [], LOOP_PERIOD_S)
+        if self._wake_reader in ready:
+            os.read(self._wake_reader, 4096)
+
+    def _step(self) -> None:
+        self._run_requests()
+        fresh = self.supervisor.service()
+        now_s = time.monotonic()
+        stalled_s = now_s - self._host_alive_s
+        if self.supervisor.armed and stalled_s > HOST_STALL_S:
+            self.supervisor.fail(Fault(FaultCode.HOST_STALLED, f"no sign of life for {stalled_s:.2f} s"))
+        self._on_step()
+        self._check_expectations(now_s)
+        if fresh or now_s - self._status_s > STATUS_PERIOD_S:
+            self._status_s = now_s
+            self._on_status(self.supervisor.status())
+
+    def _run_requests(self) -> None:
+        while not self._requests.empty():
+            request, future = self._requests.get()
+            try:
+                future.set_result(request())
+            except Exception as error:  # noqa: BLE001 — handed to whoever waits for the future
+                future.set_exception(error)
+
+    def _check_expectations(self, now_s: float) -> None:
+        for expectation in list(self._expectations):
+            met = expectation.condition()
+            if met or now_s > expectation.deadline_s:
+                self._expectations.remove(expectation)
+                expectation.future.set_result(met)

@@ -1,0 +1,173 @@
+"""`ros2 run hasel_driver virtual_supply`: the board with supply and muscles, on a pseudo-terminal.
+
+Its standard input takes one fault or question per line (`help` lists them), its standard output tells when
+the output goes live and dead (host's monotonic clock [s]) and answers the questions.
+"""
+
+import argparse
+import os
+import random
+import select
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from hasel_driver.pseudo_terminal import PseudoTerminal
+from hasel_driver.virtual_board import VirtualBoard
+from hasel_driver.virtual_muscle import VirtualMuscle
+
+LIVE_V = 50.0  # extra-low-voltage bound used in the tests' question "is the output dead?"
+MOST_CATCH_UP_MS = 100
+INPUTS = {
+    "silence": "send nothing to the host until `recover`",
+    "deaf": "hear nothing from the host until `recover`",
+    "stuck": "neither hear nor send until `recover`; the timer interrupt still watches",
+    "garbage": "send 40 random bytes",
+    "truncate": "cut the next line to the host in half",
+    "noise": "flip one bit of what the host sends next",
+    "reset": "reset the board",
+    "overcurrent": "short the upper muscle by 2 MΩ until `recover`",
+    "interlock": "open the interlock until `recover`",
+    "unplug": "pull the cable",
+    "replug": "put it back, under a new path (printed, and linked)",
+    "recover": "undo the above but reset and unplug",
+    "output": "print true voltages [V], ground contacts and highest magnitudes so far [V]",
+    "quit": "end",
+    "help": "print this list",
+}
+
+
+class VirtualSupply:
+    """Board, muscles and port in real time, with injected faults."""
+
+    def __init__(self, board: VirtualBoard, port: PseudoTerminal, tell: Callable[[str], None]) -> None:
+        self.board, self.port, self._tell = board, port, tell
+        self._faults: set[str] = set()
+        self._host_present = False
+        self._live = False
+        self._peaks = [0.0, 0.0]
+        self._ticked_s = time.monotonic()
+        self.running = True
+        tell(f"port {port.path}")
+
+    def inject(self, name: str) -> None:
+        """One of INPUTS."""
+        if name == "recover":
+            self._faults.clear()
+            self.board.muscles[0].short_ohm = float("inf")
+            self.board.interlock_closed = True
+        elif name == "help":
+            self._tell("\n".join(f"{key:12} {meaning}" for key, meaning in INPUTS.items()))
+        elif name not in INPUTS:
+            self._tell(f"unknown input {name!r}; one of {', '.join(INPUTS)} was expected")
+        elif hasattr(self, f"_inject_{name}"):
+            getattr(self, f"_inject_{name}")()
+        else:
+            self._faults.add(name)
+
+    def step(self) -> None:
+        """Hear, advance to now, send."""
+        if self.port.host_present() and not self._host_present:
+            self.board.reset("external")  # opening the port toggles DTR
+            self.board.transmitted = self.board.transmitted[-200:]
+        self._host_present = self.port.host_present()
+        self._hear(self.port.read())
+        self._advance()
+        self._transmit()
+
+    def _hear(self, data: bytes) -> None:
+        if len(data) > 3 and "noise" in self._faults:
+            self._faults.remove("noise")
+            data = data[:-3] + bytes([data[-3] ^ 1]) + data[-2:]
+        if not self._faults & {"deaf", "stuck"}:
+            self.board.receive(data)
+
+    def _advance(self) -> None:
+        due_ms = int((time.monotonic() - self._ticked_s) * 1e3)
+        self._ticked_s += due_ms * 1e-3
+        for _ in range(min(due_ms, MOST_CATCH_UP_MS)):
+            self.board.tick()
+            self._watch_output()
+
+    def _watch_output(self) -> None:
+        voltages = [abs(muscle.voltage_v) for muscle in self.board.muscles]
+        self._peaks = [max(pair) for pair in zip(self._peaks, voltages, strict=True)]
+        live = max(voltages) > LIVE_V or not self.board.grounded
+        if live != self._live:
+            self._live = live
+            self._tell(f"{'live' if live else 'dead'} {time.monotonic():.4f}")
+
+    def _transmit(self) -> None:
+        data, self.board.transmitted = bytes(self.board.transmitted), bytearray()
+        if "truncate" in self._faults and data:
+            self._faults.remove("truncate")
+            data = data[: len(data) // 2] + b"\n"
+        if self._host_present and not self._faults & {"silence", "stuck"}:
+            self.port.write(data)
+
+    def _inject_garbage(self) -> None:
+        self.port.write(random.randbytes(40) + b"\n")
+
+    def _inject_reset(self) -> None:
+        self.board.reset("external")
+
+    def _inject_overcurrent(self) -> None:
+        self.board.muscles[0].short_ohm = 2e6
+
+    def _inject_interlock(self) -> None:
+        self.board.interlock_closed = False
+
+    def _inject_unplug(self) -> None:
+        self.port.unplug()
+
+    def _inject_replug(self) -> None:
+        self.port.unplug()
+        self.port.plug()
+        self._tell(f"port {self.port.path}")
+
+    def _inject_output(self) -> None:
+        upper, lower = (muscle.voltage_v for muscle in self.board.muscles)
+        contacts = [int(bridge.grounded) for bridge in self.board.bridges]
+        self._tell(
+            f"output {upper:.0f} {lower:.0f} {contacts[0]} {contacts[1]}"
+            f" {self._peaks[0]:.0f} {self._peaks[1]:.0f}"
+        )
+
+    def _inject_quit(self) -> None:
+        self.running = False
+
+
+def _tell(text: str) -> None:
+    print(text, flush=True)
+
+
+def main() -> None:
+    """Command line of the virtual supply."""
+    parser = argparse.ArgumentParser(prog="virtual_supply", description=__doc__.splitlines()[0])
+    parser.add_argument("--link", type=Path, help="also make the port available under this name")
+    parser.add_argument("--capacitance-nf", type=float, default=0.5, help="capacitance of each muscle [nF]")
+    arguments = parser.parse_args([word for word in sys.argv[1:] if word != "--ros-args"])
+    muscles = tuple(VirtualMuscle(capacitance_f=arguments.capacitance_nf * 1e-9) for _ in range(2))
+    supply = VirtualSupply(VirtualBoard(muscles), PseudoTerminal(arguments.link), _tell)
+    commands = b""
+    listening = True
+    try:
+        while supply.running:
+            descriptors = [fd for fd in (supply.port.fileno(), 0 if listening else None) if fd is not None]
+            # A port without a host reports a hang-up at once: do not spin on it.
+            if not supply.port.host_present():
+                descriptors = [fd for fd in descriptors if fd == 0]
+            ready, _, _ = select.select(descriptors, [], [], 0.002)
+            if 0 in ready:
+                data = os.read(0, 4096)
+                listening = bool(data)
+                *lines, commands = (commands + data).split(b"\n")
+                for line in lines:
+                    if line.strip():
+                        supply.inject(line.decode(errors="replace").strip())
+            supply.step()
+    except KeyboardInterrupt:
+        pass
+    finally:
+        supply.port.unplug()

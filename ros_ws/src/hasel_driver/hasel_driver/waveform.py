@@ -1,0 +1,87 @@
+"""Voltage waveforms of two antagonistic muscles, as the board generates them (`firmware/PROTOCOL.md`)."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar
+
+from hasel_driver.errors import LimitError
+
+SHAPES: dict[str, Callable[[float], float]] = {
+    "box": lambda s: 1.0,
+    "ramp": lambda s: s,
+    "sine": lambda s: math.sin(math.pi * s),
+    "triangle": lambda s: 1.0 - abs(2.0 * s - 1.0),
+}
+POLARITIES = ("positive", "negative", "alternating")
+# Delay of the upper and lower muscle [periods]; None: not driven.
+MUSCLES: dict[str, tuple[float | None, float | None]] = {
+    "both": (0.0, 0.5),
+    "upper": (0.0, None),
+    "lower": (None, 0.0),
+    "lower_first": (0.5, 0.0),
+}
+
+
+@dataclass(frozen=True)
+class Waveform:
+    """A periodic drive of the two muscles.
+
+    `voltage_v` is the peak [V], `frequency_hz` [Hz], `duty` the share of its half period in which a muscle is
+    driven (1: one muscle takes over from the other).
+    """
+
+    shape: str
+    voltage_v: float
+    frequency_hz: float
+    periods: int
+    duty: float = 1.0
+    polarity: str = "positive"
+    muscles: str = "both"
+
+    RANGES: ClassVar[dict[str, tuple[float, float]]] = {
+        "voltage_v": (0.0, 10_000.0),
+        "frequency_hz": (0.01, 50.0),
+        "periods": (1, 60_000),
+        "duty": (0.001, 1.0),
+    }
+
+    def __post_init__(self) -> None:
+        for name, (low, high) in self.RANGES.items():
+            value = getattr(self, name)
+            if not low <= value <= high:
+                raise LimitError(
+                    f"{name} is {value}, {low} to {high} was expected: choose a value in that range."
+                )
+        for name, choices in (("shape", SHAPES), ("polarity", POLARITIES), ("muscles", MUSCLES)):
+            if getattr(self, name) not in choices:
+                raise LimitError(
+                    f"{name} is {getattr(self, name)!r}, one of {', '.join(choices)} was expected."
+                )
+
+    @property
+    def duration_s(self) -> float:
+        """Time from start to end [s]."""
+        return self.periods / self.frequency_hz
+
+    def voltage(self, time_s: float) -> tuple[float, float]:
+        """Voltage of the upper and lower muscle [V] at `time_s` after the start; 0 outside the waveform."""
+        if not 0.0 <= time_s < self.duration_s:
+            return 0.0, 0.0
+        phase = time_s * self.frequency_hz
+        upper, lower = (self._muscle_voltage(phase, delay) for delay in MUSCLES[self.muscles])
+        return upper, lower
+
+    def _muscle_voltage(self, phase: float, delay: float | None) -> float:
+        if delay is None or phase < delay:
+            return 0.0
+        cycle, position = divmod(phase - delay, 1.0)
+        driven = 0.5 * self.duty
+        if position >= driven:
+            return 0.0
+        return self._sign(int(cycle)) * self.voltage_v * SHAPES[self.shape](position / driven)
+
+    def _sign(self, cycle: int) -> int:
+        if self.polarity == "alternating":
+            return 1 if cycle % 2 == 0 else -1
+        return 1 if self.polarity == "positive" else -1
