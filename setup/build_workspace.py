@@ -49,9 +49,7 @@ def colcon_build(root: Path, packages: list[str]) -> int:
     """Build the packages into root/install and return colcon's exit code."""
     for name in packages:
         shutil.rmtree(root / "build" / name / "build", ignore_errors=True)  # setuptools keeps deleted modules
-    python = (
-        sys.executable
-    )  # also colcon's, because it becomes the interpreter of the executables it installs
+    python = sys.executable  # colcon's too: it becomes the interpreter of the executables
     command = [python, "-m", "colcon", "--log-level", "error", "--log-base", "log", "build"]
     command += ["--base-paths", "ros_ws/src", "--merge-install", "--packages-select", *packages]
     command += ["--cmake-args", "-DCMAKE_BUILD_TYPE=Release", "-DBUILD_TESTING=OFF", "-Wno-dev"]
