@@ -1,6 +1,7 @@
 """Read a run from the messages of an MCAP file."""
 
 import warnings
+from itertools import compress
 from pathlib import Path
 from typing import Any
 
@@ -47,9 +48,15 @@ def read_mcap(path: Path) -> Recording:
 
 
 def _messages(file: McapFile, topic: str) -> tuple[list[Any], np.ndarray]:
-    """Return a topic's messages and their stamps [ns], which must increase."""
+    """Return a topic's messages and their stamps [ns], which must increase.
+
+    A supply may repeat its state with the same stamp; the last one counts.
+    """
     messages = file.decoded(topic, TOPIC_TYPES[topic])
     stamps = np.array([nanoseconds(message.header.stamp) for message in messages], dtype=np.int64)
+    if topic == STATE:
+        last = np.append(np.diff(stamps) != 0, True)[: len(stamps)]
+        messages, stamps = list(compress(messages, last)), stamps[last]
     late = np.flatnonzero(np.diff(stamps) <= 0)
     if late.size:
         raise RecordingError(

@@ -140,3 +140,11 @@ def test_time_that_runs_backwards(recorder):
         recorder.write(MEASURED, angle(0.1), stamp_ns)
     with pytest.raises(RecordingError, match="message 3 on /hasel/bending/measured is not later"):
         read(recorder)
+
+
+def test_repeated_state_counts_once(recorder):
+    """A state that is published again with the same stamp replaces the one before."""
+    for upper in (0.0, 1000.0, 2000.0):
+        recorder.write(STATE, state(upper, 0.0), 5)
+    recorder.write(MEASURED, angle(0.1), 5)
+    assert read(recorder).voltage.tolist() == [[2000.0, 0.0]]
