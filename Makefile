@@ -15,16 +15,16 @@ build: ## install the Python packages and build the ROS 2 workspace
 	@$(ENVIRONMENT) && python setup/build_workspace.py
 
 lint: build ## check style and format
-	@$(ENVIRONMENT) && ruff check . && ruff format --check .
+	@$(ENVIRONMENT) && python -m ruff check . && python -m ruff format --check .
 
 format: build ## rewrite the code in the project's format
-	@$(ENVIRONMENT) && { ruff check --fix . ; ruff format . ; }
+	@$(ENVIRONMENT) && { python -m ruff check --fix .; python -m ruff format .; }
 
 test: lint ## lint, then every test but the slow ones
-	@$(ENVIRONMENT) && pytest
+	@$(ENVIRONMENT) && python -m pytest
 
 test-slow: build ## the slow tests
-	@$(ENVIRONMENT) && pytest -m slow
+	@$(ENVIRONMENT) && python -m pytest -m slow
 
 demo: build ## fit the swimmer, compare on unseen runs, replay one through the nodes, write report.html
 	@bin/ros2-run hasel_bringup demo
