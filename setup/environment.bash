@@ -2,6 +2,7 @@
 # executable of `bin/ros2-run` see ROS 2, the virtual environment and the packages built into install/.
 
 hasel_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+. "$hasel_root/setup/source_ros.bash"
 
 prepend() { # prepend VARIABLE FOLDER: put a folder in front of a search path, once
     local variable=$1 folder=$2

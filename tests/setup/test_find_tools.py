@@ -1,4 +1,3 @@
-import os
 import shutil
 import subprocess
 import sys
@@ -6,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-FIND_TOOLS = Path(__file__).resolve().parents[2] / "setup" / "find_tools.sh"
+ROOT = Path(__file__).resolve().parents[2]
+FIND_TOOLS = ROOT / "setup" / "find_tools.sh"
 
 
 def put(folder: Path, name: str, script: str = "exit 0") -> None:
@@ -124,19 +124,19 @@ def test_sourced_ros_uses_its_python_and_needs_colcon(path):
     assert find_tools(path, ROS_DISTRO="jazzy").stdout.strip() == str(path / "python3.12")
 
 
-def test_make_stops_at_the_sentence(path):
-    """`make build` says the same sentence and goes no further."""
+def test_make_stops_at_the_sentence(path, tmp_path):
+    """`make build` in a fresh clone says the same sentence and goes no further."""
     for tool in ("make", "bash", "sed", "dirname", "cat", "sh"):
         (path / tool).symlink_to(shutil.which(tool))
     (path / "cmake").unlink()
+    clone = tmp_path / "clone"
+    shutil.copytree(ROOT / "setup", clone / "setup")
+    for name in ("Makefile", "requirements.txt"):
+        shutil.copy(ROOT / name, clone / name)
+    command = [path / "make", "build"]
     result = subprocess.run(
-        [path / "make", "build"],
-        cwd=FIND_TOOLS.parents[1],
-        env={**os.environ, "PATH": str(path)},
-        capture_output=True,
-        text=True,
-        check=False,
+        command, cwd=clone, env={"PATH": str(path)}, capture_output=True, text=True, check=False
     )
     assert result.returncode != 0
     assert result.stderr.startswith("No cmake was found")
-    assert "Building" not in result.stdout
+    assert not (clone / ".venv").exists()
