@@ -80,6 +80,8 @@ class BoardHandshake:
             lambda message: isinstance(message, protocol.Reply) and message.sequence == self._sequence,
             f"answer to {text}",
         )
+        if not reply.accepted and reply.words[0] == "INTERLOCK":
+            raise PortError("The interlock is open: close the enclosure and release the stop button.")
         if not reply.accepted:
             raise PortError(
                 f"The board on {self._port.path} answered {' '.join(reply.words)} to {text}:"

@@ -286,3 +286,7 @@ def main() -> None:
     finally:
         node.close()
         rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

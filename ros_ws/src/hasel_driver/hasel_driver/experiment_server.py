@@ -1,5 +1,6 @@
 """The action `/hasel/run_experiment`: runs a plan, records it, and vouches for the recording."""
 
+import importlib
 import time
 from collections.abc import Callable, Iterable
 from datetime import datetime
@@ -12,7 +13,6 @@ from hasel_recording.topics import STATE, TOPIC_TYPES
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
-from rosidl_runtime_py.utilities import get_message
 
 from hasel_driver.errors import DriverError, RefusedError
 from hasel_driver.experiment import Experiment, ExperimentPlan
@@ -50,7 +50,7 @@ class ExperimentServer:
             self._node.get_logger().warning(f"The type of {topic} is not known: it will not be recorded.")
         self._watched = [
             self._node.create_subscription(
-                get_message(TOPIC_TYPES[topic]), topic, self._writer(topic), 200, callback_group=self._group
+                _message_class(TOPIC_TYPES[topic]), topic, self._writer(topic), 200, callback_group=self._group
             )
             for topic in known
         ]
@@ -138,6 +138,11 @@ class ExperimentServer:
         folder = Path(self._node.get_parameter("recording_directory").value).expanduser()
         moment = datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
         return folder / f"{moment}_{goal.voltage:.0f}V_{goal.frequency:g}Hz.mcap"
+
+
+def _message_class(type_name: str) -> type:
+    package, kind, name = type_name.split("/")
+    return getattr(importlib.import_module(f"{package}.{kind}"), name)
 
 
 def _plan(goal: RunExperiment.Goal) -> ExperimentPlan:

@@ -147,7 +147,8 @@ class HaselSupply(Supply):
         if reply.accepted:
             return
         if pending.words[0] == "ARM":
-            self.refusal = f"the board answered {text}"
+            open_interlock = reply.words[0] == "INTERLOCK"
+            self.refusal = "its interlock is open" if open_interlock else f"the board answered {text}"
         elif reply.words[0] != "STATE":  # a voltage may cross a fault on the line; telemetry tells that fault
             raise SupplyFaultError(FaultCode.COMMAND_REFUSED, text)
 

@@ -14,7 +14,7 @@ class VirtualBridge:
 
     contact: Contact = Contact.GROUND
     set_point_v: float = 0.0
-    _dwell_ms: int = 0  # time in the present contact
+    _dwell_ms: int = 0  # ticks in the present contact, the first of which may be cut short
     _opened_from: Contact = Contact.GROUND
 
     @property
@@ -36,7 +36,7 @@ class VirtualBridge:
             self._leave_open(polarity)
         elif self.contact is Contact.GROUND:
             discharged = abs(measured_v) < DISCHARGED_V
-            if polarity is not Contact.GROUND and discharged and self._dwell_ms >= DEAD_TIME_MS:
+            if polarity is not Contact.GROUND and discharged and self._dwell_ms > DEAD_TIME_MS:
                 self._move(Contact.OPEN)
         elif self.contact is polarity:
             change = abs(wanted_v) - self.set_point_v
@@ -47,7 +47,7 @@ class VirtualBridge:
             self.release()
 
     def _leave_open(self, polarity: Contact) -> None:
-        if self._dwell_ms < DEAD_TIME_MS:
+        if self._dwell_ms <= DEAD_TIME_MS:
             return
         # A source that was just opened is followed by ground, never by the other source.
         self._move(Contact.GROUND if self._opened_from.sign else polarity)

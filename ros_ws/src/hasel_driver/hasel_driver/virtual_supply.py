@@ -171,3 +171,7 @@ def main() -> None:
         pass
     finally:
         supply.port.unplug()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,30 @@
+// Pins and constants of the board: ATmega328P (Uno, Nano) at 16 MHz. Channel 0 is the upper muscle's.
+#pragma once
+
+#include <Arduino.h>
+
+constexpr uint8_t CHANNELS = 2;
+
+// Every output pin needs a pull-down resistor: from reset until setup() the pins float.
+constexpr uint8_t PIN_CONVERTERS_ON = 8;               // enable of both converters
+constexpr uint8_t PIN_POSITIVE[CHANNELS] = {2, 3};     // closes the positive contact
+constexpr uint8_t PIN_NEGATIVE[CHANNELS] = {4, 5};     // closes the negative contact
+constexpr uint8_t PIN_GROUND_OPEN[CHANNELS] = {6, 7};  // opens the normally closed ground contact
+constexpr uint8_t PIN_SET_POINT[CHANNELS] = {9, 10};   // PWM of timer 1, 0 to 5 V for 0 to 10 kV
+constexpr uint8_t PIN_INTERLOCK = 12;                  // low while stop button and enclosure are closed
+constexpr uint8_t PIN_LIVE_LIGHT = 13;                 // lit while high voltage may be on
+
+// Analogue inputs A0 to A3: voltage monitors (0 to 10 kV for 0 to 5 V), then current monitors (0 to 1 mA).
+constexpr uint8_t ANALOGUE_INPUTS = 2 * CHANNELS;
+constexpr uint16_t FULL_SCALE_V = 10000;
+constexpr uint16_t FULL_SCALE_UA = 1000;
+constexpr uint16_t ADC_MOST = 1023;
+
+constexpr uint8_t DEAD_TIME_MS = 2;
+constexpr uint16_t DISCHARGED_V = 200;
+constexpr uint8_t CONFIRMATION_MS = 3;
+
+// Raw reading of the converter for a quantity of the given full scale.
+constexpr uint16_t raw(uint32_t value, uint16_t full_scale) {
+  return value * ADC_MOST / full_scale;
+}
