@@ -54,7 +54,9 @@ class CameraCalibration:
         try:
             values = yaml.safe_load(Path(path).read_text())
         except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-            raise TrackerError(f"The calibration {path} cannot be read: {str(error).splitlines()[0]}.") from error
+            raise TrackerError(
+                f"The calibration {path} cannot be read: {str(error).splitlines()[0]}."
+            ) from error
         missing = [key for key in KEYS if not isinstance(values, dict) or key not in values]
         if missing:
             raise TrackerError(

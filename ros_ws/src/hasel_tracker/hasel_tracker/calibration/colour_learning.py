@@ -35,7 +35,9 @@ class LearnedColour:
 
 
 def learn_colour(
-    image: np.ndarray, points_px: np.ndarray | None = None, start: TrackerSettings = TrackerSettings()  # noqa: B008
+    image: np.ndarray,
+    points_px: np.ndarray | None = None,
+    start: TrackerSettings = TrackerSettings(),  # noqa: B008
 ) -> LearnedColour:
     """Learn from an 8-bit BGR frame; `points_px` (3, 2) are pixels on the three markers, or None to find them.
 
@@ -51,7 +53,9 @@ def learn_colour(
         raise TrackerError(
             f"With the colour learned the markers are not found ({tracker.note}); point at them with --at."
         )
-    return LearnedColour(settings, markers.positions, _stray_share(colour.mask(image), markers.positions, radius))
+    return LearnedColour(
+        settings, markers.positions, _stray_share(colour.mask(image), markers.positions, radius)
+    )
 
 
 def _found_centres(image: np.ndarray, start: TrackerSettings) -> np.ndarray:
@@ -73,7 +77,8 @@ def _range_around(hsv: np.ndarray, centres: np.ndarray) -> ColourRange:
         if not (0 <= x < width and 0 <= y < height):
             raise TrackerError(f"The point {x},{y} is outside the image of {width} × {height} px.")
         patch = hsv[
-            max(y - SEED_RADIUS_PX, 0) : y + SEED_RADIUS_PX + 1, max(x - SEED_RADIUS_PX, 0) : x + SEED_RADIUS_PX + 1
+            max(y - SEED_RADIUS_PX, 0) : y + SEED_RADIUS_PX + 1,
+            max(x - SEED_RADIUS_PX, 0) : x + SEED_RADIUS_PX + 1,
         ]
         samples.append(patch.reshape(-1, 3))
     pixels = np.vstack(samples).astype(float)
@@ -83,7 +88,10 @@ def _range_around(hsv: np.ndarray, centres: np.ndarray) -> ColourRange:
     low, high = np.percentile(apart, [1, 99]) + [-HUE_MARGIN, HUE_MARGIN]
     saturation, value = np.percentile(pixels[:, 1:], 5, axis=0) * MARGIN_SHARE
     return ColourRange(
-        int(round(middle + low)) % HUE_CIRCLE, int(round(middle + high)) % HUE_CIRCLE, int(saturation), int(value)
+        int(round(middle + low)) % HUE_CIRCLE,
+        int(round(middle + high)) % HUE_CIRCLE,
+        int(saturation),
+        int(value),
     )
 
 
@@ -95,7 +103,9 @@ def _radius(mask: np.ndarray, centres: np.ndarray) -> float:
         if near.any():
             areas.append(statistics[near[near > 0][0], cv2.CC_STAT_AREA])
     if len(areas) < 3:
-        raise TrackerError("The colour at the points given does not make three patches; point at the markers' middles.")
+        raise TrackerError(
+            "The colour at the points given does not make three patches; point at the markers' middles."
+        )
     return float(np.sqrt(np.median(areas) / np.pi))
 
 

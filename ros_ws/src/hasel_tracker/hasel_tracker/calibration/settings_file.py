@@ -22,7 +22,9 @@ def settings_from(values: dict[str, Any]) -> TrackerSettings:
     try:
         return TrackerSettings(colour=ColourRange(**colour), **search)
     except TypeError as error:
-        raise TrackerError(f"A tracker setting has a value of the wrong kind ({error}); give a number.") from error
+        raise TrackerError(
+            f"A tracker setting has a value of the wrong kind ({error}); give a number."
+        ) from error
 
 
 def flat(settings: TrackerSettings) -> dict[str, Any]:
@@ -41,12 +43,22 @@ def load_settings(path: Path) -> TrackerSettings:
     try:
         content = yaml.safe_load(Path(path).read_text())
         values = next(iter(content.values()))["ros__parameters"]
-    except (OSError, UnicodeDecodeError, yaml.YAMLError, AttributeError, KeyError, TypeError, StopIteration) as error:
+    except (
+        OSError,
+        UnicodeDecodeError,
+        yaml.YAMLError,
+        AttributeError,
+        KeyError,
+        TypeError,
+        StopIteration,
+    ) as error:
         raise TrackerError(
             f"The settings {path} are not a ROS 2 parameter file; make one with `calibrate colour`."
         ) from error
     for key in values:
         if key not in COLOUR_KEYS + SEARCH_KEYS:
             near = get_close_matches(key, COLOUR_KEYS + SEARCH_KEYS, 1, 0.0)[0]
-            raise TrackerError(f"The settings {path} have '{key}', which is not known; did you mean '{near}'?")
+            raise TrackerError(
+                f"The settings {path} have '{key}', which is not known; did you mean '{near}'?"
+            )
     return settings_from(values)

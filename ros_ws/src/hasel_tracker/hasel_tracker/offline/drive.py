@@ -47,9 +47,7 @@ class Alignment:
     means: str
 
     def __str__(self) -> str:
-        return (
-            f"The drive runs {self.lag_s:+.4f} s after the video's clock, ± {self.uncertainty_s:.4f} s ({self.means})."
-        )
+        return f"The drive runs {self.lag_s:+.4f} s after the video's clock, ± {self.uncertainty_s:.4f} s ({self.means})."
 
 
 def read_drive(path: Path) -> Drive:
@@ -77,15 +75,21 @@ def _from_mcap(path: Path) -> Drive:
 
 
 def _from_csv(path: Path) -> Drive:
-    lines = [line for line in path.read_text(errors="replace").splitlines() if line and not line.startswith("#")]
+    lines = [
+        line for line in path.read_text(errors="replace").splitlines() if line and not line.startswith("#")
+    ]
     names = [name.strip() for name in lines[0].split(",")] if lines else []
     missing = [name for name in COLUMNS if name not in names]
     if missing:
         raise TrackerError(f"{path} has no column {missing[0]}; expected the columns {', '.join(COLUMNS)}.")
     try:
-        table = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]]).reshape(-1, len(names))
+        table = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]]).reshape(
+            -1, len(names)
+        )
     except ValueError as error:
-        raise TrackerError(f"{path} has a row that is not numbers ({error}); correct or remove it.") from error
+        raise TrackerError(
+            f"{path} has a row that is not numbers ({error}); correct or remove it."
+        ) from error
     if not len(table):
         raise TrackerError(f"{path} has a header but no rows; give the recording of a run.")
     time_s, upper, lower = (table[:, names.index(name)] for name in COLUMNS)
@@ -114,4 +118,6 @@ def align_by_movement(run: TrackedRun, drive: Drive) -> Alignment:
     supply or muscle adds is not seen as such.
     """
     moved = first_movement_s(run.time_s, run.sin_theta)
-    return Alignment(moved - drive.first_voltage_s, 1.0 / run.frame_rate_hz, "the first movement set to the first voltage")
+    return Alignment(
+        moved - drive.first_voltage_s, 1.0 / run.frame_rate_hz, "the first movement set to the first voltage"
+    )

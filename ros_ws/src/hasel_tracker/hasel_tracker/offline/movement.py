@@ -43,7 +43,9 @@ def first_movement_s(time_s: np.ndarray, sin_theta: np.ndarray) -> float:
 def cut_to_periods(run: TrackedRun, frequency_hz: float, periods: float = 2.0) -> TrackedRun:
     """The run from the first movement on, for so many periods of the drive; its time starts at zero there."""
     if not (frequency_hz > 0.0 and periods > 0.0):
-        raise TrackerError(f"Cannot cut to {periods} periods of {frequency_hz} Hz; expected positive numbers.")
+        raise TrackerError(
+            f"Cannot cut to {periods} periods of {frequency_hz} Hz; expected positive numbers."
+        )
     start = first_movement_s(run.time_s, run.sin_theta)
     end = start + periods / frequency_hz
     if end > run.time_s[-1] + 1.5 / run.frame_rate_hz:

@@ -36,9 +36,7 @@ def write_run(
 def _write_csv(path: Path, run: TrackedRun, drive: Drive | None, metadata: dict[str, str]) -> str:
     time_s = run.time_s - run.time_s[0]
     voltage = None if drive is None else drive.at(time_s)
-    recording = Recording(
-        path.stem, time_s, run.sin_theta, voltage, run.markers_px, "px", metadata=metadata
-    )
+    recording = Recording(path.stem, time_s, run.sin_theta, voltage, run.markers_px, "px", metadata=metadata)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", RecordingWarning)
         write_recording(recording, path)

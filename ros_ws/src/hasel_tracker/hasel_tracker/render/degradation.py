@@ -51,7 +51,9 @@ def add_glints(image: np.ndarray, count: int, time_s: float, seed: int) -> np.nd
     random = np.random.default_rng(seed)
     for _ in range(count):
         centre = random.uniform([0.0, 0.25 * height], [width, 0.75 * height])
-        centre += 0.04 * width * np.sin(2.0 * np.pi * random.uniform(0.2, 0.8) * time_s + random.uniform(0, 6, 2))
+        centre += (
+            0.04 * width * np.sin(2.0 * np.pi * random.uniform(0.2, 0.8) * time_s + random.uniform(0, 6, 2))
+        )
         length, thickness = random.uniform(0.01, 0.04) * width, random.uniform(0.001, 0.003) * width
         brightness = random.uniform(60.0, 200.0)
         _add_streak(image, centre, length, thickness, brightness)

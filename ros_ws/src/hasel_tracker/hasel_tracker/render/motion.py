@@ -42,18 +42,26 @@ class BendingMotion:
         cycles = self.frequency_hz * active
         return self.amplitude_rad * np.sin(2.0 * np.pi * cycles) * (1.0 - np.exp(-((4.0 * cycles) ** 2)))
 
-    def centre_line(self, time_s: float) -> np.ndarray:
+    def line_when_bent(self, bend_rad: float) -> np.ndarray:
+        """Centre line [m] about the origin for an angle from head to tail, shape (STATION_COUNT, 2)."""
         stations = np.linspace(0.0, self.shape.total_length_m, STATION_COUNT)
         start, end = self.shape.muscle_stations_m
         share = np.clip((stations - start) / (end - start), 0.0, 1.0)
         # Half of the bend turns the head the other way, so that the body stays in view.
-        slope = self.bend(time_s) * (share - 0.5) + self.heading_rad
-        step = stations[1]
+        slope = bend_rad * (share - 0.5) + self.heading_rad
         middle_slope = 0.5 * (slope[1:] + slope[:-1])
-        steps = step * np.stack([np.cos(middle_slope), np.sin(middle_slope)], axis=1)
+        steps = stations[1] * np.stack([np.cos(middle_slope), np.sin(middle_slope)], axis=1)
         line = np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
+        return line - line.mean(axis=0)
+
+    def markers_when_bent(self, bend_rad: float) -> np.ndarray:
+        """Marker positions [m], shape (3, 2)."""
+        line = self.line_when_bent(bend_rad)
+        return points_at(line, np.array(self.shape.marker_stations_m), self.shape.total_length_m)
+
+    def centre_line(self, time_s: float) -> np.ndarray:
         drift = self.drift_m_per_s * time_s * np.array([np.cos(self.heading_rad), np.sin(self.heading_rad)])
-        return line - line.mean(axis=0) - drift
+        return self.line_when_bent(self.bend(time_s)) - drift
 
 
 @dataclass(frozen=True)

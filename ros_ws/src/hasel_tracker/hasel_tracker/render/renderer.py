@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from hasel_tracker.tracking.bending_angle import bending_angle
 from hasel_tracker.render.body_shape import BodyShape
 from hasel_tracker.render.camera_view import CameraView
 from hasel_tracker.render.degradation import Degradation, add_glints, add_noise, compress, uneven_light
 from hasel_tracker.render.marker_coverage import marker_coverage
 from hasel_tracker.render.motion import Motion, points_at
+from hasel_tracker.tracking.bending_angle import bending_angle
 
 SUB_EXPOSURES = 7
 POLYGON_SHIFT = 5
@@ -32,8 +32,6 @@ class RenderedFrame:
 @dataclass(frozen=True)
 class Renderer:
     """Draws frames of a motion; `background` is an 8-bit BGR image of the view's size, or None for plain water.
-
-    `hidden` names the markers (0 head, 1 middle, 2 tail) that are not drawn in a frame: a function of frame index.
     """
 
     motion: Motion
@@ -111,7 +109,8 @@ class Renderer:
         coverage = marker_coverage(self.view, centre_m, self.shape.marker_radius_m, corner, size)
         box = _slices(*corner, size, size, picture.shape)
         inside = coverage[
-            box[0].start - corner[1] : box[0].stop - corner[1], box[1].start - corner[0] : box[1].stop - corner[0]
+            box[0].start - corner[1] : box[0].stop - corner[1],
+            box[1].start - corner[0] : box[1].stop - corner[0],
         ]
         _blend(picture, box, inside, self.shape.marker_colour)
 

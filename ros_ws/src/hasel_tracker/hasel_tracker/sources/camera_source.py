@@ -32,7 +32,7 @@ class CameraSource:
     def __init__(
         self,
         device: int | str,
-        asked: CameraFormat = CameraFormat(),  # noqa: B008
+        asked: CameraFormat = CameraFormat(),
         exposure: float | None = None,
         capture: cv2.VideoCapture | None = None,
     ) -> None:

@@ -1,7 +1,7 @@
 """Decode JPEG frames in several threads, and hand them on in order."""
 
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 
 from hasel_tracker.errors import TrackerError
@@ -9,26 +9,37 @@ from hasel_tracker.sources.frame import Frame
 
 
 def decoded_in_order(
-    frames: Iterator[Frame], threads: int, broken: Callable[[TrackerError], None] | None = None
+    frames: Iterable[Frame | None], threads: int, broken: Callable[[TrackerError], None]
 ) -> Iterator[Frame]:
-    """Decoded frames in the order of `frames`; at most `threads` are being decoded at a time.
+    """Decoded frames in the order of `frames`, at most `threads` of them being decoded at a time.
 
-    A frame that cannot be decoded raises TrackerError, or is left out and told to `broken` if that is given.
+    None among the frames means that none has come lately: what is waiting is handed on. A frame that cannot be
+    decoded is left out and `broken` is told why. With one thread, decoding is done in the calling one.
     """
+    if threads == 1:
+        yield from _decoded_here(frames, broken)
+        return
     with ThreadPoolExecutor(threads, thread_name_prefix="decode") as pool:
         waiting: deque[Future[Frame]] = deque()
         for frame in frames:
-            waiting.append(pool.submit(frame.decoded))
-            while waiting and (len(waiting) >= threads or waiting[0].done()):
-                yield from _result(waiting.popleft(), broken)
+            if frame is not None:
+                waiting.append(pool.submit(frame.decoded))
+            while waiting and (frame is None or len(waiting) >= threads or waiting[0].done()):
+                yield from _result(waiting.popleft().result, broken)
         while waiting:
-            yield from _result(waiting.popleft(), broken)
+            yield from _result(waiting.popleft().result, broken)
 
 
-def _result(future: Future[Frame], broken: Callable[[TrackerError], None] | None) -> Iterator[Frame]:
+def _decoded_here(
+    frames: Iterable[Frame | None], broken: Callable[[TrackerError], None]
+) -> Iterator[Frame]:
+    for frame in frames:
+        if frame is not None:
+            yield from _result(frame.decoded, broken)
+
+
+def _result(decode: Callable[[], Frame], broken: Callable[[TrackerError], None]) -> Iterator[Frame]:
     try:
-        yield future.result()
+        yield decode()
     except TrackerError as error:
-        if broken is None:
-            raise
         broken(error)

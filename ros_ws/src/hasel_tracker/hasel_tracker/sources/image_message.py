@@ -49,5 +49,7 @@ def _raw(message: Any) -> np.ndarray:
 def _compressed(message: Any) -> np.ndarray:
     image = cv2.imdecode(np.frombuffer(message.data, np.uint8), cv2.IMREAD_COLOR)
     if image is None:
-        raise TrackerError(f"The image topic sends '{message.format}' that cannot be decoded; expected JPEG or PNG.")
+        raise TrackerError(
+            f"The image topic sends '{message.format}' that cannot be decoded; expected JPEG or PNG."
+        )
     return image

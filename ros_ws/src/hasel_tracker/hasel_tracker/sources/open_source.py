@@ -7,7 +7,9 @@ from hasel_tracker.sources.folder_source import FolderSource
 from hasel_tracker.sources.video_source import VideoSource
 
 
-def open_recorded(path: str | Path, frame_rate_hz: float | None = None, threads: int = 0) -> VideoSource | FolderSource:
+def open_recorded(
+    path: str | Path, frame_rate_hz: float | None = None, threads: int = 0
+) -> VideoSource | FolderSource:
     """Open a video file or a folder of images; a folder needs its frame rate [1/s]."""
     path = Path(path)
     if not path.exists():

@@ -7,8 +7,12 @@ highlight inside the marker changes nothing, and noise enters only through the b
 (uneven light). Directions in which something else crosses it (the spine, an edge of the body) are left out
 together with the opposite ones: what remains of a disc, an ellipse or a motion-blurred disc is still symmetric
 about its centre.
+
+Over a textured background no plane fits the luma. Then colour, blurred as it is, does better: the same moment is
+taken of it along the line from the background's colour to the marker's, leaving brightness out.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -21,6 +25,8 @@ RING_WIDTH_PX = 3
 MINIMUM_CONTRAST = 12.0
 MINIMUM_INSIDE_PX = 5
 REFINEMENTS = 2
+TEXTURED = 0.08
+CHROMA_BLUR_PX = 1
 
 
 @dataclass(frozen=True)
@@ -41,9 +47,20 @@ class MarkerMeasurement:
 def measure_marker(image: np.ndarray, outline: np.ndarray, edge_px: int) -> MarkerMeasurement | None:
     """Measure the marker that the contour `outline`, shape (n, 1, 2), roughly encloses in an 8-bit BGR region.
 
-    `edge_px` is half the width of the band in which its edge lies. The centre is in the region's pixels. None if
-    the marker has no inside left, no contrast, or its surroundings leave the region.
+    `edge_px` is half the width of the band in which its edge lies. The centre is in the region's pixels. None
+    if the marker has no inside left, no contrast, or its surroundings leave the region.
     """
+    by_luma = _measure(image, outline, edge_px, _luma)
+    if by_luma is not None and by_luma.noise < TEXTURED * by_luma.contrast:
+        return by_luma
+    by_colour = _measure(image, outline, edge_px + CHROMA_BLUR_PX, _colourfulness)
+    measured = [each for each in (by_luma, by_colour) if each is not None]
+    return min(measured, key=lambda each: each.noise / each.contrast, default=None)
+
+
+def _measure(
+    image: np.ndarray, outline: np.ndarray, edge_px: int, signal_of: Callable[..., np.ndarray]
+) -> MarkerMeasurement | None:
     # Convex: a highlight or a notch at the edge is part of the marker.
     hull = cv2.convexHull(outline)
     x, y, width, height = cv2.boundingRect(hull)
@@ -58,25 +75,40 @@ def measure_marker(image: np.ndarray, outline: np.ndarray, edge_px: int) -> Mark
     ring = cv2.dilate(outer, _disc(RING_WIDTH_PX)) ^ outer
     if cv2.countNonZero(inside) < MINIMUM_INSIDE_PX:
         return None
-    luma = cv2.cvtColor(image[top:bottom, left:right], cv2.COLOR_BGR2GRAY).astype(np.float32)
-    surroundings = look_around(luma, inside, ring)
-    share, contrast = _marker_share(luma, inside, outer, surroundings)
+    signal = signal_of(image[top:bottom, left:right], inside, ring)
+    surroundings = look_around(signal, inside, ring)
+    share, contrast = _marker_share(signal, inside, outer, surroundings, follows_light=signal_of is _luma)
     if contrast < MINIMUM_CONTRAST:
         return None
     centre, area = _symmetric_centre(share, outer, surroundings)
     solidity = min(cv2.contourArea(outline) / max(cv2.contourArea(hull), 1.0), 1.0)
-    return MarkerMeasurement(centre + [left, top], area, contrast, surroundings.noise, solidity)
+    return MarkerMeasurement(centre + (left, top), area, contrast, surroundings.noise, solidity)
+
+
+def _luma(region: np.ndarray, _inside: np.ndarray, _ring: np.ndarray) -> np.ndarray:
+    return cv2.cvtColor(region, cv2.COLOR_BGR2GRAY).astype(np.float32)
+
+
+def _colourfulness(region: np.ndarray, inside: np.ndarray, ring: np.ndarray) -> np.ndarray:
+    """Colour along the axis from background to marker, shifted so that the background is bright as in luma."""
+    marker, background = cv2.mean(region, inside)[:3], cv2.mean(region, ring)[:3]
+    axis = np.subtract(background, marker)
+    axis -= axis.mean()
+    axis /= max(np.linalg.norm(axis), 1e-9)
+    return (region @ axis).astype(np.float32)
 
 
 def _marker_share(
-    luma: np.ndarray, inside: np.ndarray, outer: np.ndarray, surroundings: Surroundings
+    signal: np.ndarray, inside: np.ndarray, outer: np.ndarray, surroundings: Surroundings, *, follows_light: bool
 ) -> tuple[np.ndarray, float]:
-    """How much of each pixel is marker (from luma alone), and the contrast [grey levels]."""
-    level = surroundings.level(luma.shape)
-    # The light on the marker varies as the light on its surroundings.
-    marker_level = middle_value(luma[inside > 0]) / surroundings.plane[0] * level
+    """How much of each pixel is marker, and the contrast [grey levels]."""
+    level = surroundings.level(signal.shape)
+    marker_level = middle_value(signal[inside > 0])
+    if follows_light:
+        # The light on the marker varies as the light on its surroundings.
+        marker_level = marker_level / surroundings.plane[0] * level
     contrast = level - marker_level
-    share = (level - luma) / np.where(np.abs(contrast) > 1.0, contrast, 1.0)
+    share = (level - signal) / np.where(np.abs(contrast) > 1.0, contrast, 1.0)
     share[inside > 0] = 1.0
     share[outer == 0] = 0.0
     return share, float(abs(contrast.mean()))

@@ -47,7 +47,9 @@ class MomentTracker:
         blobs = self._candidates(image)
         row = body_line(blobs)
         if row is None:
-            self.note = f"found {len(blobs)} blobs of marker colour, of which no three look like markers in a row"
+            self.note = (
+                f"found {len(blobs)} blobs of marker colour, of which no three look like markers in a row"
+            )
             return False
         centres = np.array([blobs[index].centre for index in row])
         first_is_head, self.note = starts_at_head(image, centres, self.settings.head)
@@ -113,11 +115,11 @@ class MomentTracker:
             measured[number] = self._measure(image, blob.centre, blob.area, self.settings.region_px)
         return measured
 
-    def _accept(
-        self, measured: list[MarkerMeasurement | None], time_s: float, step_s: float
-    ) -> MarkerSet:
+    def _accept(self, measured: list[MarkerMeasurement | None], time_s: float, step_s: float) -> MarkerSet:
         before = self._positions
-        quality = np.array([0.0 if m is None else self._quality(m, self._areas[n]) for n, m in enumerate(measured)])
+        quality = np.array(
+            [0.0 if m is None else self._quality(m, self._areas[n]) for n, m in enumerate(measured)]
+        )
         positions = np.array([np.full(2, np.nan) if m is None else m.centre for m in measured])
         positions[quality < self.settings.minimum_quality] = np.nan
         markers = self._plausible(MarkerSet(positions, np.where(np.isnan(positions[:, 0]), 0.0, quality)))

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, field
 
-from hasel_tracker.tracking.colour_gate import ColourRange
 from hasel_tracker.errors import TrackerError
+from hasel_tracker.tracking.colour_gate import ColourRange
 
 HEAD_SIDES = ("auto", "left", "right", "top", "bottom")
 METHODS = ("moment", "csrt")

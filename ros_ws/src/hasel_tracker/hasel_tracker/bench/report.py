@@ -1,0 +1,122 @@
+"""The benchmark's results beside the bars they must meet."""
+
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from hasel_tracker.bench.accuracy import CONDITIONS, Accuracy, measure_accuracy
+from hasel_tracker.bench.robustness import CASES, Robustness, measure_robustness
+from hasel_tracker.bench.speed import Speed, measure_speed
+
+CSRT_FRAMES = 12
+
+
+@dataclass(frozen=True)
+class Bar:
+    """What was measured, what it must reach, and whether it does."""
+
+    what: str
+    measured: float
+    limit: float
+    at_least: bool = False
+
+    @property
+    def met(self) -> bool:
+        """Whether the bar is met."""
+        return self.measured >= self.limit if self.at_least else self.measured <= self.limit
+
+
+@dataclass(frozen=True)
+class BenchReport:
+    """All results of the benchmark."""
+
+    accuracies: list[Accuracy]
+    csrt: Accuracy
+    robustness: list[Robustness]
+    speed: Speed
+
+    def bars(self) -> list[Bar]:
+        """The figures that have a bar."""
+        by_name = {each.condition: each for each in self.accuracies}
+        worst = {name: float(each.marker_rms_px.max()) for name, each in by_name.items()}
+        rest = by_name["at rest, MJPEG 75"]
+        return [
+            Bar("clean: worst marker (px rms)", worst["clean"], 0.02),
+            Bar("MJPEG quality 75: worst marker (px rms)", worst["MJPEG quality 75"], 0.05),
+            Bar("noise of sin θ at rest", rest.sin_theta_spread, 0.001),
+            Bar("frames/s, one core, without decoding", self.speed.tracking_hz, 300.0, at_least=True),
+            Bar("false angles in the robustness cases", sum(each.false_angles for each in self.robustness), 0),
+            Bar("frames late to recover", sum(each.late_frames for each in self.robustness), 0),
+        ]
+
+    def print(self, console: Console) -> None:
+        """Print the tables."""
+        console.print(self._accuracy_table(), self._robustness_table(), self._bars_table())
+        console.print(f"Speed at 1080p, one core: {self.speed}")
+
+    def values(self) -> dict[str, Any]:
+        """Everything as plain values, for JSON."""
+        return {
+            "accuracies": [_plain(each) for each in self.accuracies],
+            "csrt": _plain(self.csrt),
+            "robustness": [_plain(each) for each in self.robustness],
+            "speed": _plain(self.speed),
+            "bars": [_plain(each) | {"met": bool(each.met)} for each in self.bars()],
+        }
+
+    def _accuracy_table(self) -> Table:
+        table = Table(title="Distance from the truth (px rms) and error of sin θ, 1080p")
+        for heading in ("condition", "head", "middle", "tail", "sin θ rms", "sin θ spread", "lost"):
+            table.add_column(heading, justify="left" if heading == "condition" else "right")
+        for each in (*self.accuracies, self.csrt):
+            pixels = [f"{value:.4f}" for value in each.marker_rms_px]
+            angle = [f"{each.sin_theta_rms:.1e}", f"{each.sin_theta_spread:.1e}"]
+            table.add_row(each.condition, *pixels, *angle, f"{100 * each.lost_share:.0f} %")
+        return table
+
+    def _robustness_table(self) -> Table:
+        table = Table(title="Robustness")
+        for heading in ("case", "frames", "marker unseen", "false angles", "frames late"):
+            table.add_column(heading, justify="left" if heading == "case" else "right")
+        for each in self.robustness:
+            numbers = (each.frames, each.unseen_frames, each.false_angles, each.late_frames)
+            table.add_row(each.case, *(str(number) for number in numbers))
+        return table
+
+    def _bars_table(self) -> Table:
+        table = Table(title="Bars")
+        for heading in ("what", "measured", "bar", "met"):
+            table.add_column(heading, justify="left" if heading == "what" else "right")
+        for each in self.bars():
+            sign = "≥" if each.at_least else "≤"
+            table.add_row(each.what, f"{each.measured:.4g}", f"{sign} {each.limit:g}", "yes" if each.met else "NO")
+        return table
+
+
+def run_bench(frames: int, told: Callable[[str], None]) -> BenchReport:
+    """Run everything; `told` is given a sentence after each part."""
+    speed = measure_speed()
+    told(f"Speed: {speed}")
+    accuracies = []
+    for condition in CONDITIONS:
+        accuracies.append(measure_accuracy(condition, frames))
+        told(str(accuracies[-1]))
+    csrt = measure_accuracy(CONDITIONS[2], CSRT_FRAMES, "csrt")
+    csrt = Accuracy(f"CSRT, {csrt.condition}", *(getattr(csrt, name) for name in list(asdict(csrt))[1:]))
+    told(str(csrt))
+    robustness = []
+    for case in CASES:
+        robustness.append(measure_robustness(case, frames))
+        told(str(robustness[-1]))
+    return BenchReport(accuracies, csrt, robustness, speed)
+
+
+def _plain(result: Any) -> dict[str, Any]:
+    return {
+        key: np.asarray(value).tolist() if isinstance(value, (np.ndarray, np.generic)) else value
+        for key, value in asdict(result).items()
+    }

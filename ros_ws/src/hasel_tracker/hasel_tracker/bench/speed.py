@@ -1,0 +1,64 @@
+"""Frames per second on one core."""
+
+import time
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from hasel_tracker.bench.accuracy import CONDITIONS, FRAME_RATE_HZ, renderer_for
+from hasel_tracker.sources.frame import Frame
+from hasel_tracker.tracking.bending_tracker import BendingTracker
+
+JPEG_QUALITY = 75
+CONDITION = CONDITIONS[2]
+
+
+@dataclass(frozen=True)
+class Speed:
+    """Median frames per second on one core at 1080p: tracking alone, and decoding a JPEG picture before."""
+
+    tracking_hz: float
+    with_decoding_hz: float
+    csrt_hz: float
+
+    def __str__(self) -> str:
+        return (
+            f"{self.tracking_hz:.0f} frames/s without decoding, {self.with_decoding_hz:.0f} frames/s with JPEG "
+            f"decoding; CSRT {self.csrt_hz:.1f} frames/s ({self.tracking_hz / self.csrt_hz:.0f} times slower)."
+        )
+
+
+def measure_speed(frames: int = 24, repeats: int = 8, csrt_frames: int = 8) -> Speed:
+    """Time the trackers on rendered pictures held in memory, OpenCV limited to one thread."""
+    threads = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        pictures = [frame.image for frame in renderer_for(CONDITION).frames(FRAME_RATE_HZ, frames)]
+        settings = [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]
+        encoded = [cv2.imencode(".jpg", picture, settings)[1].tobytes() for picture in pictures]
+        plain = [Frame(i, i / FRAME_RATE_HZ, image=picture) for i, picture in enumerate(pictures)]
+        coded = [Frame(i, i / FRAME_RATE_HZ, jpeg=code) for i, code in enumerate(encoded)]
+        return Speed(
+            _rate(plain, "moment", repeats),
+            _rate(coded, "moment", repeats),
+            _rate(plain[: csrt_frames + 1], "csrt", 1),
+        )
+    finally:
+        cv2.setNumThreads(threads)
+
+
+def _rate(frames: list[Frame], method: str, repeats: int) -> float:
+    """Median frames per second; going back and forth, so that no frame is far from the one before."""
+    tracker = BendingTracker(method=method)
+    tracker.update(frames[0].decoded().image, 0.0)
+    times = []
+    step_s = 1.0 / FRAME_RATE_HZ
+    order = (frames[1:] + frames[-2::-1]) * repeats if repeats > 1 else frames[1:]
+    for number, frame in enumerate(order, start=1):
+        start = time.perf_counter()
+        tracked = tracker.update(frame.decoded().image, number * step_s)
+        times.append(time.perf_counter() - start)
+        if not tracked.valid:
+            break
+    return 1.0 / float(np.median(times))

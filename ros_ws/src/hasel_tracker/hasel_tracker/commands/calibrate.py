@@ -1,0 +1,96 @@
+"""`calibrate colour FRAME` and `calibrate board IMAGE…`: learn the markers' colour, the lens and the perspective."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from hasel_tracker.calibration.board_calibration import VIEWS_FOR_LENS, Board, calibrate_camera, find_corners
+from hasel_tracker.calibration.colour_learning import learn_colour
+from hasel_tracker.calibration.learned_picture import learned_picture
+from hasel_tracker.calibration.settings_file import save_settings
+from hasel_tracker.commands.command import run_command
+from hasel_tracker.errors import TrackerError
+from hasel_tracker.sources.folder_source import IMAGE_SUFFIXES
+from hasel_tracker.sources.video_source import VideoSource
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command's options."""
+    options = argparse.ArgumentParser(prog="calibrate", description="Set the tracker up for a rig.")
+    kinds = options.add_subparsers(dest="kind", required=True)
+    colour = kinds.add_parser("colour", help="learn the markers' colour and size from one frame")
+    colour.add_argument("frame", type=Path, help="image, or video (its first frame)")
+    colour.add_argument("--at", type=_point, nargs=3, metavar="X,Y", help="a pixel on each marker, any order")
+    colour.add_argument(
+        "--output", "-o", type=Path, default=Path("markers.yaml"), help="default: %(default)s"
+    )
+    colour.add_argument("--show", type=Path, metavar="PNG", help="write a picture of what is seen")
+    board = kinds.add_parser("board", help="lens and perspective from pictures of a chessboard")
+    board.add_argument(
+        "images", type=Path, nargs="*", help=f"views in other poses, for the lens ({VIEWS_FOR_LENS} or more)"
+    )
+    board.add_argument("--plane", type=Path, required=True, help="picture of the board in the swimming plane")
+    board.add_argument("--columns", type=int, default=9, help="inner corners per row (default: %(default)s)")
+    board.add_argument("--rows", type=int, default=6, help="inner corners per column (default: %(default)s)")
+    board.add_argument("--square", type=float, required=True, metavar="M", help="side of a square [m]")
+    board.add_argument("--output", "-o", type=Path, default=Path("camera.yaml"), help="default: %(default)s")
+    return options
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    options = parser().parse_args(arguments)
+    return run_command(lambda: _colour(options) if options.kind == "colour" else _board(options))
+
+
+def _colour(options: argparse.Namespace) -> None:
+    image = _image(options.frame)
+    learned = learn_colour(image, None if options.at is None else np.array(options.at))
+    print(learned)
+    save_settings(learned.settings, options.output)
+    print(f"Wrote {options.output}.")
+    if options.show is not None:
+        if not cv2.imwrite(str(options.show), learned_picture(image, learned)):
+            raise TrackerError(f"The picture {options.show} cannot be written; end its name in .png.")
+        print(f"Wrote {options.show}.")
+
+
+def _board(options: argparse.Namespace) -> None:
+    board = Board(options.columns, options.rows, options.square)
+    images = {path: _image(path) for path in [options.plane, *options.images]}
+    sizes = {image.shape[1::-1] for image in images.values()}
+    if len(sizes) > 1:
+        raise TrackerError(
+            f"The pictures have different sizes ({sizes}); take all with the same camera format."
+        )
+    corners = {path: find_corners(image, board, str(path)) for path, image in images.items()}
+    calibration = calibrate_camera(list(corners.values()), corners[options.plane], board, sizes.pop())
+    if len(images) < VIEWS_FOR_LENS:
+        print(f"Perspective only: {len(images)} views, the lens needs at least {VIEWS_FOR_LENS}.")
+    calibration.save(options.output)
+    print(calibration)
+    print(f"Wrote {options.output}.")
+
+
+def _image(path: Path) -> np.ndarray:
+    if not path.is_file():
+        raise TrackerError(f"There is no image {path}; check the name.")
+    if path.suffix.lower() in IMAGE_SUFFIXES:
+        image = cv2.imread(str(path), cv2.IMREAD_COLOR)
+        if image is None:
+            raise TrackerError(f"{path} is not a readable image; give a PNG or JPEG file.")
+        return image
+    return next(iter(VideoSource(path, threads=1))).image
+
+
+def _point(text: str) -> tuple[float, float]:
+    x, _, y = text.partition(",")
+    return float(x), float(y)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

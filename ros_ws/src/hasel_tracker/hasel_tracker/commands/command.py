@@ -1,0 +1,33 @@
+"""What every command does alike: errors as one sentence, progress with the time left."""
+
+import sys
+from collections.abc import Callable
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+from hasel_tracker.errors import TrackerError
+
+
+def run_command(work: Callable[[], None]) -> int:
+    """Run a command; returns its exit code: 0, 1 after an error (told on stderr), 130 after Ctrl-C."""
+    try:
+        work()
+    except TrackerError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("Stopped.", file=sys.stderr)
+        return 130
+    return 0
+
+
+def progress_bar() -> Progress:
+    """A progress bar on stderr."""
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(),
+        console=Console(stderr=True),
+    )

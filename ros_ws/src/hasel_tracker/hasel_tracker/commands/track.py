@@ -1,0 +1,136 @@
+"""`track VIDEO`: from a video or a folder of images to a recording of the bending angle."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from hasel_tracker.calibration.camera_calibration import CameraCalibration
+from hasel_tracker.calibration.settings_file import load_settings
+from hasel_tracker.commands.command import progress_bar, run_command
+from hasel_tracker.errors import TrackerError
+from hasel_tracker.offline.drive import Alignment, Drive, align_by_movement, align_by_stamp, read_drive
+from hasel_tracker.offline.movement import cut_to_periods
+from hasel_tracker.offline.run_output import write_run
+from hasel_tracker.offline.tracked_run import TrackedRun, track_frames
+from hasel_tracker.sources.folder_source import FolderSource
+from hasel_tracker.sources.frame import Frame
+from hasel_tracker.sources.open_source import open_recorded
+from hasel_tracker.sources.video_source import VideoSource
+from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
+from hasel_tracker.tracking.tracker_settings import METHODS, TrackerSettings
+from hasel_tracker.video.annotation import annotate
+from hasel_tracker.video.video_writer import H264Writer
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command's options."""
+    options = argparse.ArgumentParser(prog="track", description="Track the three markers of a video.")
+    options.add_argument("video", type=Path, help="video file, or folder of images")
+    options.add_argument("--output", "-o", type=Path, required=True, help="recording to write: .csv or .mcap")
+    options.add_argument(
+        "--annotate", type=Path, metavar="VIDEO", help="write a video of what was found (H.264)"
+    )
+    options.add_argument("--method", choices=METHODS, default="moment", help="default: %(default)s")
+    options.add_argument(
+        "--box", type=_box, nargs=3, metavar="X,Y,W,H", help="boxes for csrt: head, middle, tail"
+    )
+    options.add_argument("--settings", type=Path, help="colour, size and region, from `calibrate colour`")
+    options.add_argument("--calibration", type=Path, help="lens and perspective, from `calibrate board`")
+    options.add_argument(
+        "--mirrored", action="store_true", help="the camera looks from below or over a mirror"
+    )
+    options.add_argument("--frame-rate", type=float, metavar="HZ", help="of a folder of images")
+    options.add_argument("--drive", type=Path, help="the drive's recording (.mcap or .csv), to merge")
+    options.add_argument("--merge", choices=("auto", "stamp", "lag"), default="auto",
+                         help="how: by stamp, by the lag found, or stamp if both have it (default)")  # fmt: skip
+    options.add_argument(
+        "--cut", type=float, metavar="HZ", help="keep two periods of this frequency from the first movement"
+    )
+    options.add_argument(
+        "--periods", type=float, default=2.0, help="periods to keep with --cut (default: %(default)g)"
+    )
+    options.add_argument("--model", help="model named in the recording's header")
+    return options
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    options = parser().parse_args(arguments)
+    return run_command(lambda: _track(options))
+
+
+def _track(options: argparse.Namespace) -> None:
+    if options.output.suffix.lower() not in (".csv", ".mcap"):
+        raise TrackerError(
+            f"The output {options.output} is neither .csv nor .mcap; end its name in one of them."
+        )
+    drive = None if options.drive is None else read_drive(options.drive)
+    source = open_recorded(options.video, options.frame_rate)
+    tracker = BendingTracker(
+        load_settings(options.settings) if options.settings else TrackerSettings(),
+        options.method,
+        CameraCalibration.load(options.calibration) if options.calibration else None,
+        options.mirrored,
+        options.box,
+    )
+    run = _follow(source, tracker, options.annotate)
+    print(f"{options.video}: {run}")
+    print(f"Markers: {tracker.note}.")
+    if not run.valid.any():
+        raise TrackerError(
+            f"No frame of {options.video} shows three markers ({tracker.note}); "
+            "learn their colour with `calibrate colour`."
+        )
+    alignment = None if drive is None else _align(run, drive, options.merge)
+    if alignment is not None:
+        print(alignment)
+    if options.cut is not None:
+        run = cut_to_periods(run, options.cut, options.periods)
+        print(f"Cut to {len(run.time_s)} frames from {run.time_s[0]:.4f} s.")
+    left_out = write_run(options.output, run, drive, alignment, _metadata(options))
+    if left_out:
+        print(f"warning: {left_out}", file=sys.stderr)
+    print(f"Wrote {options.output}.")
+
+
+def _follow(
+    source: VideoSource | FolderSource, tracker: BendingTracker, annotated: Path | None
+) -> TrackedRun:
+    video = None if annotated is None else H264Writer(annotated, source.frame_rate_hz)
+    with progress_bar() as progress:
+        task = progress.add_task("tracking", total=source.frame_count or None)
+
+        def seen(frame: Frame, tracked: TrackedFrame) -> None:
+            if video is not None:
+                video.write(annotate(frame.image, tracked), frame.time_s)
+            progress.advance(task)
+
+        try:
+            return track_frames(source, tracker, seen, source.start_stamp_ns)
+        finally:
+            if video is not None:
+                video.close()
+
+
+def _align(run: TrackedRun, drive: Drive, merge: str) -> Alignment:
+    stamped = run.start_stamp_ns is not None and drive.start_stamp_ns is not None
+    if merge == "stamp" or (merge == "auto" and stamped):
+        return align_by_stamp(run, drive)
+    return align_by_movement(run, drive)
+
+
+def _metadata(options: argparse.Namespace) -> dict[str, str]:
+    metadata = {"source": options.video.name, "tracking_method": options.method}
+    return metadata | ({"model": options.model} if options.model else {})
+
+
+def _box(text: str) -> tuple[int, int, int, int]:
+    values = [int(part) for part in text.split(",")]
+    if len(values) != 4 or min(values[2:]) < 4:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a box X,Y,WIDTH,HEIGHT in pixels")
+    return tuple(values)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

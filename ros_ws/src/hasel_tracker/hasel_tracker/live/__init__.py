@@ -1,0 +1,1 @@
+"""Track a camera as it runs: capture, decoding, tracking and video recording in threads."""

@@ -1,0 +1,77 @@
+"""Results as ROS messages."""
+
+from typing import Any
+
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from hasel_interfaces.msg import BendingAngle
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from sensor_msgs.msg import CompressedImage
+
+from hasel_tracker.live.health_report import HealthReport
+from hasel_tracker.live.tracking_statistics import Health
+from hasel_tracker.node_parameters import NodeParameter
+from hasel_tracker.tracking.bending_tracker import TrackedFrame
+from hasel_tracker.tracking.marker_set import MARKER_NAMES
+
+
+def stamp(stamp_ns: int) -> Time:
+    """A time since the epoch [ns] as a message."""
+    return Time(sec=stamp_ns // 1_000_000_000, nanosec=stamp_ns % 1_000_000_000)
+
+
+def angle_message(tracked: TrackedFrame, stamp_ns: int, frame_id: str) -> BendingAngle:
+    """The bending angle of a frame captured at `stamp_ns`; NaN and not valid if a marker was lost."""
+    message = BendingAngle()
+    message.header.stamp, message.header.frame_id = stamp(stamp_ns), frame_id
+    message.sin_theta, message.theta, message.valid = tracked.sin_theta, tracked.theta, tracked.valid
+    message.marker_x = tracked.markers.positions[:, 0]
+    message.marker_y = tracked.markers.positions[:, 1]
+    message.marker_quality = tracked.markers.quality
+    return message
+
+
+def compressed_image(jpeg: bytes, stamp_ns: int, frame_id: str) -> CompressedImage:
+    """A JPEG picture as a message."""
+    message = CompressedImage(format="jpeg", data=jpeg)
+    message.header.stamp, message.header.frame_id = stamp(stamp_ns), frame_id
+    return message
+
+
+def diagnostic_status(
+    node_name: str, report: HealthReport, health: Health, details: dict[str, Any]
+) -> DiagnosticStatus:
+    """The tracker's health for /diagnostics."""
+    values = {
+        "frame rate [1/s]": f"{health.frame_rate_hz:.2f}",
+        "mean latency [ms]": f"{1e3 * health.mean_latency_s:.2f}",
+        "worst latency [ms]": f"{1e3 * health.worst_latency_s:.2f}",
+        "frames without angle": f"{health.lost_share:.3f}",
+        **{
+            f"quality of {name}": f"{value:.2f}"
+            for name, value in zip(MARKER_NAMES, health.quality, strict=True)
+        },
+        **details,
+    }
+    return DiagnosticStatus(
+        level=bytes([report.level]),
+        name=f"{node_name}: tracking",
+        message=report.message,
+        hardware_id="camera",
+        values=[KeyValue(key=key, value=str(value)) for key, value in values.items()],
+    )
+
+
+def parameter_descriptor(parameter: NodeParameter) -> ParameterDescriptor:
+    """Description, range and whether it may change, for `ros2 param describe`."""
+    descriptor = ParameterDescriptor(description=parameter.meaning, read_only=not parameter.changeable)
+    if parameter.choices:
+        descriptor.additional_constraints = "one of " + ", ".join(parameter.choices)
+    if parameter.low is not None:
+        if isinstance(parameter.default, float):
+            span = FloatingPointRange(from_value=float(parameter.low), to_value=float(parameter.high))
+            descriptor.floating_point_range = [span]
+        else:
+            span = IntegerRange(from_value=int(parameter.low), to_value=int(parameter.high), step=1)
+            descriptor.integer_range = [span]
+    return descriptor

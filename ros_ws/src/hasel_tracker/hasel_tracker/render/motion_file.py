@@ -1,0 +1,88 @@
+"""Motions from files: centre lines, markers, or a bending angle alone."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+from hasel_recording import Recording, RecordingError, read_recording
+
+from hasel_tracker.errors import TrackerError
+from hasel_tracker.render.body_shape import BodyShape
+from hasel_tracker.render.motion import BendingMotion, SampledMotion, line_through_markers
+from hasel_tracker.tracking.bending_angle import bending_angle
+
+LINE_COLUMN = re.compile(r"centre_(\d+)_([xy])_m")
+BEND_SAMPLES = np.linspace(-2.8, 2.8, 201)
+
+
+def read_motion(path: Path, shape: BodyShape) -> SampledMotion:
+    """Read a motion; raises TrackerError.
+
+    A .csv with the columns `time_s, centre_0_x_m, centre_0_y_m, centre_1_x_m, …` gives the centre line from nose to
+    fin tip at equal material distances. Any other recording (.csv, .mcap) gives the markers in metres, or else sin θ.
+    """
+    path = Path(path)
+    if (
+        path.suffix.lower() == ".csv"
+        and path.is_file()
+        and "centre_0_x_m" in path.read_text(errors="replace")
+    ):
+        return _centre_lines(path)
+    try:
+        recording = read_recording(path)
+    except RecordingError as error:
+        raise TrackerError(str(error)) from error
+    seen = recording.valid
+    if seen.sum() < 2:
+        raise TrackerError(f"{path} has {int(seen.sum())} frames with an angle; a motion needs at least two.")
+    if recording.markers is not None and recording.marker_unit == "m":
+        lines = np.array([line_through_markers(each, shape) for each in recording.markers[seen]])
+    else:
+        lines = _lines_of_angle(recording, shape)
+    return SampledMotion(recording.time_s[seen], lines - lines.mean(axis=(0, 1)))
+
+
+def bend_of(sin_theta: np.ndarray, shape: BodyShape) -> np.ndarray:
+    """Angle from head to tail [rad] at which a uniformly bent body has these sin θ, same shape."""
+    angles = []
+    for bend in BEND_SAMPLES:
+        motion = BendingMotion(shape=shape)
+        markers = motion.markers_when_bent(bend)
+        angles.append(bending_angle(markers * [1.0, -1.0])[1])
+    return np.interp(np.arcsin(np.clip(sin_theta, -1.0, 1.0)), angles, BEND_SAMPLES)
+
+
+def _lines_of_angle(recording: Recording, shape: BodyShape) -> np.ndarray:
+    motion = BendingMotion(shape=shape)
+    bends = bend_of(recording.sin_theta[recording.valid], shape)
+    return np.array([motion.line_when_bent(bend) for bend in bends])
+
+
+def _centre_lines(path: Path) -> SampledMotion:
+    lines = [
+        line for line in path.read_text(errors="replace").splitlines() if line and not line.startswith("#")
+    ]
+    names = [name.strip() for name in lines[0].split(",")]
+    points = {
+        (int(match[1]), match[2]): i for i, name in enumerate(names) if (match := LINE_COLUMN.fullmatch(name))
+    }
+    count = len(points) // 2
+    wanted = {(number, axis) for number in range(count) for axis in "xy"}
+    if "time_s" not in names or set(points) != wanted or count < 4:
+        raise TrackerError(
+            f"{path} does not hold whole centre lines; expected time_s and centre_0_x_m, centre_0_y_m, "
+            "centre_1_x_m … for at least four points."
+        )
+    try:
+        table = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]]).reshape(
+            -1, len(names)
+        )
+    except ValueError as error:
+        raise TrackerError(
+            f"{path} has a row that is not numbers ({error}); correct or remove it."
+        ) from error
+    times = table[:, names.index("time_s")]
+    if len(times) < 2 or (np.diff(times) <= 0.0).any() or not np.isfinite(table).all():
+        raise TrackerError(f"{path} needs at least two rows of finite numbers with increasing time_s.")
+    columns = [[points[number, "x"], points[number, "y"]] for number in range(count)]
+    return SampledMotion(times, table[:, columns])

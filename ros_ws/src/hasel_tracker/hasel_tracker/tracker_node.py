@@ -1,0 +1,213 @@
+"""The ROS node: camera in, bending angle out; images stay in this process."""
+
+import sys
+import time
+from datetime import datetime
+from pathlib import Path
+
+import cv2
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from hasel_interfaces.msg import BendingAngle
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile, qos_profile_sensor_data
+from sensor_msgs.msg import CompressedImage, Image
+from std_srvs.srv import SetBool, Trigger
+
+from hasel_tracker.calibration.camera_calibration import CameraCalibration
+from hasel_tracker.calibration.settings_file import settings_from
+from hasel_tracker.errors import TrackerError
+from hasel_tracker.live.health_report import judge
+from hasel_tracker.live.live_tracker import LiveTracker
+from hasel_tracker.live.persistent_camera import PersistentCamera
+from hasel_tracker.live.playback import Playback
+from hasel_tracker.live.video_recorder import VideoRecorder
+from hasel_tracker.node_messages import angle_message, compressed_image, diagnostic_status, parameter_descriptor
+from hasel_tracker.node_parameters import PARAMETERS, SEARCH_NAMES
+from hasel_tracker.sources.camera_source import CameraFormat, CameraSource
+from hasel_tracker.sources.frame import Frame
+from hasel_tracker.sources.image_message import image_of
+from hasel_tracker.sources.open_source import open_recorded
+from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
+from hasel_tracker.video.annotation import preview
+
+MEASURED_TOPIC = "/hasel/bending/measured"
+TOPIC_PREFIX = "topic:"
+PREVIEW_JPEG_QUALITY = 70
+
+
+class TrackerNode(Node):
+    """Publishes the bending angle of every frame, a preview, and diagnostics; records video on request."""
+
+    def __init__(self) -> None:
+        super().__init__("hasel_tracker")
+        for each in PARAMETERS:
+            self.declare_parameter(each.name, each.default, parameter_descriptor(each))
+        self._angles = self.create_publisher(BendingAngle, MEASURED_TOPIC, QoSProfile(depth=200))
+        self._previews = self.create_publisher(
+            CompressedImage, "~/preview/compressed", qos_profile_sensor_data
+        )
+        self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
+        self._next_preview_s = 0.0
+        self._reported_drops = 0
+        self._last_note = ""
+        self._first_stamp_ns: int | None = None
+        self._camera: PersistentCamera | None = None
+        self._live = self._open(self._value("source"))
+        self.add_on_set_parameters_callback(self._check_settings)
+        self.add_post_set_parameters_callback(self._apply_settings)
+        self.create_service(SetBool, "~/record_video", self._record_video)
+        self.create_service(Trigger, "~/restart", self._restart)
+        self.create_timer(1.0, self._report)
+        self._live.start()
+
+    def close(self) -> None:
+        """Stop the threads and finish a video being recorded."""
+        if self._camera is not None:
+            self._camera.close()
+        self._live.stop()
+
+    def _value(self, name: str) -> object:
+        return self.get_parameter(name).value
+
+    def _open(self, source: str) -> LiveTracker:
+        read = None
+        if source.startswith(TOPIC_PREFIX):
+            topic = source.removeprefix(TOPIC_PREFIX)
+            kind = CompressedImage if topic.endswith("compressed") else Image
+            self.create_subscription(kind, topic, self._take_image, qos_profile_sensor_data)
+        elif source.isdigit() or source.startswith("/dev/"):
+            self._camera = PersistentCamera(self._open_camera)
+            read = self._camera.read
+        else:
+            read = Playback(open_recorded(source, self._value("frame_rate"))).read
+        return LiveTracker(
+            self._new_tracker({}), self._publish, self._value("queue_size"), self._value("decode_threads"), read
+        )
+
+    def _open_camera(self) -> CameraSource:
+        source, exposure = self._value("source"), self._value("exposure")
+        asked = CameraFormat(*(self._value(name) for name in ("width", "height", "frame_rate", "pixel_format")))
+        camera = CameraSource(
+            int(source) if source.isdigit() else source, asked, None if exposure < 0.0 else exposure
+        )
+        self.get_logger().info(f"The camera gives {camera.given}.")
+        return camera
+
+    def _new_tracker(self, changed: dict[str, object]) -> BendingTracker:
+        values = {name: self._value(name) for name in SEARCH_NAMES} | changed
+        calibration = self._value("calibration")
+        return BendingTracker(
+            settings_from(values),
+            self._value("method"),
+            CameraCalibration.load(Path(calibration)) if calibration else None,
+            self._value("mirrored"),
+        )
+
+    def _take_image(self, message: Image | CompressedImage) -> None:
+        stamp_ns = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
+        stamp_ns = stamp_ns or time.time_ns()
+        self._first_stamp_ns = self._first_stamp_ns or stamp_ns
+        try:
+            image = image_of(message)
+        except TrackerError as error:
+            self._live.fault = str(error)
+            return
+        time_s = (stamp_ns - self._first_stamp_ns) * 1e-9
+        self._live.queue.put(Frame(0, time_s, image=image, stamp_ns=stamp_ns))
+
+    def _publish(self, frame: Frame, tracked: TrackedFrame) -> None:
+        frame_id = self._value("frame_id")
+        self._angles.publish(angle_message(tracked, frame.stamp_ns, frame_id))
+        if self._live.tracker.note != self._last_note:
+            self._last_note = self._live.tracker.note
+            self.get_logger().info(f"Markers: {self._last_note}.")
+        rate = self._value("preview_rate")
+        if rate > 0.0 and time.monotonic() >= self._next_preview_s:
+            self._next_preview_s = time.monotonic() + 1.0 / rate
+            picture = preview(frame.image, tracked, self._value("preview_width"))
+            _, jpeg = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, PREVIEW_JPEG_QUALITY])
+            self._previews.publish(compressed_image(jpeg.tobytes(), frame.stamp_ns, frame_id))
+
+    def _report(self) -> None:
+        health = self._live.statistics.take()
+        dropped = self._live.queue.dropped
+        camera = None if self._camera is None else self._camera.camera
+        fault = self._live.fault or ("" if self._camera is None else self._camera.fault)
+        self._live.fault = ""
+        if not self._live.running:
+            fault = "The source has ended; start the node again to play it again."
+        report = judge(
+            health,
+            None if camera is None else camera.asked.frame_rate_hz,
+            dropped - self._reported_drops,
+            "" if camera is None else camera.complaint,
+            fault,
+        )
+        self._reported_drops = dropped
+        message = DiagnosticArray()
+        message.header.stamp = self.get_clock().now().to_msg()
+        details = {"dropped frames": dropped, "broken frames": self._live.broken_frames}
+        if camera is not None:
+            details["camera"] = camera.given
+        if self._live.recording is not None:
+            details["recording"] = self._live.recording.path
+        message.status.append(diagnostic_status(self.get_name(), report, health, details))
+        self._diagnostics.publish(message)
+
+    def _record_video(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        try:
+            if request.data:
+                path = Path(self._value("video_folder")) / f"swimmer_{datetime.now():%Y%m%d_%H%M%S_%f}.mp4"
+                self._live.record(VideoRecorder(path, self._value("frame_rate")))
+                response.message = str(path)
+            else:
+                response.message = self._live.record_until_now()
+            response.success = True
+        except TrackerError as error:
+            response.success, response.message = False, str(error)
+        return response
+
+    def _restart(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._live.tracker = self._new_tracker({})
+        response.success, response.message = True, "The markers are searched anew."
+        return response
+
+    def _check_settings(self, parameters: list[Parameter]) -> SetParametersResult:
+        changed = {each.name: each.value for each in parameters if each.name in SEARCH_NAMES}
+        try:
+            self._new_tracker(changed)
+        except TrackerError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _apply_settings(self, parameters: list[Parameter]) -> None:
+        if any(each.name in SEARCH_NAMES for each in parameters):
+            self._live.tracker = self._new_tracker({})
+
+
+def main() -> int:
+    """Run the node until it is interrupted; returns the exit code."""
+    rclpy.init()
+    node = None
+    try:
+        node = TrackerNode()
+        rclpy.spin(node)
+    except TrackerError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        if node is not None:
+            node.close()
+            node.destroy_node()
+        rclpy.try_shutdown()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
