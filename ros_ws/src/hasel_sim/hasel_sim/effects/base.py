@@ -1,0 +1,214 @@
+"""What every physical effect states, and the four places where one can act.
+
+An effect is one class in one file. It holds no state: its parameter values come as the argument `p`, with one attribute
+per parameter. At the parameters' null values the model is exactly the one without the effect. No effect writes a
+derivative; the simulator differentiates what the methods below return by central differences at single points.
+"""
+
+from dataclasses import dataclass
+from enum import IntEnum
+from types import SimpleNamespace
+from typing import ClassVar
+
+import numpy as np
+
+from hasel_sim.mesh.mesh import Region
+
+
+@dataclass(frozen=True)
+class EffectParameter:
+    """One number of an effect.
+
+    null: value without effect; lower, upper: plausible range; typical: a size at which one would notice it;
+    scan: values to try for a parameter that has no null of its own (a relaxation time while its modulus is zero), empty
+    for one that has; difference: step of the central differences (0: a millionth of `typical`).
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    null: float
+    lower: float
+    upper: float
+    typical: float
+    source: str = ""
+    scan: tuple[float, ...] = ()
+    difference: float = 0.0
+
+    @property
+    def step(self) -> float:
+        """Step of the central differences by this parameter."""
+        return self.difference or 1e-6 * max(abs(self.typical), abs(self.null))
+
+
+class Effect:
+    """Base of all effects; subclass one of the four places below, not this."""
+
+    id: ClassVar[str]
+    place: ClassVar[str]
+    physics: ClassVar[str]
+    equation: ClassVar[str]
+    parameters: ClassVar[tuple[EffectParameter, ...]]
+    signature: ClassVar[str] = ""
+    confused_with: ClassVar[tuple[str, ...]] = ()
+    separated_by: ClassVar[str] = ""
+    citation: ClassVar[str] = ""
+    needs_muscles: ClassVar[bool] = False
+    exclusive: ClassVar[str] = ""
+    """Effects with the same non-empty word here do the same thing and are refused side by side."""
+    source: ClassVar[str | None] = None
+    """`path/to/file.py:ClassName` for a user's own effect."""
+
+    def null(self) -> dict[str, float]:
+        """Parameter values at which the effect does nothing."""
+        return {parameter.name: parameter.null for parameter in self.parameters}
+
+    def typical(self) -> dict[str, float]:
+        """Parameter values at which one would notice the effect."""
+        return {parameter.name: parameter.typical for parameter in self.parameters}
+
+
+class DriveStage(IntEnum):
+    """Where along the drive a signal is changed; the chain runs in this order whatever the model file's."""
+
+    COMMAND = 0
+    SUPPLY = 1
+    ELECTRODE = 2
+    ZIPPING = 3
+    TARGET = 4
+    CONTRACTION = 5
+
+
+class DriveEffect(Effect):
+    """Between the commanded voltage and the contraction.
+
+    Up to `ZIPPING` the signal is the signed voltage [V] of the upper and lower muscle; at `TARGET` it is the
+    contraction aimed at [1], at `CONTRACTION` the contraction itself. Equal times mark a jump (value before, value after).
+    """
+
+    place = "drive"
+    needs_muscles = True
+    stage: ClassVar[DriveStage] = DriveStage.SUPPLY
+
+    def clock(self, time: np.ndarray, p: SimpleNamespace) -> np.ndarray:
+        """When the signal's values take effect [s], shape [n]; unchanged by default."""
+        return time
+
+    def respond(self, time: np.ndarray, signal: np.ndarray, p: SimpleNamespace) -> np.ndarray:
+        """The signal [n, 2] after this effect, from the signal [n, 2] at times [s] [n] before it."""
+        return signal
+
+
+@dataclass(frozen=True)
+class SiteState:
+    """Motion and drive at n places; arrays are [n, 2] unless said.
+
+    position [m], velocity [m/s], acceleration [m/s^2], tangent: derivative of the position along the skin [1];
+    reference: position at rest [m]; measure [n]: lumped mass [kg per m depth], skin length [m] or 1;
+    voltage [V] and contraction [1]: of the upper and lower muscle, shape [2]; time [s].
+    """
+
+    position: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+    tangent: np.ndarray
+    reference: np.ndarray
+    measure: np.ndarray
+    voltage: np.ndarray
+    contraction: np.ndarray
+    time: float
+
+    @property
+    def normal(self) -> np.ndarray:
+        """Outward unit normal of the skin, [n, 2]."""
+        length = np.hypot(self.tangent[:, 0], self.tangent[:, 1])
+        return np.stack([self.tangent[:, 1], -self.tangent[:, 0]], axis=1) / length[:, None]
+
+
+class ForceEffect(Effect):
+    """A force on the body, per unit of what a site stands for and per unit depth.
+
+    sites: "nodes" (per lumped mass [N/kg]), "skin" (per skin length [N/m^2]) or "points" (force itself [N/m]).
+    depends_on: which of position, velocity, acceleration, tangent the force depends on.
+    """
+
+    place = "force"
+    sites: ClassVar[str] = "nodes"
+    depends_on: ClassVar[tuple[str, ...]] = ("position", "velocity")
+
+    def points(self, markers: np.ndarray, p: SimpleNamespace) -> np.ndarray:
+        """Reference positions [m] [n, 2] of the points acted on, given the three markers' [3, 2]."""
+        return markers
+
+    def force(self, at: SiteState, p: SimpleNamespace) -> np.ndarray:
+        """Force at each site, [n, 2]."""
+        raise NotImplementedError
+
+
+@dataclass
+class Coefficients:
+    """Material constants per element, shape [elements]; an effect changes them in place.
+
+    shear, lame: elastic constants [Pa]; retardation: Kelvin-Voigt time [s]; fibre: fibre stiffness [Pa];
+    region: `Region` of each element; rest_stretch: stretch along the body of the stress-free shape [elements, points];
+    height: reference y of the Gauss points [m] [elements, points].
+    """
+
+    shear: np.ndarray
+    lame: np.ndarray
+    retardation: np.ndarray
+    fibre: np.ndarray
+    region: np.ndarray
+    rest_stretch: np.ndarray
+    height: np.ndarray
+
+
+class MaterialEffect(Effect):
+    """A change of the material: its constants, internal branches, rest shape or an additional stress."""
+
+    place = "material"
+    regions: ClassVar[tuple[Region, ...]] = ()
+    """Where `first_piola` adds stress; empty for an effect without additional stress."""
+
+    def modify(self, coefficients: Coefficients, p: SimpleNamespace) -> None:
+        """Change the constants in place."""
+
+    def branches(self, p: SimpleNamespace) -> list[tuple[float, float]]:
+        """Maxwell branches as (modulus ratio [1], relaxation time [s])."""
+        return []
+
+    def first_piola(
+        self,
+        deformation: np.ndarray,
+        rate: np.ndarray,
+        contraction: np.ndarray,
+        time: float,
+        p: SimpleNamespace,
+    ) -> np.ndarray:
+        """Additional first Piola stress [Pa] [n, 2, 2].
+
+        deformation: gradient F [n, 2, 2], rate: dF/dt [1/s] [n, 2, 2], contraction: of the muscle here [n] (0 in none).
+        """
+        raise NotImplementedError
+
+
+class ObservationEffect(Effect):
+    """Between where the markers are and the angle that is measured."""
+
+    place = "observation"
+
+    def look_ahead(self, p: SimpleNamespace) -> float:
+        """How far beyond the last frame [s] the body must be simulated."""
+        return 0.0
+
+    def markers(self, positions: np.ndarray, across: np.ndarray, p: SimpleNamespace) -> np.ndarray:
+        """Where the camera sees the markers [m] [n, 3, 2].
+
+        positions: where they are on the centre line; across: the material line through them that was upright at rest,
+        per metre, both [n, 3, 2].
+        """
+        return positions
+
+    def angle(self, time: np.ndarray, sin_theta: np.ndarray, p: SimpleNamespace) -> np.ndarray:
+        """The measured series [n] from the series at times [s] [n]."""
+        return sin_theta

@@ -1,0 +1,105 @@
+"""A force effect with its values, bound to a mesh: forces, their derivatives, and their places in the matrix."""
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from hasel_sim.effects.base import ForceEffect, SiteState
+from hasel_sim.mechanics.compiled import scatter_sites
+from hasel_sim.mesh.sites import Sites
+
+_DIFFERENCE = {"position": 1e-7, "velocity": 1e-7, "acceleration": 1e-4, "tangent": 1e-6}
+
+
+class ForceLaw:
+    """One force effect at its sites.
+
+    `linearise` differentiates the effect at every site by central differences in the two components of each quantity it
+    depends on, all in one call, so that an effect never writes a derivative.
+    """
+
+    def __init__(
+        self, effect: ForceEffect, values: SimpleNamespace, sites: Sites, reference: np.ndarray
+    ) -> None:
+        self.effect, self.values, self.sites = effect, values, sites
+        self._reference = sites.value(reference)
+        self._slopes: dict[str, np.ndarray] = {}
+
+    def _state(self, position, velocity, acceleration, drive) -> SiteState:
+        depends = self.effect.depends_on
+        nothing = np.zeros_like(self._reference)
+        return SiteState(
+            position=self.sites.value(position),
+            velocity=self.sites.value(velocity) if "velocity" in depends else nothing,
+            acceleration=self.sites.value(acceleration) if "acceleration" in depends else nothing,
+            tangent=self.sites.tangent(position) if self.effect.sites == "skin" else nothing,
+            reference=self._reference,
+            measure=self.sites.measure,
+            voltage=drive.voltage,
+            contraction=drive.contraction,
+            time=drive.time,
+        )
+
+    def add_force(
+        self, position, velocity, acceleration, drive, out: np.ndarray, factor: float = 1.0
+    ) -> None:
+        """Add factor times the nodal forces to out [nodes, 2]."""
+        state = self._state(position, velocity, acceleration, drive)
+        self.sites.scatter(factor * self.effect.force(state, self.values), out)
+
+    def linearise(self, position, velocity, acceleration, drive) -> None:
+        """Keep the derivatives at this state: one [n, 2, 2] array per quantity the effect depends on."""
+        state = self._state(position, velocity, acceleration, drive)
+        names = self.effect.depends_on
+        n, copies = len(self._reference), 4 * len(names)
+        fields = {
+            name: np.tile(getattr(state, name), (copies, 1))
+            for name in ("position", "velocity", "acceleration", "tangent", "reference")
+        }
+        for index, name in enumerate(names):
+            for component in range(2):
+                start = (4 * index + 2 * component) * n
+                fields[name][start : start + n, component] += _DIFFERENCE[name]
+                fields[name][start + n : start + 2 * n, component] -= _DIFFERENCE[name]
+        batch = SiteState(
+            **fields,
+            measure=np.tile(state.measure, copies),
+            voltage=state.voltage,
+            contraction=state.contraction,
+            time=state.time,
+        )
+        force = self.effect.force(batch, self.values).reshape(len(names), 2, 2, n, 2)
+        for index, name in enumerate(names):
+            change = (force[index, :, 0] - force[index, :, 1]) / (2 * _DIFFERENCE[name])
+            self._slopes[name] = np.ascontiguousarray(change.transpose(1, 2, 0))
+
+    def _slope(self, name: str) -> np.ndarray:
+        return self._slopes.get(name, np.zeros((len(self._reference), 2, 2)))
+
+    def add_matrix(
+        self, position: float, velocity: float, acceleration: float, band: np.ndarray, diagonal: int
+    ) -> None:
+        """Subtract the weighted derivatives from a band matrix (the force stands on the right-hand side)."""
+        direct = -(
+            position * self._slope("position")
+            + velocity * self._slope("velocity")
+            + acceleration * self._slope("acceleration")
+        )
+        along = -position * self._slope("tangent")
+        s = self.sites
+        scatter_sites(direct, along, s.nodes, s.shape, s.slope, s.measure, band, diagonal)
+
+    def add_directions(
+        self, shift: np.ndarray, rate: np.ndarray, acceleration: np.ndarray, out: np.ndarray
+    ) -> None:
+        """Subtract the change of the nodal forces along many directions [columns, nodes, 2] from out."""
+        moved = {
+            "position": lambda: self.sites.value(shift),
+            "velocity": lambda: self.sites.value(rate),
+            "acceleration": lambda: self.sites.value(acceleration),
+            "tangent": lambda: self.sites.tangent(shift),
+        }
+        total = sum(
+            np.einsum("nij,cnj->cni", self._slopes[name], moved[name]()) for name in self.effect.depends_on
+        )
+        self.sites.scatter(-total, out)

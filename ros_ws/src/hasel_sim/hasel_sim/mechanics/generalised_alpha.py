@@ -1,0 +1,54 @@
+"""Coefficients of the generalised-alpha method, second order with chosen damping of what the step cannot resolve.
+
+Forces and inertia are balanced once per step at interpolated positions, velocities and accelerations ("generalised
+mid-point"); rho = 1 is the implicit mid-point rule, which keeps momentum and angular momentum.
+J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class StepCoefficients:
+    """What one step of length `step` [s] does with the end-of-step acceleration a1.
+
+    x = x0 + position_gain_v v0 + position_gain_a a0 + position_gain a1 where forces are balanced, and likewise for the
+    velocity and the acceleration; the `end_` values lead to the end of the step.
+    """
+
+    step: float
+    at: float
+    position_v: float
+    position_a: float
+    position: float
+    velocity_a: float
+    velocity: float
+    acceleration_a: float
+    acceleration: float
+    end_position_a: float
+    end_position: float
+    end_velocity_a: float
+    end_velocity: float
+
+
+def step_coefficients(step: float, rho: float) -> StepCoefficients:
+    """Coefficients for a step [s] and a spectral radius rho (0 < rho <= 1) at infinite frequency."""
+    alpha_m, alpha_f = (2 * rho - 1) / (rho + 1), rho / (rho + 1)
+    gamma = 0.5 - alpha_m + alpha_f
+    beta = 0.25 * (1 - alpha_m + alpha_f) ** 2
+    part = 1 - alpha_f
+    return StepCoefficients(
+        step=step,
+        at=part * step,
+        position_v=part * step,
+        position_a=part * step**2 * (0.5 - beta),
+        position=part * step**2 * beta,
+        velocity_a=part * step * (1 - gamma),
+        velocity=part * step * gamma,
+        acceleration_a=alpha_m,
+        acceleration=1 - alpha_m,
+        end_position_a=step**2 * (0.5 - beta),
+        end_position=step**2 * beta,
+        end_velocity_a=step * (1 - gamma),
+        end_velocity=step * gamma,
+    )

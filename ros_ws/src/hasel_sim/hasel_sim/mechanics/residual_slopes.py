@@ -1,0 +1,87 @@
+"""Derivative of the residual by one parameter at a fixed motion, by central differences of only what it changes."""
+
+from typing import Protocol
+
+import numpy as np
+
+from hasel_sim.mechanics.force_law import ForceLaw
+from hasel_sim.mechanics.solid import Solid
+from hasel_sim.mechanics.state import State
+from hasel_sim.mechanics.stress_law import StressLaw
+from hasel_sim.mechanics.system import DriveState, Linearisation, Memory, Motion, System
+
+
+class ResidualSlope(Protocol):
+    """What the stepper asks of a parameter."""
+
+    def add(
+        self, motion: Motion, drive: DriveState, line: Linearisation, state: State, at: float, out: np.ndarray
+    ) -> None:
+        """Add the derivative of the residual to out [nodes, 2]; state is that of the step's start, at [s] into it."""
+
+
+class NoSlope:
+    """A parameter that the mechanics does not see (it acts through the contraction or the observation)."""
+
+    def add(self, motion, drive, line, state, at, out) -> None:
+        """Add nothing."""
+
+
+class ForceSlope:
+    """A parameter of one force effect."""
+
+    def __init__(self, more: ForceLaw, less: ForceLaw, width: float) -> None:
+        self._more, self._less, self._width = more, less, width
+
+    def add(self, motion, drive, line, state, at, out) -> None:
+        """Subtract the derivative of the force, which stands on the right-hand side."""
+        arguments = motion.position, motion.velocity, motion.acceleration, drive, out
+        self._more.add_force(*arguments, -1 / self._width)
+        self._less.add_force(*arguments, 1 / self._width)
+
+
+class StressSlope:
+    """A parameter of one additional stress."""
+
+    def __init__(self, more: StressLaw, less: StressLaw, width: float) -> None:
+        self._more, self._less, self._width = more, less, width
+
+    def add(self, motion, drive, line, state, at, out) -> None:
+        """Add the nodal forces of the stress's derivative."""
+        P = np.zeros_like(line.F)
+        change = self._more.stress(line.F, line.rate, drive) - self._less.stress(line.F, line.rate, drive)
+        P[self._more.elements] = change / self._width
+        line.system.solid.add_force(P, out)
+
+
+class SolidSlope:
+    """A parameter of the solid's constants, rest shape or branches."""
+
+    def __init__(self, more: Solid, less: Solid, width: float) -> None:
+        self.more, self.less, self.width = more, less, width
+        self._same_shape = np.array_equal(more.gradients, less.gradients)
+
+    def add(self, motion, drive, line, state, at, out) -> None:
+        """Add the derivative of the internal force."""
+        for solid, sign in ((self.more, 1.0), (self.less, -1.0)):
+            F = line.F if self._same_shape else solid.gradient(motion.position)
+            rate = line.rate if self._same_shape else solid.gradient(motion.velocity)
+            history = (
+                None if len(solid.branches) == 0 else solid.branches.history(state.branch, state.green, at)
+            )
+            P = solid.stress(F, rate, drive.contraction, history, at)
+            solid.add_force((sign / self.width) * P, out)
+
+
+class SystemSlope:
+    """A parameter that changes everything, such as the outline."""
+
+    def __init__(self, more: System, less: System, width: float) -> None:
+        self._more, self._less, self._width = more, less, width
+
+    def add(self, motion, drive, line, state, at, out) -> None:
+        """Add the derivative of the whole residual."""
+        memory = Memory()
+        out += (
+            self._more.residual(motion, drive, memory) - self._less.residual(motion, drive, memory)
+        ) / self._width

@@ -1,0 +1,51 @@
+"""Static equilibrium by Newton's method with load steps; a free body is anchored by its own inertia."""
+
+import numpy as np
+
+from hasel_sim.errors import SimulationError
+from hasel_sim.mechanics.system import DriveState, Linearisation, Memory, Motion, System
+
+_ANCHOR = 1e-3
+"""Weight of the mass matrix [1/s^2] that anchors a free body; internal forces cannot push against it."""
+
+
+def equilibrium(
+    system: System, drive: DriveState, load_factor: float, tolerance: float
+) -> tuple[np.ndarray, Linearisation]:
+    """Nodal positions [m] [nodes, 2] at rest under load_factor times all loads, and the derivatives there.
+
+    tolerance: largest last correction [m]. Raises SimulationError when no equilibrium is found.
+    """
+    position = system.nodes.copy()
+    still = np.zeros_like(position)
+    anchor = _ANCHOR if system.held == 0 else 0.0
+    reached, step = 0.0, 1.0
+    while reached < 1.0:
+        target, trial = min(1.0, reached + step), position.copy()
+        for _ in range(15):
+            motion = Motion(trial, still, still)
+            residual = system.residual(motion, drive, Memory(), load_factor * target)
+            line = system.linearise(motion, drive, Memory())
+            correction = -line.matrix(1.0, 0.0, anchor).factorise().solve(residual[None])[0]
+            if not np.isfinite(correction).all() or np.abs(correction).max() > 0.5 * np.ptp(
+                system.nodes[:, 0]
+            ):
+                break
+            trial += correction
+            if np.abs(correction).max() < tolerance:
+                position, reached = trial, target
+                break
+        if reached < target:
+            step *= 0.5
+            if step < 1e-3:
+                raise SimulationError(
+                    f"no static equilibrium was found beyond {reached:.0%} of the loads; expected a body stiff enough "
+                    "to carry them: check stiffness, gravity and initial_load_factor"
+                )
+    return position, system.linearise(Motion(position, still, still), drive, Memory())
+
+
+def equilibrium_slope(line: Linearisation, residual_slope: np.ndarray) -> np.ndarray:
+    """Change of the equilibrium along parameters whose residual slopes are given, [columns, nodes, 2]."""
+    anchor = _ANCHOR if line.system.held == 0 else 0.0
+    return -line.matrix(1.0, 0.0, anchor).factorise().solve(residual_slope)

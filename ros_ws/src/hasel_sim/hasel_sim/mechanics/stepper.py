@@ -1,0 +1,180 @@
+"""One time step of the body, and of the derivatives of its state by parameters."""
+
+import numpy as np
+
+from hasel_sim.errors import SimulationError
+from hasel_sim.mechanics.banded import BandFactors
+from hasel_sim.mechanics.branches import green_stress_direction
+from hasel_sim.mechanics.generalised_alpha import StepCoefficients
+from hasel_sim.mechanics.residual_slopes import ResidualSlope, SolidSlope
+from hasel_sim.mechanics.state import State, StateSlopes
+from hasel_sim.mechanics.system import DriveState, Linearisation, Memory, Motion, System
+
+_MOST_ITERATIONS = 25
+_SLOW = 0.1
+"""A correction shrinking by less than this makes a kept factorisation not worth keeping."""
+
+
+def balance_motion(state: State, c: StepCoefficients, acceleration: np.ndarray) -> Motion:
+    """Motion at the instant of balance for an end-of-step acceleration."""
+    return Motion(
+        state.position
+        + c.position_v * state.velocity
+        + c.position_a * state.acceleration
+        + c.position * acceleration,
+        state.velocity + c.velocity_a * state.acceleration + c.velocity * acceleration,
+        c.acceleration_a * state.acceleration + c.acceleration * acceleration,
+    )
+
+
+class Stepper:
+    """Advances a `System` by generalised-alpha steps; one factorisation a step is enough but for violent motion.
+
+    tolerance: largest error of a nodal position [m] left by Newton's method. A correction made with a fresh matrix
+    leaves about its square over the length of an element.
+    """
+
+    def __init__(self, system: System, tolerance: float) -> None:
+        self.system, self.tolerance = system, tolerance
+        self._factors: BandFactors | None = None
+        corners = system.nodes[system.mesh.elements]
+        self._length = float(np.ptp(corners, axis=1).max(axis=1).min())
+        self._change: np.ndarray | None = None
+        self._stress: np.ndarray | None = None
+        self.iterations = self.factorisations = 0
+
+    def memory(self, state: State, at: float) -> Memory:
+        """What the branches carry from a step's start to `at` [s] into it."""
+        branches = self.system.solid.branches
+        return Memory() if len(branches) == 0 else Memory(branches.history(state.branch, state.green, at), at)
+
+    def factorise(self, line: Linearisation, c: StepCoefficients) -> BandFactors:
+        """Factors of the derivative of the residual by the end-of-step acceleration."""
+        self._factors = line.matrix(c.position, c.velocity, c.acceleration).factorise()
+        self.factorisations += 1
+        return self._factors
+
+    def step(self, state: State, drive: DriveState, c: StepCoefficients) -> tuple[State, Motion]:
+        """The state after a step and the motion at which forces balance. Raises SimulationError when Newton fails."""
+        memory = self.memory(state, c.at)
+        acceleration = state.acceleration.copy()
+        if self._change is not None:
+            acceleration += self._change
+        stale, last = True, np.inf
+        for iteration in range(_MOST_ITERATIONS):
+            motion = balance_motion(state, c, acceleration)
+            fresh = stale
+            if stale:
+                line = self.system.linearise(motion, drive, memory)
+                if iteration == 0 and self._stress is not None:
+                    line.with_initial_stress(self.system.second_piola(motion, drive, memory), self._stress)
+                self.factorise(line, c)
+            residual = self.system.residual(motion, drive, memory)
+            correction = self._factors.solve(residual[None])[0]
+            acceleration -= correction
+            size = c.end_position * float(np.abs(correction).max())
+            self.iterations += 1
+            if size < self.tolerance or (fresh and size**2 < self.tolerance * self._length):
+                break
+            if not np.isfinite(size) or (iteration and size > 1e3 * last):
+                self._fail(drive)
+            stale = size > _SLOW * last
+            last = size
+        else:
+            self._fail(drive)
+        self._change = acceleration - state.acceleration
+        motion = balance_motion(state, c, acceleration)
+        self._stress = self.system.second_piola(motion, drive, memory)
+        return self._end(state, c, acceleration), motion
+
+    def _fail(self, drive: DriveState) -> None:
+        raise SimulationError(
+            f"the motion could not be followed beyond t = {drive.time:.4f} s; expected parameters at which the body "
+            "stays whole: move extreme values back into their plausible range or raise numerics.steps_per_second"
+        )
+
+    def _end(self, state: State, c: StepCoefficients, acceleration: np.ndarray) -> State:
+        after = State(
+            state.position
+            + c.step * state.velocity
+            + c.end_position_a * state.acceleration
+            + c.end_position * acceleration,
+            state.velocity + c.end_velocity_a * state.acceleration + c.end_velocity * acceleration,
+            acceleration,
+        )
+        solid = self.system.solid
+        if len(solid.branches):
+            after.green = solid.green_stress(solid.gradient(after.position))
+            after.branch = solid.branches.advance(state.branch, state.green, after.green, c.step)
+        return after
+
+    def step_slopes(
+        self,
+        state: State,
+        after: State,
+        motion: Motion,
+        drive: DriveState,
+        c: StepCoefficients,
+        slopes: StateSlopes,
+        parameters: list[ResidualSlope],
+        contraction_slopes: np.ndarray,
+    ) -> StateSlopes:
+        """Derivatives of `after`, exact to the tolerance of the step: one factorisation serves every column.
+
+        slopes: derivatives of `state`; contraction_slopes: of the contraction at the balance, [columns, 2].
+        """
+        line = self.system.linearise(motion, drive, self.memory(state, c.at))
+        shift = slopes.position + c.position_v * slopes.velocity + c.position_a * slopes.acceleration
+        rate = slopes.velocity + c.velocity_a * slopes.acceleration
+        stress = None if slopes.branch is None else self._history_stress(line, slopes, c.at)
+        right = line.along(shift, rate, c.acceleration_a * slopes.acceleration, stress)
+        right += np.einsum("cm,mnd->cnd", contraction_slopes, line.by_contraction(drive))
+        for column, parameter in enumerate(parameters):
+            parameter.add(motion, drive, line, state, c.at, right[column])
+        self.system.held_to_zero(right)
+        acceleration = -self.factorise(line, c).solve(right)
+        out = StateSlopes(
+            slopes.position
+            + c.step * slopes.velocity
+            + c.end_position_a * slopes.acceleration
+            + c.end_position * acceleration,
+            slopes.velocity + c.end_velocity_a * slopes.acceleration + c.end_velocity * acceleration,
+            acceleration,
+        )
+        if slopes.branch is not None:
+            self._advance_branch_slopes(state, after, c, slopes, parameters, out)
+        return out
+
+    def _history_stress(self, line: Linearisation, slopes: StateSlopes, at: float) -> np.ndarray:
+        left, gain = self.system.solid.branches.factors(at)
+        S = np.einsum("b,cbegs->cegs", left, slopes.branch) - gain.sum() * slopes.green
+        F = line.F
+        xx, yy, xy = S[..., 0], S[..., 1], S[..., 2]
+        a, b, c, d = F[..., 0], F[..., 1], F[..., 2], F[..., 3]
+        return np.stack([a * xx + b * xy, a * xy + b * yy, c * xx + d * xy, c * xy + d * yy], axis=-1)
+
+    def _advance_branch_slopes(self, state, after, c, slopes, parameters, out: StateSlopes) -> None:
+        solid = self.system.solid
+        out.green = np.empty_like(slopes.green)
+        F = solid.gradient(after.position)
+        for column in range(len(parameters)):
+            green_stress_direction(
+                F, solid.gradient(out.position[column]), solid.shear, solid.linear_lame, out.green[column]
+            )
+        left, gain = solid.branches.factors(c.step)
+        change = out.green - slopes.green
+        out.branch = (
+            np.einsum("b,cbegs->cbegs", left, slopes.branch) + gain[:, None, None, None] * change[:, None]
+        )
+        for column, parameter in enumerate(parameters):
+            if isinstance(parameter, SolidSlope):
+                self._add_branch_parameter(parameter, state, after, c.step, out, column)
+
+    def _add_branch_parameter(
+        self, parameter: SolidSlope, state, after, step, out: StateSlopes, column: int
+    ) -> None:
+        for solid, sign in ((parameter.more, 1.0), (parameter.less, -1.0)):
+            green = solid.green_stress(solid.gradient(after.position))
+            out.green[column] += sign / parameter.width * green
+            advanced = solid.branches.advance(state.branch, state.green, green, step)
+            out.branch[column] += sign / parameter.width * advanced

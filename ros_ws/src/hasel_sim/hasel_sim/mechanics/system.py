@@ -1,0 +1,162 @@
+"""The mechanical system: solid, inertia, loads and force effects, as one residual with its derivatives."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from hasel_sim.mechanics import compiled
+from hasel_sim.mechanics.banded import BandMatrix
+from hasel_sim.mechanics.force_law import ForceLaw
+from hasel_sim.mechanics.inertia import Mass
+from hasel_sim.mechanics.solid import Solid
+from hasel_sim.mechanics.stress_law import StressLaw
+from hasel_sim.mesh.mesh import Mesh
+
+
+@dataclass(frozen=True)
+class DriveState:
+    """Voltage [V] and contraction [1] of the upper and lower muscle, shape [2], at a time [s]."""
+
+    voltage: np.ndarray
+    contraction: np.ndarray
+    time: float
+
+    def with_contraction(self, contraction: np.ndarray) -> "DriveState":
+        """The same instant with another contraction."""
+        return replace(self, contraction=contraction)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Nodal positions [m], velocities [m/s] and accelerations [m/s^2], each [nodes, 2]."""
+
+    position: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+
+
+@dataclass(frozen=True)
+class Memory:
+    """What the internal branches carry over a step: their history [elements, points, 3] and the time since [s]."""
+
+    history: np.ndarray | None = None
+    step: float = 0.0
+
+
+class System:
+    """Residual M a + internal - external and its derivatives; held nodes come first and never move."""
+
+    def __init__(
+        self,
+        mesh: Mesh,
+        nodes: np.ndarray,
+        solid: Solid,
+        mass: Mass,
+        gravity: np.ndarray,
+        forces: list[ForceLaw],
+        stresses: list[StressLaw],
+    ) -> None:
+        self.mesh, self.nodes, self.solid = mesh, nodes, solid
+        self.mass = mass
+        self.forces, self.stresses = forces, stresses
+        self.weight = mass.product(np.broadcast_to(gravity, (1, *nodes.shape)).copy())[0]
+        self.held = len(mesh.clamped)
+
+    def residual(
+        self, motion: Motion, drive: DriveState, memory: Memory, load_factor: float = 1.0
+    ) -> np.ndarray:
+        """Out-of-balance nodal force [N per m depth], [nodes, 2]; zero at held nodes."""
+        out = self.mass.product(motion.acceleration[None])[0]
+        out -= load_factor * self.weight
+        self.solid.add_force(self._first_piola(motion, drive, memory)[1], out)
+        for law in self.forces:
+            law.add_force(motion.position, motion.velocity, motion.acceleration, drive, out, -load_factor)
+        out[: self.held] = 0.0
+        return out
+
+    def _first_piola(
+        self, motion: Motion, drive: DriveState, memory: Memory
+    ) -> tuple[np.ndarray, np.ndarray]:
+        F, rate = self.solid.gradient(motion.position), self.solid.gradient(motion.velocity)
+        P = self.solid.stress(F, rate, drive.contraction, memory.history, memory.step)
+        for law in self.stresses:
+            P[law.elements] += law.stress(F, rate, drive)
+        return F, P
+
+    def second_piola(self, motion: Motion, drive: DriveState, memory: Memory) -> np.ndarray:
+        """Second Piola stress [Pa] (xx, yy, xy) at the Gauss points, [elements, points, 3]."""
+        F, P = self._first_piola(motion, drive, memory)
+        out = np.empty((*P.shape[:2], 3))
+        compiled.second_piola(F, P, out)
+        return out
+
+    def linearise(self, motion: Motion, drive: DriveState, memory: Memory) -> "Linearisation":
+        """All derivatives of the residual by the motion, at this motion."""
+        F, rate = self.solid.gradient(motion.position), self.solid.gradient(motion.velocity)
+        elastic, viscous = self.solid.moduli(F, rate, drive.contraction, memory.history, memory.step)
+        for law in self.stresses:
+            law.add_moduli(F, rate, drive, elastic, viscous)
+        for law in self.forces:
+            law.linearise(motion.position, motion.velocity, motion.acceleration, drive)
+        return Linearisation(self, elastic, viscous, F, rate)
+
+    def held_to_zero(self, columns: np.ndarray) -> np.ndarray:
+        """Set the held nodes of [columns, nodes, 2] to zero in place, and return it."""
+        columns[:, : self.held] = 0.0
+        return columns
+
+
+class Linearisation:
+    """Derivatives of a `System`'s residual at one motion: as a band matrix, and along given directions."""
+
+    def __init__(
+        self, system: System, elastic: np.ndarray, viscous: np.ndarray, F: np.ndarray, rate: np.ndarray
+    ) -> None:
+        self.system, self.elastic, self.viscous, self.F, self.rate = system, elastic, viscous, F, rate
+
+    def matrix(self, position: float, velocity: float, acceleration: float) -> BandMatrix:
+        """position K + velocity C + acceleration M."""
+        s = self.system.solid
+        band = BandMatrix(2 * len(self.system.nodes), self.system.mesh.half_bandwidth, 2 * self.system.held)
+        band.set_to(self.system.mass.matrix, acceleration)
+        moduli = position * self.elastic + velocity * self.viscous
+        compiled.scatter_moduli(moduli, s.elements, s.gradients, s.areas, band.entries, band.diagonal)
+        for law in self.system.forces:
+            law.add_matrix(position, velocity, acceleration, band.entries, band.diagonal)
+        return band
+
+    def with_initial_stress(self, found: np.ndarray, expected: np.ndarray) -> "Linearisation":
+        """The same with the geometric stiffness of another second Piola stress, both [elements, points, 3].
+
+        A guessed motion stretches thin parts a little, and the compression this brings would make the matrix
+        indefinite; the stress of the last balance is the better guess (mixed-point iteration: Magisano, Leonetti, Garcea 2017).
+        """
+        compiled.exchange_initial_stress(self.elastic, found, expected)
+        return self
+
+    def along(
+        self, shift: np.ndarray, rate: np.ndarray, acceleration: np.ndarray, stress: np.ndarray | None = None
+    ) -> np.ndarray:
+        """Change of the residual along directions of the motion, all [columns, nodes, 2].
+
+        stress: a further change of the first Piola stress, [columns, elements, points, 4].
+        """
+        s = self.system.solid
+        out = self.system.mass.product(acceleration)
+        none = np.empty((0, *self.elastic.shape[:3])) if stress is None else stress
+        compiled.scatter_directions(
+            self.elastic, self.viscous, none, s.elements, s.gradients, s.areas, shift, rate, out
+        )
+        for law in self.system.forces:
+            law.add_directions(shift, rate, acceleration, out)
+        return self.system.held_to_zero(out)
+
+    def by_contraction(self, drive: DriveState) -> np.ndarray:
+        """Derivative of the residual by the contraction of the upper and the lower muscle, [2, nodes, 2]."""
+        out = self.system.solid.contraction_force(self.F)
+        for law in self.system.stresses:
+            for muscle in range(2):
+                P = np.zeros_like(self.F)
+                P[law.elements] = law.contraction_slope(self.F, self.rate, drive, muscle)
+                self.system.solid.add_force(P, out[muscle])
+        return self.system.held_to_zero(out)

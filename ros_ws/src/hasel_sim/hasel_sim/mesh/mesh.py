@@ -1,0 +1,61 @@
+"""A planar mesh of eight-node quadrilaterals, numbered column by column along the body."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from hasel_sim.mesh.serendipity import shape_functions
+
+
+class Region(IntEnum):
+    """What an element is made of and which muscle, if any, runs through it."""
+
+    SOFT = 0
+    SPINE = 1
+    UPPER_MUSCLE = 2
+    LOWER_MUSCLE = 3
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Nodes, elements and what lies where.
+
+    nodes: reference positions [m], shape [nodes, 2]; elements: node numbers, shape [elements, 8];
+    region: `Region` of each element; skin: node numbers of the outline's edges, shape [edges, 3], with the body to
+    the left of the edge's direction; clamped: numbers of the nodes held fixed.
+    outline_slope: change of the node positions per unit of each outline coefficient, [coefficients, nodes, 2].
+    """
+
+    nodes: np.ndarray
+    elements: np.ndarray
+    region: np.ndarray
+    skin: np.ndarray
+    clamped: np.ndarray
+    outline_slope: np.ndarray
+
+    @property
+    def half_bandwidth(self) -> int:
+        """Largest distance between two degrees of freedom of one element."""
+        return int(2 * (self.elements.max(axis=1) - self.elements.min(axis=1)).max() + 1)
+
+    def point(self, position: tuple[float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Where a material point sits: its element's nodes [8], shape functions [8] and gradients [1/m] [8, 2].
+
+        Raises ValueError when the point lies outside the mesh.
+        """
+        best = None
+        for element in self.elements:
+            corners = self.nodes[element]
+            if np.any(position < corners.min(axis=0) - 1e-9) or np.any(position > corners.max(axis=0) + 1e-9):
+                continue
+            local = np.zeros(2)
+            for _ in range(20):
+                value, slope = shape_functions(*local)
+                local += np.linalg.solve(corners.T @ slope, np.asarray(position) - value @ corners)
+            if np.abs(local).max() < 1 + 1e-6 and (best is None or np.abs(local).max() < best[0]):
+                value, slope = shape_functions(*local)
+                best = np.abs(local).max(), element, value, slope @ np.linalg.inv(corners.T @ slope)
+        if best is None:
+            raise ValueError(f"the point {tuple(position)} m lies outside the body")
+        return best[1], best[2], best[3]

@@ -1,0 +1,67 @@
+"""Places where forces act: nodes, the skin, points of the centre line; each interpolates a few nodes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hasel_sim.mesh.mesh import Mesh
+from hasel_sim.mesh.serendipity import edge_functions
+
+
+@dataclass(frozen=True)
+class Sites:
+    """Interpolation at n sites from k nodes each.
+
+    nodes [n, k]; shape [n, k] gives values; slope [n, k] gives the tangent along the skin per unit reference length
+    (zero where there is none); measure [n]: what one site stands for (reference length [m], mass [kg/m] or 1).
+    """
+
+    nodes: np.ndarray
+    shape: np.ndarray
+    slope: np.ndarray
+    measure: np.ndarray
+
+    def value(self, field: np.ndarray) -> np.ndarray:
+        """A nodal field [..., nodes, 2] at the sites, [..., n, 2]."""
+        return np.einsum("nk,...nkd->...nd", self.shape, field[..., self.nodes, :])
+
+    def tangent(self, position: np.ndarray) -> np.ndarray:
+        """Derivative of a nodal field along the skin, [..., n, 2]."""
+        return np.einsum("nk,...nkd->...nd", self.slope, position[..., self.nodes, :])
+
+    def scatter(self, force: np.ndarray, out: np.ndarray) -> None:
+        """Add forces at the sites [..., n, 2], times the measure, to the nodes in out [..., nodes, 2]."""
+        share = force[..., :, None, :] * (self.shape * self.measure[:, None])[..., None]
+        np.add.at(out, (..., self.nodes, slice(None)), share)
+
+
+def node_sites(lumped_mass: np.ndarray) -> Sites:
+    """Every node, standing for its lumped mass [kg per m depth]."""
+    n = len(lumped_mass)
+    return Sites(np.arange(n)[:, None], np.ones((n, 1)), np.zeros((n, 1)), lumped_mass)
+
+
+def skin_sites(mesh: Mesh) -> Sites:
+    """Two Gauss points on every edge of the outline, standing for their reference length [m]."""
+    points, weights = np.polynomial.legendre.leggauss(2)
+    nodes, shape, slope, measure = [], [], [], []
+    for edge in mesh.skin:
+        for point, weight in zip(points, weights, strict=True):
+            value, derivative = edge_functions(point)
+            length = np.linalg.norm(derivative @ mesh.nodes[edge])
+            nodes.append(edge)
+            shape.append(value)
+            slope.append(derivative / length)
+            measure.append(weight * length)
+    return Sites(np.array(nodes), np.array(shape), np.array(slope), np.array(measure))
+
+
+def point_sites(mesh: Mesh, positions: np.ndarray) -> Sites:
+    """Material points at the given reference positions [m] [n, 2], each standing for 1."""
+    found = [mesh.point(tuple(position)) for position in positions]
+    return Sites(
+        np.array([nodes for nodes, _, _ in found]),
+        np.array([shape for _, shape, _ in found]),
+        np.zeros((len(found), 8)),
+        np.ones(len(found)),
+    )

@@ -1,0 +1,63 @@
+"""From marker positions to the measured angle."""
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from hasel_sim.effects.base import ObservationEffect
+from hasel_sim.mesh.mesh import Mesh
+
+
+class MarkerRows:
+    """Interpolates marker positions and the lines across the body through them from nodal positions.
+
+    Fixed markers stay where they are and need no mesh.
+    """
+
+    def __init__(self, mesh: Mesh, points: np.ndarray, fixed: np.ndarray) -> None:
+        count = len(points)
+        self._nodes = np.zeros((count, 8), dtype=int)
+        self._shape, self._across = np.zeros((count, 8)), np.zeros((count, 8))
+        self._offset, self._up = np.zeros((count, 2)), np.zeros((count, 2))
+        for index, point in enumerate(points):
+            if fixed[index]:
+                self._offset[index], self._up[index] = point, (0.0, 1.0)
+            else:
+                nodes, shape, gradient = mesh.point(tuple(point))
+                self._nodes[index], self._shape[index], self._across[index] = nodes, shape, gradient[:, 1]
+
+    def __call__(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Positions [m] and lines across [..., 3, 2] for nodal positions [..., nodes, 2]."""
+        where, across = self.slopes(position)
+        return where + self._offset, across + self._up
+
+    def slopes(self, change: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The same for changes of the nodal positions (fixed markers do not change)."""
+        local = change[..., self._nodes, :]
+        return (
+            np.einsum("mk,...mkd->...md", self._shape, local),
+            np.einsum("mk,...mkd->...md", self._across, local),
+        )
+
+
+def sin_theta(markers: np.ndarray) -> np.ndarray:
+    """Sine of the bending angle from markers [..., 3, 2] (head, middle, tail), positive towards the upper side."""
+    first, second = markers[..., 1, :] - markers[..., 0, :], markers[..., 2, :] - markers[..., 1, :]
+    cross = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
+    return cross / (np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1))
+
+
+def observe(
+    time: np.ndarray,
+    positions: np.ndarray,
+    across: np.ndarray,
+    effects: list[ObservationEffect],
+    values: dict[str, SimpleNamespace],
+) -> np.ndarray:
+    """The measured series [n] from marker positions and lines across [n, 3, 2] at times [s] [n]."""
+    for effect in effects:
+        positions = effect.markers(positions, across, values[effect.id])
+    series = sin_theta(positions)
+    for effect in effects:
+        series = effect.angle(time, series, values[effect.id])
+    return series

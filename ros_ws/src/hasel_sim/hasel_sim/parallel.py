@@ -1,0 +1,80 @@
+"""Many simulations at once, on this machine's cores or on a Dask cluster, by one code path."""
+
+import multiprocessing
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from contextlib import contextmanager
+
+from threadpoolctl import threadpool_limits
+
+from hasel_sim.errors import SimulationError
+from hasel_sim.model import Model
+from hasel_sim.run import Run, Simulation
+from hasel_sim.simulate import simulate
+
+
+class SerialExecutor(Executor):
+    """Runs every call at once in this process; for one job, tests and debugging."""
+
+    def submit(self, function: Callable, /, *arguments, **keywords) -> Future:
+        """Call now and return a finished future."""
+        future: Future = Future()
+        try:
+            future.set_result(function(*arguments, **keywords))
+        except Exception as error:  # noqa: BLE001  handed on by the future, as every executor does
+            future.set_exception(error)
+        return future
+
+
+def _one_thread() -> None:
+    threadpool_limits(1)
+
+
+@contextmanager
+def executor(jobs: int | None = None, scheduler: str | None = None) -> Iterator[Executor]:
+    """An executor for simulations: `jobs` processes (default: one per core), or the Dask scheduler at an address.
+
+    Raises SimulationError when the scheduler cannot be reached.
+    """
+    if scheduler is not None:
+        from distributed import Client
+
+        try:
+            client = Client(scheduler, timeout="10s")
+        except (OSError, TimeoutError, ValueError) as error:
+            raise SimulationError(
+                f"no Dask scheduler answers at '{scheduler}' ({error}); expected an address such as "
+                "tcp://127.0.0.1:8786: start one with 'dask scheduler'"
+            ) from None
+        with client, client.get_executor() as pool:
+            yield pool
+        return
+    count = jobs or os.cpu_count() or 1
+    if count == 1:
+        with threadpool_limits(1):
+            yield SerialExecutor()
+        return
+    context = multiprocessing.get_context("forkserver")
+    with ProcessPoolExecutor(count, mp_context=context, initializer=_one_thread) as pool:
+        try:
+            yield pool
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def submit_all(
+    pool: Executor, model: Model, runs: Sequence[Run], slopes_by: Sequence[str] = ()
+) -> list["Future[Simulation]"]:
+    """Start the simulation of every run; the futures are in the order of the runs."""
+    return [pool.submit(simulate, model, run, tuple(slopes_by)) for run in runs]
+
+
+def simulate_all(
+    pool: Executor, model: Model, runs: Sequence[Run], slopes_by: Sequence[str] = ()
+) -> list[Simulation]:
+    """Simulate every run with one model, longest first so that all workers finish together."""
+    order = sorted(range(len(runs)), key=lambda index: -len(runs[index].time))
+    futures = dict(zip(order, submit_all(pool, model, [runs[i] for i in order], slopes_by), strict=True))
+    return [futures[index].result() for index in range(len(runs))]

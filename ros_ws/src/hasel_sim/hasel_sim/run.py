@@ -1,0 +1,53 @@
+"""What is simulated, and what comes back."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hasel_sim.drive.voltage import VoltageSchedule
+
+
+@dataclass(frozen=True)
+class Run:
+    """One experiment: frames [s], the commanded voltage (None for a passive body) and how it starts.
+
+    initial_state: "rest" (relaxed, without loads) or "static_equilibrium" under initial_load_factor times all loads,
+    let go at initial_time [s] (default: the first frame or switch, whichever comes first).
+    """
+
+    name: str
+    time: np.ndarray
+    schedule: VoltageSchedule | None = None
+    initial_state: str = "rest"
+    initial_load_factor: float = 1.0
+    initial_time: float | None = None
+
+    @property
+    def start(self) -> float:
+        """When the body is let go [s]."""
+        if self.initial_time is not None:
+            return self.initial_time
+        first = self.time[0]
+        return float(first if self.schedule is None else min(first, self.schedule.time[0]))
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """A simulated run, sampled at the run's frames; NaN before the body is let go.
+
+    sin_theta [n]; names and slopes [n, parameters]: derivatives of sin_theta; markers [m] [n, 3, 2];
+    contraction [n, 2]; shapes: nodal positions [m] [n, nodes, 2] where asked for, else None.
+    """
+
+    run: Run
+    sin_theta: np.ndarray
+    names: tuple[str, ...]
+    slopes: np.ndarray
+    markers: np.ndarray
+    contraction: np.ndarray
+    shapes: np.ndarray | None = None
+
+    @property
+    def time(self) -> np.ndarray:
+        """The run's frames [s]."""
+        return self.run.time
