@@ -17,5 +17,13 @@ setup(
     maintainer_email="maintainers@example.org",
     description="From a camera or a video to three markers and the bending angle.",
     license="Apache-2.0",
-    entry_points={"console_scripts": []},
+    entry_points={
+        "console_scripts": [
+            "tracker_node = hasel_tracker.tracker_node:main",
+            "track = hasel_tracker.commands.track:main",
+            "render = hasel_tracker.commands.render:main",
+            "calibrate = hasel_tracker.commands.calibrate:main",
+            "bench = hasel_tracker.commands.bench:main",
+        ]
+    },
 )

@@ -23,7 +23,9 @@ class NodeParameter:
 DEFAULTS = flat(TrackerSettings())
 
 
-def _search(name: str, meaning: str, low: float | None = None, high: float | None = None, **more: Any) -> NodeParameter:
+def _search(
+    name: str, meaning: str, low: float | None = None, high: float | None = None, **more: Any
+) -> NodeParameter:
     return NodeParameter(name, DEFAULTS[name], meaning, low, high, changeable=True, **more)
 
 

@@ -25,7 +25,12 @@ from hasel_tracker.live.live_tracker import LiveTracker
 from hasel_tracker.live.persistent_camera import PersistentCamera
 from hasel_tracker.live.playback import Playback
 from hasel_tracker.live.video_recorder import VideoRecorder
-from hasel_tracker.node_messages import angle_message, compressed_image, diagnostic_status, parameter_descriptor
+from hasel_tracker.node_messages import (
+    angle_message,
+    compressed_image,
+    diagnostic_status,
+    parameter_descriptor,
+)
 from hasel_tracker.node_parameters import PARAMETERS, SEARCH_NAMES
 from hasel_tracker.sources.camera_source import CameraFormat, CameraSource
 from hasel_tracker.sources.frame import Frame
@@ -85,12 +90,18 @@ class TrackerNode(Node):
         else:
             read = Playback(open_recorded(source, self._value("frame_rate"))).read
         return LiveTracker(
-            self._new_tracker({}), self._publish, self._value("queue_size"), self._value("decode_threads"), read
+            self._new_tracker({}),
+            self._publish,
+            self._value("queue_size"),
+            self._value("decode_threads"),
+            read,
         )
 
     def _open_camera(self) -> CameraSource:
         source, exposure = self._value("source"), self._value("exposure")
-        asked = CameraFormat(*(self._value(name) for name in ("width", "height", "frame_rate", "pixel_format")))
+        asked = CameraFormat(
+            *(self._value(name) for name in ("width", "height", "frame_rate", "pixel_format"))
+        )
         camera = CameraSource(
             int(source) if source.isdigit() else source, asked, None if exposure < 0.0 else exposure
         )

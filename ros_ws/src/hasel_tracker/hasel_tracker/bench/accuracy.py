@@ -51,7 +51,7 @@ CONDITIONS = (
 
 @dataclass(frozen=True)
 class Accuracy:
-    """rms distance from the truth of each marker (3,) [px]; of sin θ: rms error and spread; share of frames lost."""
+    """rms distance of each marker (3,) from the truth [px]; sin θ error: rms and spread; share lost."""
 
     condition: str
     marker_rms_px: np.ndarray
@@ -62,7 +62,8 @@ class Accuracy:
     def __str__(self) -> str:
         head, middle, tail = self.marker_rms_px
         return (
-            f"{self.condition}: {head:.4f}, {middle:.4f}, {tail:.4f} px rms, sin θ {self.sin_theta_rms:.1e} rms, "
+            f"{self.condition}: {head:.4f}, {middle:.4f}, {tail:.4f} px rms, sin θ "
+            f"{self.sin_theta_rms:.1e} rms, "
             f"{100 * self.lost_share:.0f} % lost."
         )
 

@@ -49,7 +49,9 @@ class BenchReport:
             Bar("MJPEG quality 75: worst marker (px rms)", worst["MJPEG quality 75"], 0.05),
             Bar("noise of sin θ at rest", rest.sin_theta_spread, 0.001),
             Bar("frames/s, one core, without decoding", self.speed.tracking_hz, 300.0, at_least=True),
-            Bar("false angles in the robustness cases", sum(each.false_angles for each in self.robustness), 0),
+            Bar(
+                "false angles in the robustness cases", sum(each.false_angles for each in self.robustness), 0
+            ),
             Bar("frames late to recover", sum(each.late_frames for each in self.robustness), 0),
         ]
 
@@ -93,7 +95,9 @@ class BenchReport:
             table.add_column(heading, justify="left" if heading == "what" else "right")
         for each in self.bars():
             sign = "≥" if each.at_least else "≤"
-            table.add_row(each.what, f"{each.measured:.4g}", f"{sign} {each.limit:g}", "yes" if each.met else "NO")
+            table.add_row(
+                each.what, f"{each.measured:.4g}", f"{sign} {each.limit:g}", "yes" if each.met else "NO"
+            )
         return table
 
 

@@ -54,13 +54,17 @@ def all_hidden_while_swimming(count: int, width_px: int) -> Pictures:
 
 
 def other_blue_things(count: int, width_px: int) -> Pictures:
-    """A blue dot like a marker floats by, a blue cable lies in view, and the middle marker is covered at times."""
+    """A blue dot like a marker floats by, a blue cable lies in view, the middle marker is covered once."""
     for frame, seen in _covered(BendingMotion(), (1,), count, width_px):
         size = width_px / 1920
         x = (700 + 240 * frame.time_s * FRAME_RATE_HZ / count) * size
         cv2.circle(frame.image, (int(x), int(330 * size)), round(12 * size), BLUE, cv2.FILLED, cv2.LINE_AA)
         cv2.rectangle(
-            frame.image, (int(200 * size), int(900 * size)), (int(800 * size), int(916 * size)), BLUE, cv2.FILLED
+            frame.image,
+            (int(200 * size), int(900 * size)),
+            (int(800 * size), int(916 * size)),
+            BLUE,
+            cv2.FILLED,
         )
         yield frame, seen
 

@@ -24,8 +24,10 @@ class Speed:
 
     def __str__(self) -> str:
         return (
-            f"{self.tracking_hz:.0f} frames/s without decoding, {self.with_decoding_hz:.0f} frames/s with JPEG "
-            f"decoding; CSRT {self.csrt_hz:.1f} frames/s ({self.tracking_hz / self.csrt_hz:.0f} times slower)."
+            f"{self.tracking_hz:.0f} frames/s without decoding, {self.with_decoding_hz:.0f} frames/s with "
+            f"JPEG "
+            f"decoding; CSRT {self.csrt_hz:.1f} frames/s ({self.tracking_hz / self.csrt_hz:.0f} times "
+            f"slower)."
         )
 
 

@@ -34,7 +34,7 @@ class Board:
 
 
 def find_corners(image: np.ndarray, board: Board, name: str) -> np.ndarray:
-    """Corner positions [px] in an 8-bit BGR image, shape (n, 1, 2); raises TrackerError if the board is not seen."""
+    """Corner positions [px] in an 8-bit BGR image, shape (n, 1, 2); TrackerError if the board is not seen."""
     grey = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
     found, corners = cv2.findChessboardCornersSB(
         grey, (board.columns, board.rows), flags=cv2.CALIB_CB_ACCURACY

@@ -14,9 +14,10 @@ KEYS = ("image_size_px", "camera_matrix", "distortion", "pixel_to_plane", "error
 
 @dataclass(frozen=True)
 class CameraCalibration:
-    """Pinhole matrix (3, 3) [px], OpenCV distortion (5,), and undistorted pixel → plane [m] homography (3, 3).
+    """Pinhole matrix (3, 3) [px], OpenCV distortion (5,), homography (3, 3) undistorted pixel → plane [m].
 
-    Plane axes keep the image's sense of rotation. `error_px`: rms distance of the board's corners from the model.
+    Plane axes keep the image's sense of rotation. `error_px`: rms distance of the board's corners from the
+    model.
     """
 
     image_size_px: tuple[int, int]
@@ -79,4 +80,7 @@ class CameraCalibration:
     def __str__(self) -> str:
         lens = "with lens distortion" if self.distortion.any() else "without lens distortion"
         width, height = self.image_size_px
-        return f"Calibration at {width} × {height} px, {lens}; the board's corners fit to {self.error_px:.3f} px rms."
+        return (
+            f"Calibration at {width} × {height} px, {lens}; "
+            f"the board's corners fit to {self.error_px:.3f} px rms."
+        )

@@ -19,7 +19,7 @@ MARGIN_SHARE = 0.6
 
 @dataclass(frozen=True)
 class LearnedColour:
-    """The settings learned, the markers found with them (3, 2) [px], and the share of other pixels in the range."""
+    """The settings, the markers found with them (3, 2) [px], the share of other pixels in the range."""
 
     settings: TrackerSettings
     markers_px: np.ndarray
@@ -28,8 +28,10 @@ class LearnedColour:
     def __str__(self) -> str:
         colour, radius = self.settings.colour, self.settings.marker_radius_px
         return (
-            f"Markers of hue {colour.hue_low} to {colour.hue_high}, saturation from {colour.saturation_low}, value from "
-            f"{colour.value_low}, radius {radius:.1f} px; {100.0 * self.stray_share:.2g} % of the other pixels have "
+            f"Markers of hue {colour.hue_low} to {colour.hue_high}, saturation from "
+            f"{colour.saturation_low}, value from "
+            f"{colour.value_low}, radius {radius:.1f} px; {100.0 * self.stray_share:.2g} % of the other "
+            f"pixels have "
             "that colour too."
         )
 
@@ -39,7 +41,7 @@ def learn_colour(
     points_px: np.ndarray | None = None,
     start: TrackerSettings = TrackerSettings(),  # noqa: B008
 ) -> LearnedColour:
-    """Learn from an 8-bit BGR frame; `points_px` (3, 2) are pixels on the three markers, or None to find them.
+    """Learn from an 8-bit BGR frame; `points_px` (3, 2) are pixels on the markers, or None to find them.
 
     Raises TrackerError if no three markers are found with what was learned.
     """
@@ -63,7 +65,8 @@ def _found_centres(image: np.ndarray, start: TrackerSettings) -> np.ndarray:
     row = body_line([blob for blob in blobs if blob.radius <= start.largest_radius_px])
     if row is None:
         raise TrackerError(
-            f"Found {len(blobs)} blobs in the starting colour range, of which no three look like markers in a row; "
+            f"Found {len(blobs)} blobs in the starting colour range, of which no three look like markers "
+            f"in a row; "
             "point at the markers with --at X,Y X,Y X,Y."
         )
     kept = [blob for blob in blobs if blob.radius <= start.largest_radius_px]
@@ -85,11 +88,11 @@ def _range_around(hsv: np.ndarray, centres: np.ndarray) -> ColourRange:
     angle = pixels[:, 0] * (2.0 * np.pi / HUE_CIRCLE)
     middle = np.arctan2(np.sin(angle).mean(), np.cos(angle).mean()) * HUE_CIRCLE / (2.0 * np.pi)
     apart = (pixels[:, 0] - middle + HUE_CIRCLE / 2) % HUE_CIRCLE - HUE_CIRCLE / 2
-    low, high = np.percentile(apart, [1, 99]) + [-HUE_MARGIN, HUE_MARGIN]
+    low, high = np.percentile(apart, 1) - HUE_MARGIN, np.percentile(apart, 99) + HUE_MARGIN
     saturation, value = np.percentile(pixels[:, 1:], 5, axis=0) * MARGIN_SHARE
     return ColourRange(
-        int(round(middle + low)) % HUE_CIRCLE,
-        int(round(middle + high)) % HUE_CIRCLE,
+        round(middle + low) % HUE_CIRCLE,
+        round(middle + high) % HUE_CIRCLE,
         int(saturation),
         int(value),
     )

@@ -1,4 +1,4 @@
-"""`calibrate colour FRAME` and `calibrate board IMAGE…`: learn the markers' colour, the lens and the perspective."""
+"""`calibrate colour FRAME`, `calibrate board IMAGE…`: learn the markers' colour, the lens and perspective."""
 
 import argparse
 import sys

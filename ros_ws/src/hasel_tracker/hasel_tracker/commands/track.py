@@ -43,7 +43,7 @@ def parser() -> argparse.ArgumentParser:
     options.add_argument("--frame-rate", type=float, metavar="HZ", help="of a folder of images")
     options.add_argument("--drive", type=Path, help="the drive's recording (.mcap or .csv), to merge")
     options.add_argument("--merge", choices=("auto", "stamp", "lag"), default="auto",
-                         help="how: by stamp, by the lag found, or stamp if both have it (default)")  # fmt: skip
+                         help="by stamp, by the lag found, or stamp if both have it (default)")  # fmt: skip
     options.add_argument(
         "--cut", type=float, metavar="HZ", help="keep two periods of this frequency from the first movement"
     )

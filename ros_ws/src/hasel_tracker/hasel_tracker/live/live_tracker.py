@@ -19,7 +19,8 @@ IDLE_S = 0.2
 class LiveTracker:
     """Runs `tracker` on the frames of `queue`, which `read` (if given) fills from a thread of its own.
 
-    `publish` is called in the tracking thread with each frame and what was found in it. `stop` ends the threads.
+    `publish` is called in the tracking thread with each frame and what was found in it. `stop` ends the
+    threads.
     """
 
     def __init__(

@@ -10,7 +10,7 @@ from hasel_tracker.tracking.bending_tracker import TrackedFrame
 
 @dataclass(frozen=True)
 class Health:
-    """One interval's figures: frame rate [1/s], latency from capture to angle [s], quality (3,), lost share."""
+    """One interval: frame rate [1/s], latency from capture to angle [s], mean quality (3,), share lost."""
 
     frames: int
     frame_rate_hz: float

@@ -33,7 +33,7 @@ class VideoRecorder:
         self._queue.put(frame)
 
     def close(self) -> str:
-        """Write what is queued, finish the file, and say what is in it; raises TrackerError if writing failed."""
+        """Write what is queued, finish the file, say what is in it; raises TrackerError if writing failed."""
         self._queue.close()
         self._thread.join()
         if self.fault:
@@ -49,7 +49,7 @@ class VideoRecorder:
                     writer = JpegWriter(self.path, self._rate, start_stamp_ns=frame.stamp_ns)
                 self._write(writer, frame, frame.time_s - first.time_s)
         except (TrackerError, OSError) as error:
-            self.fault = f"The video {self.path} cannot be written ({error}); free some space or choose another folder."
+            self.fault = f"The video {self.path} cannot be written ({error}); choose another folder."
         finally:
             if writer is not None:
                 writer.close()

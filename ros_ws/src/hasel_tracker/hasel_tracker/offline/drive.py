@@ -18,7 +18,7 @@ COLUMNS = ("time_s", "voltage_upper_v", "voltage_lower_v")
 
 @dataclass(frozen=True)
 class Drive:
-    """Voltages (m, 2) [V], upper and lower, each from its time_s (m,) on; `start_stamp_ns` of time 0 if known."""
+    """Voltages (m, 2) [V], upper and lower, each from its time_s (m,) on; `start_stamp_ns` of time 0."""
 
     time_s: np.ndarray
     voltage: np.ndarray
@@ -47,7 +47,8 @@ class Alignment:
     means: str
 
     def __str__(self) -> str:
-        return f"The drive runs {self.lag_s:+.4f} s after the video's clock, ± {self.uncertainty_s:.4f} s ({self.means})."
+        lag = f"{self.lag_s:+.4f} s ± {self.uncertainty_s:.4f} s"
+        return f"The drive's time zero is at {lag} of the video ({self.means})."
 
 
 def read_drive(path: Path) -> Drive:
@@ -106,7 +107,8 @@ def align_by_stamp(run: TrackedRun, drive: Drive) -> Alignment:
     lag = (drive.start_stamp_ns - run.start_stamp_ns) * 1e-9
     if lag + drive.time_s[-1] < run.time_s[0] or lag + drive.time_s[0] > run.time_s[-1]:
         raise TrackerError(
-            f"The drive was recorded {lag:+.1f} s from the video and does not overlap with it; give that of this run."
+            f"The drive was recorded {lag:+.1f} s from the video and does not overlap with it; give that "
+            f"of this run."
         )
     return Alignment(lag, 0.5 / run.frame_rate_hz, "from the stamps of both")
 
@@ -114,8 +116,8 @@ def align_by_stamp(run: TrackedRun, drive: Drive) -> Alignment:
 def align_by_movement(run: TrackedRun, drive: Drive) -> Alignment:
     """Lag from what must coincide: the first voltage and the first movement.
 
-    The body answers within a frame or two of the voltage, so this is right to about one frame; the lag that a slow
-    supply or muscle adds is not seen as such.
+    The body answers within a frame or two of the voltage, so this is right to about one frame; the lag that
+    a slow supply or muscle adds is not seen as such.
     """
     moved = first_movement_s(run.time_s, run.sin_theta)
     return Alignment(

@@ -13,14 +13,15 @@ LEAST_MOVEMENT = 0.002
 def first_movement_s(time_s: np.ndarray, sin_theta: np.ndarray) -> float:
     """Time [s] of the last frame at rest before sin θ leaves its resting value for good.
 
-    The resting value and its noise come from the first frames. Raises TrackerError if nothing ever moves, or if
-    the body moves from the start.
+    The resting value and its noise come from the first frames. Raises TrackerError if nothing ever moves,
+    or if the body moves from the start.
     """
     seen = np.isfinite(sin_theta)
     time_s, sin_theta = time_s[seen], sin_theta[seen]
     if len(sin_theta) < 2 * REST_FRAMES:
         raise TrackerError(
-            f"There are {len(sin_theta)} frames with an angle; expected at least {2 * REST_FRAMES} to find the start."
+            f"There are {len(sin_theta)} frames with an angle; expected at least {2 * REST_FRAMES} to "
+            f"find the start."
         )
     rest = np.median(sin_theta[:REST_FRAMES])
     noise = 1.5 * np.median(np.abs(np.diff(sin_theta[:REST_FRAMES])))
@@ -51,6 +52,7 @@ def cut_to_periods(run: TrackedRun, frequency_hz: float, periods: float = 2.0) -
     if end > run.time_s[-1] + 1.5 / run.frame_rate_hz:
         raise TrackerError(
             f"From the first movement at {start:.3f} s the run has {run.time_s[-1] - start:.3f} s, less than "
-            f"{periods:g} periods of {frequency_hz:g} Hz ({periods / frequency_hz:.3f} s); cut to fewer periods."
+            f"{periods:g} periods of {frequency_hz:g} Hz ({periods / frequency_hz:.3f} s); cut to fewer "
+            f"periods."
         )
     return run.between(start, end)

@@ -7,7 +7,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class BodyShape:
-    """A body with the default swimmer's proportions; stations are distances from the nose along the centre line."""
+    """The default swimmer's proportions; stations are distances from the nose along the centre line."""
 
     body_length_m: float = 0.160
     fin_length_m: float = 0.030

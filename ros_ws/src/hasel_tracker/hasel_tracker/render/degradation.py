@@ -13,9 +13,10 @@ NOISE_MARGIN_PX = 64
 class Degradation:
     """Settings of the imaging chain; the default is a clean, slightly blurred picture.
 
-    blur_px: standard deviation of the optics' blur. exposure_s: shutter time (motion blur). noise_levels: standard
-    deviation of the sensor noise in grey levels. light_fall: relative loss of light from the brightest to the
-    darkest corner. glint_count: specular reflections. jpeg_quality: 0 for none, else 1 to 100 with 4:2:0 chroma.
+    blur_px: standard deviation of the optics' blur. exposure_s: shutter time (motion blur). noise_levels:
+    standard deviation of the sensor noise in grey levels. light_fall: relative loss of light from the
+    brightest to the darkest corner. glint_count: specular reflections. jpeg_quality: 0 for none, else 1 to
+    100 with 4:2:0 chroma.
     """
 
     blur_px: float = 0.8

@@ -10,7 +10,7 @@ SUPERSAMPLING = 3
 def marker_coverage(
     view: CameraView, centre_m: np.ndarray, radius_m: float, corner_px: tuple[int, int], size_px: int
 ) -> np.ndarray:
-    """Share of each pixel covered by a disc in the plane, shape (size, size), from the top left `corner_px`."""
+    """Share of each pixel covered by a disc in the plane, shape (size, size); `corner_px` is its top left."""
     fine = SUPERSAMPLING
     offsets = (np.arange(size_px * fine) + 0.5) / fine - 0.5
     x, y = np.meshgrid(corner_px[0] + offsets, corner_px[1] + offsets)

@@ -17,15 +17,15 @@ class Motion(Protocol):
     duration_s: float
 
     def centre_line(self, time_s: float) -> np.ndarray:
-        """Points of the centre line [m] from nose to fin tip at equal material distances, shape (n, 2), y up."""
+        """Centre line [m] from nose to fin tip at equal material distances, shape (n, 2), y up."""
 
 
 @dataclass(frozen=True)
 class BendingMotion:
     """A body that bends with uniform curvature over its muscles and drifts along its axis.
 
-    The angle between the stiff head and the tail is `amplitude_rad` · sin(2π f t), started smoothly within about
-    half a period after `rest_s` at rest.
+    The angle between the stiff head and the tail is `amplitude_rad` · sin(2π f t), started smoothly within
+    about half a period after `rest_s` at rest.
     """
 
     amplitude_rad: float = 0.6

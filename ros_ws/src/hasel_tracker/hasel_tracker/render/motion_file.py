@@ -18,8 +18,9 @@ BEND_SAMPLES = np.linspace(-2.8, 2.8, 201)
 def read_motion(path: Path, shape: BodyShape) -> SampledMotion:
     """Read a motion; raises TrackerError.
 
-    A .csv with the columns `time_s, centre_0_x_m, centre_0_y_m, centre_1_x_m, …` gives the centre line from nose to
-    fin tip at equal material distances. Any other recording (.csv, .mcap) gives the markers in metres, or else sin θ.
+    A .csv with the columns `time_s, centre_0_x_m, centre_0_y_m, centre_1_x_m, …` gives the centre line from
+    nose to fin tip at equal material distances. Any other recording (.csv, .mcap) gives the markers in
+    metres, or else sin θ.
     """
     path = Path(path)
     if (

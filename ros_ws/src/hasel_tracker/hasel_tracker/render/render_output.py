@@ -23,9 +23,10 @@ def write_frames(
     seen: Callable[[int], None] = lambda _: None,
     count: int | None = None,
 ) -> Recording:
-    """Render into a video file, or PNG images if `output` has no suffix; returns the truth as a recording [px].
+    """Render into a video file, or PNG images if `output` has no suffix; returns the truth [px].
 
-    `quality`: JPEG quality (1 to 100) for mjpeg, constant rate factor (0 to 51) for h264. `seen` gets each index.
+    `quality`: JPEG quality (1 to 100) for mjpeg, constant rate factor (0 to 51) for h264. `seen` gets each
+    index.
     """
     write, close = _sink(output, frame_rate_hz, codec, quality)
     times, markers, angles = [], [], []

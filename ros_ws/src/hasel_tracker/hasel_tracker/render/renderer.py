@@ -1,7 +1,7 @@
 """Draw the swimmer as a camera would see it, together with where its markers truly are."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
@@ -20,7 +20,7 @@ WATER_COLOUR = (198, 196, 188)
 
 @dataclass(frozen=True)
 class RenderedFrame:
-    """A picture (8-bit BGR), its time [s], the true marker positions (3, 2) in px and in m, and the true sin θ."""
+    """A picture (8-bit BGR), its time [s], the true markers (3, 2) in px and in m, and the true sin θ."""
 
     image: np.ndarray
     time_s: float
@@ -31,23 +31,22 @@ class RenderedFrame:
 
 @dataclass(frozen=True)
 class Renderer:
-    """Draws frames of a motion; `background` is an 8-bit BGR image of the view's size, or None for plain water.
-    """
+    """Draws a motion; `background` is an 8-bit BGR image of the view's size, or None for plain water."""
 
     motion: Motion
-    view: CameraView = CameraView()
-    shape: BodyShape = BodyShape()
-    degradation: Degradation = Degradation()
+    view: CameraView = field(default_factory=CameraView)
+    shape: BodyShape = field(default_factory=BodyShape)
+    degradation: Degradation = field(default_factory=Degradation)
     background: np.ndarray | None = None
 
     def frames(self, frame_rate_hz: float = 120.0, count: int | None = None) -> Iterator[RenderedFrame]:
         """Frames at a fixed rate, for the motion's duration or for `count` of them."""
-        total = count if count is not None else int(round(self.motion.duration_s * frame_rate_hz))
+        total = count if count is not None else round(self.motion.duration_s * frame_rate_hz)
         for index in range(total):
             yield self.frame(index / frame_rate_hz, index)
 
     def frame(self, time_s: float, index: int = 0, hidden: tuple[int, ...] = ()) -> RenderedFrame:
-        """One frame, its exposure centred on `time_s`; `hidden` markers (0 head, 1 middle, 2 tail) are left out."""
+        """One frame, exposed about `time_s`; `hidden` markers (0 head, 1 middle, 2 tail) are left out."""
         chain = self.degradation
         picture = self._exposed(time_s, hidden)
         picture = uneven_light(picture, chain.light_fall)

@@ -39,7 +39,8 @@ class CameraSource:
         self._capture = capture if capture is not None else cv2.VideoCapture(device, cv2.CAP_V4L2)
         if not self._capture.isOpened():
             raise TrackerError(
-                f"The camera {device} cannot be opened; check that it is plugged in, not in use by another program, "
+                f"The camera {device} cannot be opened; check that it is plugged in, not in use by "
+                f"another program, "
                 "and readable for you (group `video`)."
             )
         self.asked = asked
@@ -56,7 +57,7 @@ class CameraSource:
         return f"Asked the camera for {self.asked}, it gives {self.given}."
 
     def read(self) -> Frame | None:
-        """The next frame, decoded or as JPEG, stamped by the driver if it does; None when the camera fails."""
+        """The next frame, decoded or as JPEG, stamped by the driver if it can; None if the camera fails."""
         received, picture = self._capture.read()
         if not received or picture is None:
             return None
@@ -96,7 +97,7 @@ class CameraSource:
         )
 
     def _stamp_ns(self) -> int:
-        """The driver's stamp of exposure (monotonic clock) as time since the epoch; else the time of arrival."""
+        """The driver's stamp of exposure (monotonic clock) since the epoch; else the time of arrival."""
         now_ns = time.time_ns()
         age_s = time.monotonic() - 1e-3 * self._capture.get(cv2.CAP_PROP_POS_MSEC)
         if 0.0 <= age_s < LONGEST_CLOCK_DIFFERENCE_S:

@@ -13,8 +13,8 @@ def decoded_in_order(
 ) -> Iterator[Frame]:
     """Decoded frames in the order of `frames`, at most `threads` of them being decoded at a time.
 
-    None among the frames means that none has come lately: what is waiting is handed on. A frame that cannot be
-    decoded is left out and `broken` is told why. With one thread, decoding is done in the calling one.
+    None among the frames means that none has come lately: what is waiting is handed on. A frame that cannot
+    be decoded is left out and `broken` is told why. With one thread, decoding is done in the calling one.
     """
     if threads == 1:
         yield from _decoded_here(frames, broken)
@@ -30,9 +30,7 @@ def decoded_in_order(
             yield from _result(waiting.popleft().result, broken)
 
 
-def _decoded_here(
-    frames: Iterable[Frame | None], broken: Callable[[TrackerError], None]
-) -> Iterator[Frame]:
+def _decoded_here(frames: Iterable[Frame | None], broken: Callable[[TrackerError], None]) -> Iterator[Frame]:
     for frame in frames:
         if frame is not None:
             yield from _result(frame.decoded, broken)

@@ -12,8 +12,9 @@ from hasel_tracker.errors import TrackerError
 class Frame:
     """An image, or its JPEG code not yet decoded, with the time it was taken.
 
-    image: 8-bit BGR, shape (height, width, 3), or None. jpeg: the picture's JPEG bytes, or None. time_s: time since
-    the source's first frame [s]. stamp_ns: time of capture since the epoch [ns], or None if the source does not know.
+    image: 8-bit BGR, shape (height, width, 3), or None. jpeg: the picture's JPEG bytes, or None. time_s:
+    time since the source's first frame [s]. stamp_ns: time of capture since the epoch [ns], or None if the
+    source does not know.
     """
 
     index: int

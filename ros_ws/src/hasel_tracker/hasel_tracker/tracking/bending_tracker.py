@@ -60,7 +60,8 @@ class BendingTracker:
         """Track one 8-bit BGR image, shape (height, width, 3), taken at `time_s`."""
         if image.ndim != 3 or image.shape[2] != 3 or image.dtype != np.uint8:
             raise TrackerError(
-                f"Found an image of shape {image.shape} and type {image.dtype}; expected 8-bit colour in BGR order."
+                f"Found an image of shape {image.shape} and type {image.dtype}; expected 8-bit colour in "
+                f"BGR order."
             )
         markers = self._markers.update(image, time_s)
         points = markers.positions

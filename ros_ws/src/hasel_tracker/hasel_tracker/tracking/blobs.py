@@ -14,7 +14,7 @@ SINGLE_PIXELS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 
 @dataclass(frozen=True)
 class Blob:
-    """A connected patch: centre (2,) [px], area [px²], and how much of its bounding ellipse it fills (0 to 1)."""
+    """A connected patch: centre (2,) [px], area [px²], and roundness (0 to 1) from its bounding box."""
 
     centre: np.ndarray
     area: float
@@ -42,7 +42,7 @@ def find_blobs(mask: np.ndarray, minimum_area: float) -> list[Blob]:
 
 
 def blobs_in_frame(image: np.ndarray, gate: ColourRange, step: int, minimum_radius: float) -> list[Blob]:
-    """Candidates in a whole frame, looked at with every `step`-th pixel; positions and areas in full pixels."""
+    """Candidates in a whole frame, of which every `step`-th pixel is looked at; in full pixels."""
     coarse = np.ascontiguousarray(image[::step, ::step])
     mask = gate.mask(coarse)
     found = find_blobs(mask, max(np.pi * minimum_radius**2 / step**2, 3.0))
@@ -50,7 +50,7 @@ def blobs_in_frame(image: np.ndarray, gate: ColourRange, step: int, minimum_radi
 
 
 def nearest_outline(mask: np.ndarray, predicted: np.ndarray, area: float) -> np.ndarray | None:
-    """Outer contour (n, 1, 2) of the patch of about `area` [px²] nearest to `predicted` (2,) [px]; None if none fits."""
+    """Outer contour (n, 1, 2) of the patch of about `area` [px²] nearest to `predicted` (2,), or None."""
     opened = cv2.morphologyEx(mask, cv2.MORPH_OPEN, SINGLE_PIXELS)
     outlines, _ = cv2.findContours(opened, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
     nearest, shortest = None, np.inf

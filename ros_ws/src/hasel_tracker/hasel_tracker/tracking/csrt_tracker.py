@@ -1,4 +1,4 @@
-"""The seed paper's method, for comparison: one OpenCV CSRT tracker per marker, the angle from the box centres."""
+"""The seed paper's method, for comparison: one OpenCV CSRT tracker per marker, its box's centre."""
 
 import cv2
 import numpy as np

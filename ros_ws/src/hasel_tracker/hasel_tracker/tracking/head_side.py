@@ -1,4 +1,4 @@
-"""Which end of the marker row is the head: the body is thicker in front of the middle marker than behind it."""
+"""Which end of the row is the head: the body is thicker in front of the middle marker than behind it."""
 
 import cv2
 import numpy as np

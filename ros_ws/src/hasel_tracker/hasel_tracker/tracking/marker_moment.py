@@ -1,15 +1,15 @@
 """Where a marker is, to some thousandths of a pixel: the moment of its luma, corrected for the background.
 
 Colour says which pixels belong to the marker, but its edges are unreliable: video stores colour at half
-resolution. Luma is stored in full. Inside the marker every pixel counts one, outside none, and in the narrow
-band around its edge a pixel counts by how far its luma is from the background's towards the marker's. So a
-highlight inside the marker changes nothing, and noise enters only through the band. The background is a plane
-(uneven light). Directions in which something else crosses it (the spine, an edge of the body) are left out
-together with the opposite ones: what remains of a disc, an ellipse or a motion-blurred disc is still symmetric
-about its centre.
+resolution. Luma is stored in full. Inside the marker every pixel counts one, outside none, and in the
+narrow band around its edge a pixel counts by how far its luma is from the background's towards the
+marker's. So a highlight inside the marker changes nothing, and noise enters only through the band. The
+background is a plane (uneven light). Directions in which something else crosses it (the spine, an edge of
+the body) are left out together with the opposite ones: what remains of a disc, an ellipse or a motion-
+blurred disc is still symmetric about its centre.
 
-Over a textured background no plane fits the luma. Then colour, blurred as it is, does better: the same moment is
-taken of it along the line from the background's colour to the marker's, leaving brightness out.
+Over a textured background no plane fits the luma. Then colour, blurred as it is, does better: the same
+moment is taken of it along the line from the background's colour to the marker's, leaving brightness out.
 """
 
 from collections.abc import Callable
@@ -31,7 +31,7 @@ CHROMA_BLUR_PX = 1
 
 @dataclass(frozen=True)
 class MarkerMeasurement:
-    """Centre (2,) [px], area [px²], luma contrast to the background and noise around it [grey levels], solidity."""
+    """Centre (2,) [px], area [px²], contrast to the background and noise around [grey levels], solidity."""
 
     centre: np.ndarray
     area: float
@@ -45,7 +45,7 @@ class MarkerMeasurement:
 
 
 def measure_marker(image: np.ndarray, outline: np.ndarray, edge_px: int) -> MarkerMeasurement | None:
-    """Measure the marker that the contour `outline`, shape (n, 1, 2), roughly encloses in an 8-bit BGR region.
+    """Measure the marker that the contour `outline` (n, 1, 2) roughly encloses in an 8-bit BGR region.
 
     `edge_px` is half the width of the band in which its edge lies. The centre is in the region's pixels. None
     if the marker has no inside left, no contrast, or its surroundings leave the region.
@@ -82,7 +82,7 @@ def _measure(
         return None
     centre, area = _symmetric_centre(share, outer, surroundings)
     solidity = min(cv2.contourArea(outline) / max(cv2.contourArea(hull), 1.0), 1.0)
-    return MarkerMeasurement(centre + (left, top), area, contrast, surroundings.noise, solidity)
+    return MarkerMeasurement(np.add(centre, (left, top)), area, contrast, surroundings.noise, solidity)
 
 
 def _luma(region: np.ndarray, _inside: np.ndarray, _ring: np.ndarray) -> np.ndarray:
@@ -90,7 +90,7 @@ def _luma(region: np.ndarray, _inside: np.ndarray, _ring: np.ndarray) -> np.ndar
 
 
 def _colourfulness(region: np.ndarray, inside: np.ndarray, ring: np.ndarray) -> np.ndarray:
-    """Colour along the axis from background to marker, shifted so that the background is bright as in luma."""
+    """Colour along the axis from the marker to the background, brightness left out."""
     marker, background = cv2.mean(region, inside)[:3], cv2.mean(region, ring)[:3]
     axis = np.subtract(background, marker)
     axis -= axis.mean()
@@ -99,7 +99,12 @@ def _colourfulness(region: np.ndarray, inside: np.ndarray, ring: np.ndarray) -> 
 
 
 def _marker_share(
-    signal: np.ndarray, inside: np.ndarray, outer: np.ndarray, surroundings: Surroundings, *, follows_light: bool
+    signal: np.ndarray,
+    inside: np.ndarray,
+    outer: np.ndarray,
+    surroundings: Surroundings,
+    *,
+    follows_light: bool,
 ) -> tuple[np.ndarray, float]:
     """How much of each pixel is marker, and the contrast [grey levels]."""
     level = surroundings.level(signal.shape)

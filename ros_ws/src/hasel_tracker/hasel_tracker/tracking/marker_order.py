@@ -12,7 +12,7 @@ CHORD_TOLERANCE = 0.2
 
 
 def body_line(blobs: list[Blob]) -> np.ndarray | None:
-    """Indices (3,) of the three blobs that look most like markers in a row, the middle one second; None if none do.
+    """Indices (3,) of the three blobs most like markers in a row, the middle one second; None if none are.
 
     Markers are alike in size, round, about equally far apart and not folded onto each other.
     """
@@ -50,8 +50,9 @@ def assign_lost(
 ) -> dict[int, Blob]:
     """Blobs for the lost markers so that the distances along the body stay what they were.
 
-    known: (3, 2) with NaN for lost markers [px]; expected: (3, 2) where each was last seen; chords: (2,) distances
-    head–middle and middle–tail [px]; areas: (3,) [px²]. Returns marker number → blob; empty if nothing fits.
+    known: (3, 2) with NaN for lost markers [px]; expected: (3, 2) where each was last seen; chords: (2,)
+    distances head–middle and middle–tail [px]; areas: (3,) [px²]. Returns marker number → blob; empty if
+    nothing fits.
     """
     lost = np.flatnonzero(np.isnan(known[:, 0]))
     near = 0.1 * chords.sum()

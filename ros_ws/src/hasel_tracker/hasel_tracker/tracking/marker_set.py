@@ -9,7 +9,7 @@ MARKER_NAMES = ("head", "middle", "tail")
 
 @dataclass(frozen=True)
 class MarkerSet:
-    """Positions (3, 2) [px] and quality (3,) of head, middle and tail; a lost marker is NaN with quality 0."""
+    """Positions (3, 2) [px] and quality (3,) of head, middle, tail; a lost marker is NaN with quality 0."""
 
     positions: np.ndarray
     quality: np.ndarray

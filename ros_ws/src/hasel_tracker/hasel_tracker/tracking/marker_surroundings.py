@@ -1,4 +1,4 @@
-"""What lies around a marker: the background's luma, its noise, and the directions in which something crosses it."""
+"""What lies around a marker: the background, its noise, the directions in which something crosses it."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ REWEIGHTINGS = 4
 
 @dataclass(frozen=True)
 class Surroundings:
-    """Background plane about `origin` (2,) [px]: level, slope in x and in y; noise [grey levels]; crossed (48,)."""
+    """Background about `origin` (2,): plane (level, slopes in x and y), noise, crossed directions (48,)."""
 
     origin: np.ndarray
     plane: np.ndarray
@@ -28,7 +28,7 @@ class Surroundings:
         return across[None, :] + (self.plane[2] * y).astype(np.float32)[:, None]
 
     def symmetric_window(self) -> np.ndarray | None:
-        """Smooth weight by fine sector, zero where something crosses here or opposite; None if nothing needs it.
+        """Smooth weight by fine sector, zero where something crosses here or opposite; None if nothing does.
 
         Also None when too few directions are left to locate the marker both ways.
         """
@@ -59,7 +59,7 @@ _SMOOTHING = _smoothing()
 
 
 def look_around(luma: np.ndarray, inside: np.ndarray, ring: np.ndarray) -> Surroundings:
-    """Describe the background in `ring` around the marker whose `inside` is given (masks, same shape as `luma`)."""
+    """Describe the background in `ring` around the marker that covers `inside` (masks of the same shape)."""
     rows, columns = np.nonzero(inside)
     origin = np.array([columns.mean(), rows.mean()])
     rows, columns = np.nonzero(ring)
@@ -91,7 +91,7 @@ def _robust_plane(
 
 
 def sector_of(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Number of the fine sector, 0 to FINE_SECTORS − 1 counted from +x towards +y, in which an offset lies."""
+    """Number of the fine sector, counted from +x towards +y, in which an offset lies."""
     turn = np.arctan2(y, x) * (0.5 / np.pi)
     return np.floor(turn * FINE_SECTORS).astype(np.int64) % FINE_SECTORS
 

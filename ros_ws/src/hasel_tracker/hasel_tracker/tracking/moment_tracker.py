@@ -1,4 +1,4 @@
-"""The default method: colour says which blobs are markers, luma moments in predicted regions say where they are."""
+"""The default method: colour says which blobs are markers, luma moments in predicted regions say where."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ NOISE_AT_HALF_QUALITY = 0.25
 
 
 class MomentTracker:
-    """Follows three markers from frame to frame; finds them by itself at the start and when they were lost."""
+    """Follows three markers from frame to frame; finds them by itself at the start and when lost."""
 
     def __init__(self, settings: TrackerSettings = TrackerSettings()) -> None:  # noqa: B008
         self.settings = settings
@@ -57,8 +57,10 @@ class MomentTracker:
         self._positions = np.array([blobs[index].centre for index in order])
         self._last_seen = self._positions.copy()
         self._velocities[:] = 0.0
-        self._areas[:] = [blobs[index].area for index in order]
         self._chords = np.linalg.norm(np.diff(self._positions, axis=0), axis=1)
+        for number, blob in enumerate(blobs[index] for index in order):
+            found = self._measure(image, blob.centre, blob.area, self.settings.region_px)
+            self._areas[number] = blob.area if found is None else found.area
         return True
 
     def _candidates(self, image: np.ndarray) -> list[Blob]:
@@ -149,7 +151,7 @@ class MomentTracker:
 
     @staticmethod
     def _quality(measurement: MarkerMeasurement, area: float) -> float:
-        """One for a full, clear marker; less for one that is cut, merged with something, or drowned in noise."""
+        """One for a full, clear marker; less for one that is cut, merged with something, or noisy."""
         size = min(measurement.area / area, area / measurement.area)
         noise = measurement.noise / max(measurement.contrast, 1e-9)
         clear = 1.0 / (1.0 + (noise / NOISE_AT_HALF_QUALITY) ** 2)

@@ -1,4 +1,4 @@
-"""What the tracker needs to know about markers and regions; the defaults suit 4 mm blue dots at 6 px per mm."""
+"""What the tracker must know about markers and regions; the defaults suit 4 mm blue dots at 6 px per mm."""
 
 from dataclasses import dataclass, field
 
@@ -13,10 +13,10 @@ METHODS = ("moment", "csrt")
 class TrackerSettings:
     """Settings of the markers' search.
 
-    marker_radius_px: expected radius; 0 learns it from the first frame. region_px: how far a marker may be from where
-    it is predicted. edge_px: half width of the band in which a marker's edge lies (more for blurred pictures).
-    head: on which side of the picture the head starts; `auto` takes the thicker half of the body for the front.
-    minimum_quality: below it a marker counts as lost.
+    marker_radius_px: expected radius; 0 learns it from the first frame. region_px: how far a marker may be
+    from where it is predicted. edge_px: half width of the band in which a marker's edge lies (more for
+    blurred pictures). head: on which side of the picture the head starts; `auto` takes the thicker half of
+    the body for the front. minimum_quality: below it a marker counts as lost.
     """
 
     colour: ColourRange = field(default_factory=ColourRange)

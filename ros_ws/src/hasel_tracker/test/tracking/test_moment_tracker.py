@@ -1,0 +1,82 @@
+import cv2
+import numpy as np
+import pytest
+from hasel_tracker.tracking.bending_tracker import BendingTracker
+from hasel_tracker.tracking.colour_gate import ColourRange
+from hasel_tracker.tracking.moment_tracker import MomentTracker
+from hasel_tracker.tracking.tracker_settings import TrackerSettings
+
+WATER = (188, 196, 198)
+
+
+def test_follows_a_beat(frames):
+    """Through a whole beat the markers stay within 0.1 px of the truth, in the right order, with high quality."""
+    tracker = MomentTracker()
+    for frame in frames:
+        markers = tracker.update(frame.image, frame.time_s)
+        assert np.abs(markers.positions - frame.markers_px).max() < 0.1
+        assert markers.quality.min() > 0.8
+
+
+def test_nothing_to_see_says_what_was_found():
+    """An empty picture gives no markers, and a note that says why."""
+    tracker = MomentTracker()
+    markers = tracker.update(np.full((360, 640, 3), 190, np.uint8), 0.0)
+    assert not markers.found.any()
+    assert markers.quality.tolist() == [0.0, 0.0, 0.0]
+    assert "found 0 blobs" in tracker.note
+
+
+def test_lost_marker_is_nan_while_the_others_are_followed(renderer):
+    """In the very frame in which the middle marker is covered it is NaN with quality 0; the others are right."""
+    tracker = MomentTracker()
+    tracker.update(renderer.frame(0.0).image, 0.0)
+    hidden = renderer.frame(1 / 120, 1, hidden=(1,))
+    markers = tracker.update(hidden.image, 1 / 120)
+    assert markers.found.tolist() == [True, False, True]
+    assert np.isnan(markers.positions[1]).all()
+    assert markers.quality[1] == 0.0
+    assert np.abs(markers.positions[[0, 2]] - hidden.markers_px[[0, 2]]).max() < 0.1
+
+
+def test_half_covered_marker_is_lost_rather_than_wrong(renderer):
+    """A marker half under something is not reported with the centre of its visible half."""
+    tracker = MomentTracker()
+    frame = renderer.frame(0.0)
+    tracker.update(frame.image, 0.0)
+    picture = renderer.frame(1 / 120, 1).image.copy()
+    x, y = np.rint(frame.markers_px[2]).astype(int)
+    cv2.rectangle(picture, (int(x), int(y) - 20), (int(x) + 20, int(y) + 20), WATER, cv2.FILLED)
+    markers = tracker.update(picture, 1 / 120)
+    assert markers.found.tolist() == [True, True, False]
+
+
+def test_dropped_frames_do_not_lose_a_fast_marker(frames):
+    """With only every third frame the prediction goes by time, so that nothing is lost."""
+    tracker = MomentTracker(TrackerSettings(region_px=8))
+    for frame in frames[::3]:
+        assert tracker.update(frame.image, frame.time_s).found.all()
+
+
+def test_markers_of_another_colour(frames):
+    """With the colour range set, green markers are followed as well as blue ones."""
+    tracker = MomentTracker(TrackerSettings(colour=ColourRange(40, 80, 90, 35)))
+    green = frames[30].image[..., [1, 0, 2]]
+    markers = tracker.update(np.ascontiguousarray(green), 0.0)
+    assert np.abs(markers.positions - frames[30].markers_px).max() < 0.2
+
+
+def test_tracked_frame_reads_as_a_sentence(frames):
+    """A result prints with its angle, or with which marker is lost."""
+    tracker = BendingTracker()
+    assert "sin θ is" in str(tracker.update(frames[0].image, 0.0))
+    lost = tracker.update(np.full_like(frames[0].image, 190), 1 / 120)
+    assert not lost.valid
+    assert str(lost).endswith("head and middle and tail lost.")
+
+
+@pytest.mark.parametrize("image", [np.zeros((90, 160), np.uint8), np.zeros((90, 160, 3), np.float32)])
+def test_wrong_kind_of_image_is_refused(image):
+    """A grey or floating-point image is named for what it is."""
+    with pytest.raises(Exception, match="expected 8-bit colour in BGR order"):
+        BendingTracker().update(image, 0.0)
