@@ -20,6 +20,8 @@ setup(
     entry_points={
         "console_scripts": [
             "driver_node = hasel_driver.driver_node:main",
+            "stored_charge = hasel_driver.stored_charge:main",
+            "virtual_shvps = hasel_driver.virtual_shvps:main",
             "virtual_supply = hasel_driver.virtual_supply:main",
         ]
     },

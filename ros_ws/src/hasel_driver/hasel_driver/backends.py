@@ -7,6 +7,7 @@ from hasel_driver.errors import LimitError
 from hasel_driver.hasel_supply import HaselSupply
 from hasel_driver.limits import Limits
 from hasel_driver.serial_port import SerialPort
+from hasel_driver.shvps_supply import ShvpsSupply
 from hasel_driver.supply import Supply
 
 
@@ -20,4 +21,8 @@ def make_supply(parameters: Mapping[str, Any]) -> Supply:
     )
     if parameters["backend"] == "hasel":
         return HaselSupply(SerialPort(parameters["port"]), limits)
-    raise LimitError(f"backend is {parameters['backend']!r}, hasel or shvps was expected.")
+    if not parameters["second_port"]:
+        raise LimitError(
+            "The backend shvps drives one board for each muscle: set `second_port` to the lower one's."
+        )
+    return ShvpsSupply((SerialPort(parameters["port"]), SerialPort(parameters["second_port"])), limits)

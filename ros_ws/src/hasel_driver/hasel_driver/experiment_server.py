@@ -50,7 +50,11 @@ class ExperimentServer:
             self._node.get_logger().warning(f"The type of {topic} is not known: it will not be recorded.")
         self._watched = [
             self._node.create_subscription(
-                _message_class(TOPIC_TYPES[topic]), topic, self._writer(topic), 200, callback_group=self._group
+                _message_class(TOPIC_TYPES[topic]),
+                topic,
+                self._writer(topic),
+                200,
+                callback_group=self._group,
             )
             for topic in known
         ]

@@ -32,7 +32,7 @@ def to_supply_state(status: Status) -> SupplyState:
     message.mode = int(status.mode)
     message.fault_code = int(status.fault.code) if status.fault else 0
     if status.mode is Mode.FAULT:
-        sentence = str(status.fault) if status.fault else "The supply is not connected"
+        sentence = str(status.fault) if status.fault else "The supply is not connected, or does not report"
         message.fault_text = f"{sentence[:1].upper()}{sentence[1:]}. {OUTPUT_WORDS[status.output]}"
     return message
 

@@ -4,20 +4,23 @@ What it tells about the output comes from the supply's own recent report, never 
 """
 
 import math
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from hasel_driver.errors import LimitError, RefusedError
+from hasel_driver.errors import LimitError, PortError, RefusedError
 from hasel_driver.faults import Fault, FaultCode, SupplyFaultError
 from hasel_driver.limits import Voltages, clip
 from hasel_driver.mode import Mode
-from hasel_driver.supply import Capabilities, Reading, Supply
+from hasel_driver.supply import Capabilities, Connection, Reading, Supply
 from hasel_driver.waveform import Waveform
 
 COMMAND_TIMEOUT_S = 0.2
 STALE_S = 0.2
 TRANSITION_S = 0.3  # time the board has to follow a request
 STOP_REPEAT_S = 0.05
+FIRST_READING_S = 0.5
+REOPEN_S = 0.03  # lets the other end notice that the port was closed
 UNKNOWN: Voltages = (math.nan, math.nan)
 
 
@@ -57,7 +60,6 @@ class Supervisor:
         self._stop_sent_s = -math.inf
         self._command_expires_s: float | None = None
         self._experiment_running = False
-        self._clearing = False
 
     @property
     def maximum_voltage_v(self) -> float:
@@ -71,8 +73,8 @@ class Supervisor:
 
     def connect(self) -> None:
         """Open the supply, disarmed; a fault the board had kept is latched here. Raises PortError."""
-        inherited = self._open()
-        self.fault = self.fault or inherited
+        connection = self._open()
+        self.fault = self.fault or connection.fault
 
     def disconnect(self) -> None:
         """Disarm and close the port."""
@@ -101,9 +103,7 @@ class Supervisor:
         now_s = self._clock()
         reading = self._fresh_reading(now_s)
         if reading is None:
-            mode = Mode.STANDBY if self.connected and self._starting(now_s) else Mode.FAULT
-            mode = Mode.FAULT if self.fault else mode
-            return Status(now_s, mode, self.fault, None, UNKNOWN, UNKNOWN, UNKNOWN)
+            return Status(now_s, Mode.FAULT, self.fault, None, UNKNOWN, UNKNOWN, UNKNOWN)
         mode = Mode.FAULT if self.fault else reading.mode
         values = (reading.commanded_v, reading.measured_v, reading.current_a)
         return Status(reading.time_s, mode, self.fault, reading.grounded, *values)
@@ -111,10 +111,8 @@ class Supervisor:
     def arm(self) -> None:
         """Ask the supply to arm. Raises RefusedError unless STANDBY is proven."""
         status = self.status()
-        if status.mode is not Mode.STANDBY or not self.connected or self._reading is None:
-            raise RefusedError(
-                f"Arming is allowed in STANDBY only, the state is {status}: see to that first."
-            )
+        if status.mode is not Mode.STANDBY:
+            raise RefusedError(f"Arming needs the state STANDBY, it is {status}: see to that first.")
         self._command_expires_s = None
         self._armed_wanted = True
         self._requested_s = self._clock()
@@ -133,7 +131,6 @@ class Supervisor:
         if self.fault is None or fault.code is FaultCode.EMERGENCY_STOP:
             self.fault = fault
         self._armed_wanted = False
-        self._clearing = False
         self._command_expires_s, self._experiment_running = None, False
         if fault.code is FaultCode.LINK_LOST:
             self.name = None
@@ -141,19 +138,20 @@ class Supervisor:
         self._send_stop()
 
     def clear_fault(self) -> None:
-        """Connect anew, to prove board and limits; the fault goes when the board then reports STANDBY.
+        """Connect anew, which proves board and limits, and forget the fault; a lost port is opened again.
 
         Raises RefusedError while the output is live, or PortError; then the fault stays.
         """
         if self.fault is None:
             raise RefusedError(f"There is no fault to clear: the state is {self.status()}.")
         if self.status().grounded is False:
-            raise RefusedError(
-                "The supply does not report its output grounded: wait, or take away its power."
-            )
+            raise RefusedError("The supply does not report its output grounded: wait, or cut its power.")
         self.disconnect()
+        time.sleep(REOPEN_S)
         self._open()
-        self._clearing = True
+        self.fault = self._reading.fault
+        if self.fault is not None:
+            raise RefusedError(f"The fault came back at once: {self.fault}.")
 
     def command(self, voltage_v: Voltages, age_s: float = 0.0) -> None:
         """A voltage from outside [V], `age_s` old; clipped, held for 200 ms from its making, else ignored."""
@@ -214,19 +212,33 @@ class Supervisor:
         self._watch(now_s)
         return bool(readings)
 
-    def _open(self) -> Fault | None:
+    def _open(self) -> Connection:
         connection = self._supply.open()
+        try:
+            self._reading = self._first_reading(connection.name)
+        except PortError:
+            self._supply.close()
+            raise
         self.name = connection.name
-        self._reading = None
         self._armed_wanted = False
         self._requested_s = self._clock()
-        return connection.fault
+        return connection
+
+    def _first_reading(self, name: str) -> Reading:
+        deadline_s = self._clock() + FIRST_READING_S
+        while self._clock() < deadline_s:
+            try:
+                readings = self._supply.service(self._clock(), heartbeat=True)
+            except SupplyFaultError as problem:
+                raise PortError(f"{name} failed when it was opened: {problem}.") from problem
+            if readings:
+                return readings[-1]
+            time.sleep(0.002)
+        raise PortError(f"{name} did not report its state: check the line, and reset the board.")
 
     def _judge(self, reading: Reading, now_s: float) -> None:
         if reading.fault is not None:
             self._latch_board_fault(reading.fault)
-        elif self._clearing and reading.mode is Mode.STANDBY:
-            self.fault, self._clearing = None, False
         elif self._armed_wanted and self._supply.refusal is not None:
             self._armed_wanted = False
         elif self.fault is None and reading.mode.may_be_live != self._armed_wanted:
@@ -239,31 +251,23 @@ class Supervisor:
 
     def _latch_board_fault(self, fault: Fault) -> None:
         self.fault = self.fault or fault
-        self._armed_wanted = self._clearing = False
+        self._armed_wanted = False
         self._command_expires_s, self._experiment_running = None, False
 
     def _watch(self, now_s: float) -> None:
-        if self.fault is None and self._fresh_reading(now_s) is None and not self._starting(now_s):
+        if self.fault is None and self._fresh_reading(now_s) is None:
             self.fail(Fault(FaultCode.NO_TELEMETRY, f"none for {STALE_S} s"))
         if self._command_expires_s is not None and now_s > self._command_expires_s:
             self._command_expires_s = None
             self._guard(lambda: self._supply.set_voltage((0.0, 0.0)))
         fresh = self._fresh_reading(now_s)
-        proven = self._clearing or (fresh is not None and not fresh.mode.may_be_live)
-        if (
-            self.fault is not None
-            and not proven
-            and not self._clearing
-            and now_s - self._stop_sent_s > STOP_REPEAT_S
-        ):
+        proven = fresh is not None and not fresh.mode.may_be_live
+        if self.fault is not None and not proven and now_s - self._stop_sent_s > STOP_REPEAT_S:
             self._send_stop()
 
     def _may_keep_alive(self) -> bool:
         """An armed board gets heartbeats only while nothing is wrong, so that its own timeout can work."""
         return self._armed_wanted or (self._reading is not None and not self._reading.mode.may_be_live)
-
-    def _starting(self, now_s: float) -> bool:
-        return self._reading is None and now_s - self._requested_s <= STALE_S
 
     def _fresh_reading(self, now_s: float) -> Reading | None:
         if self._reading is None or not self.connected or now_s - self._reading.time_s > STALE_S:

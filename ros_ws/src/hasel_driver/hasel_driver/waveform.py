@@ -50,14 +50,11 @@ class Waveform:
         for name, (low, high) in self.RANGES.items():
             value = getattr(self, name)
             if not low <= value <= high:
-                raise LimitError(
-                    f"{name} is {value}, {low} to {high} was expected: choose a value in that range."
-                )
+                raise LimitError(f"{name} is {value}, {low:g} to {high:g} was expected.")
         for name, choices in (("shape", SHAPES), ("polarity", POLARITIES), ("muscles", MUSCLES)):
-            if getattr(self, name) not in choices:
-                raise LimitError(
-                    f"{name} is {getattr(self, name)!r}, one of {', '.join(choices)} was expected."
-                )
+            value = getattr(self, name)
+            if value not in choices:
+                raise LimitError(f"{name} is {value!r}, one of {', '.join(choices)} was expected.")
 
     @property
     def duration_s(self) -> float:

@@ -1,0 +1,187 @@
+"""`firmware/PROTOCOL.md`, sentence by sentence, on the virtual board and on the firmware in simavr."""
+
+import itertools
+import random
+import time
+
+import pytest
+from hasel_driver import protocol
+from hasel_driver.mode import Mode
+from hasel_driver.virtual_board import SETTINGS
+from hasel_driver.waveform import MUSCLES, POLARITIES, SHAPES, Waveform
+
+
+def test_boots_grounded_and_says_so(board):
+    """A reset ends in STANDBY, grounded, with a banner that names firmware and protocol."""
+    assert board.events[0].words[:5] == ("BOOT", *protocol.IDENTITY)
+    report = board.report()
+    assert (report.mode, report.grounded, report.fault_code) == (Mode.STANDBY, True, 0)
+    assert board.ask("GET", "IDENTITY") == (True, "IDENTITY " + " ".join(protocol.IDENTITY))
+
+
+@pytest.mark.parametrize("name", SETTINGS)
+def test_settings_answer_with_the_value_applied(board, name):
+    """SET clips to the documented range, GET repeats the value; the heartbeat can be neither off nor above 2 s."""
+    least, most, initial = SETTINGS[name]
+    assert board.ask("GET", name) == (True, f"{name} {initial}")
+    for asked, applied in ((least - 1, least), (most + 1, most), (least + 3, least + 3), (-99999, least)):
+        assert board.ask("SET", name, asked) == (True, f"{name} {applied}")
+        assert board.ask("GET", name) == (True, f"{name} {applied}")
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        ("FLY", "UNKNOWN"),
+        ("GET NOTHING", "UNKNOWN"),
+        ("SET", "UNKNOWN"),
+        ("ARM NOW", "SYNTAX"),
+        ("SET SLEW", "SYNTAX"),
+        ("SET SLEW fast", "SYNTAX"),
+        ("SET SLEW 1 2", "SYNTAX"),
+        ("SET SLEW 1000000000", "SYNTAX"),
+        ("SET WAVEFORM saw 1000 1000 1 1000 positive both", "SYNTAX"),
+        ("SET VOLTAGE 1000 1000", "STATE"),
+        ("START", "STATE"),
+        ("CLEAR", "STATE"),
+    ],
+)
+def test_refuses_what_it_cannot_do(board, words, reason):
+    """Every refusal gives its documented reason and the command's words, and changes nothing."""
+    assert board.ask(*words.split()) == (False, f"{reason} {words}")
+    assert board.report().mode is Mode.STANDBY
+
+
+def test_voltage_is_clipped_to_the_maximum(board, rig):
+    """A voltage above MAXIMUM is applied, answered and measured as MAXIMUM, with its sign."""
+    board.ask("SET", "MAXIMUM", 2000)
+    assert board.ask("ARM") == (True, "ARM")
+    assert board.ask("SET", "VOLTAGE", 9000, -9000) == (True, "VOLTAGE 2000 -2000")
+    report = board.listen(0.3)[-1]
+    assert report.voltage == (2000, -2000)
+    assert report.measured == pytest.approx((2000, -2000), abs=25)
+    assert max(rig.ask("output")[4:]) < 2050
+
+
+def test_silence_grounds_within_the_heartbeat_timeout(board, rig):
+    """Without commands the output is grounded after HEARTBEAT, and the fault stays until CLEAR."""
+    board.ask("SET", "HEARTBEAT", 200)
+    board.ask("ARM")
+    board.ask("SET", "VOLTAGE", 3000, 3000)
+    silent_s = time.monotonic()
+    rig.await_live(True)
+    assert 0.15 < rig.await_live(False) - silent_s < 0.3
+    assert board.report().fault_code == 1
+    assert board.ask("ARM") == (False, "STATE ARM")
+    assert board.ask("CLEAR") == (True, "CLEAR")
+    assert board.report().mode is Mode.STANDBY
+
+
+@pytest.mark.parametrize("command", ["STOP", "DISARM"])
+def test_stop_and_disarm_ground(board, rig, command):
+    """Both ground at once; after STOP only CLEAR leads on, and not to ARMED."""
+    board.ask("ARM")
+    board.ask("SET", "VOLTAGE", 5000, 0)
+    rig.await_live(True)
+    asked_s = time.monotonic()
+    board.ask(command)
+    assert rig.await_live(False) - asked_s < 0.1
+    report = board.report()
+    assert report.mode is (Mode.FAULT if command == "STOP" else Mode.STANDBY)
+    assert report.grounded
+
+
+def test_a_skipped_sequence_number_is_a_fault_while_armed(board, rig):
+    """A lost line, or a second master, shows in the sequence."""
+    board.ask("ARM", sequence=7)
+    board.ask("SET", "VOLTAGE", 3000, 3000, sequence=8)
+    rig.await_live(True)
+    assert board.ask("SET", "VOLTAGE", 4000, 4000, sequence=10) == (False, "SEQUENCE SET VOLTAGE 4000 4000")
+    rig.await_live(False)
+    assert board.report().fault_code == 5
+
+
+def test_a_garbled_command_is_a_fault_while_armed(board, rig):
+    """One flipped bit is found by the checksum, is not obeyed, and grounds."""
+    board.ask("ARM")
+    board.ask("SET", "VOLTAGE", 3000, 3000)
+    rig.await_live(True)
+    line = bytearray(protocol.encode_command(2, "SET", "VOLTAGE", 3000, 3000))
+    line[17] ^= 1
+    board.send(bytes(line))
+    assert board.reply() == (False, "CHECKSUM")
+    rig.await_live(False)
+    assert board.report().fault_code == 6
+
+
+def test_random_bytes_neither_arm_nor_hang_the_board(board, rig):
+    """After any rubbish the board is dead, grounded and answers."""
+    generator = random.Random(1)
+    for _ in range(30):
+        board.send(generator.randbytes(generator.randrange(1, 150)))
+        time.sleep(0.01)
+    board.send(b"\n")
+    board.listen(0.3, heartbeat=False)
+    board._replies.clear()
+    assert board.ask("PING") == (True, "PING")
+    assert board.report().mode is Mode.STANDBY
+    assert rig.changes == []
+
+
+def test_slew_is_limited(board):
+    """The measured voltage rises no faster than SLEW."""
+    board.ask("SET", "SLEW", 20)
+    board.ask("ARM")
+    board.ask("SET", "VOLTAGE", 5000, 0)
+    reports = board.listen(0.4)
+    rising = [(r.time_us / 1000, r.measured[0]) for r in reports if 200 < r.measured[0] < 4800]
+    (first_ms, first_v), (last_ms, last_v) = rising[0], rising[-1]
+    assert (last_v - first_v) / (last_ms - first_ms) == pytest.approx(20, rel=0.1)
+
+
+def test_reversal_breaks_before_it_makes(firmware_rig, converse):
+    """Over many reversals the firmware's pins never close two contacts, and keep 2 ms between them."""
+    board = converse(firmware_rig)
+    board.ask("ARM")
+    for index in range(40):
+        sign = 1 if index % 2 else -1
+        board.ask("SET", "VOLTAGE", sign * 1500, -sign * 1000)
+        time.sleep(0.025)
+    board.ask("STOP")
+    firmware_rig.await_live(False)
+    overlaps, shortest_gap_us = firmware_rig.ask("contacts")
+    assert overlaps == 0
+    assert 1900 < shortest_gap_us < 5000
+
+
+@pytest.mark.parametrize(
+    ("shape", "polarity", "muscles"),
+    list(zip(SHAPES, ("alternating", *POLARITIES), MUSCLES, strict=True)),
+)
+def test_waveform_on_the_board_is_the_documented_one(board, shape, polarity, muscles):
+    """Asked-for voltages in the telemetry follow the reference waveform, to its end and back to ARMED."""
+    waveform = Waveform(shape, 3000, 4.0, 2, 0.8, polarity, muscles)
+    words = f"WAVEFORM {shape} 3000 4000 2 800 {polarity} {muscles}"
+    assert board.ask("SET", *words.split()) == (True, words)
+    board.ask("ARM")
+    before_us = board.report().time_us
+    board.ask("START")
+    reports = board.listen(waveform.duration_s + 0.1)
+    assert ("WAVEFORM", "DONE") in [event.words for event in board.events]
+    assert reports[-1].mode is Mode.ARMED
+
+    def deviation(start_us: int) -> float:
+        pairs = [(r.voltage, waveform.voltage((r.time_us - start_us) * 1e-6)) for r in reports]
+        errors = sorted(max(abs(a - b) for a, b in zip(*pair, strict=True)) for pair in pairs)
+        return errors[int(0.9 * len(errors))]  # a report at a jump may fall on either side
+
+    # The start is known to some milliseconds: it must exist, and fit all reports at once.
+    assert min(deviation(before_us + 1000 * ms) for ms in range(-2, 40)) < 3000 * 0.02
+    assert max(abs(v) for r in reports for v in r.voltage) > 2500
+
+
+def test_telemetry_keeps_its_period_and_clock(board):
+    """100 reports a second by default, stamped by the board's own clock."""
+    reports = board.listen(1.0)
+    periods_ms = [(b.time_us - a.time_us) / 1000 for a, b in itertools.pairwise(reports)]
+    assert sum(periods_ms) / len(periods_ms) == pytest.approx(10, abs=0.5)

@@ -1,0 +1,115 @@
+"""Faults of board, line and host, against the virtual supply and the firmware in simavr."""
+
+import math
+import os
+import random
+import time
+
+import pytest
+from hasel_driver import protocol
+from hasel_driver.errors import RefusedError
+from hasel_driver.faults import Fault, FaultCode
+from hasel_driver.mode import Mode
+
+GROUNDED_WITHIN_S = 0.5
+REPEATS = 4
+
+
+def second_master(bench):
+    """Another program writes a valid command to the same port."""
+    descriptor = os.open(bench.rig.port, os.O_RDWR | os.O_NOCTTY)
+    os.write(descriptor, protocol.encode_command(random.randrange(256), "SET", "VOLTAGE", 1000, 1000))
+    os.close(descriptor)
+
+
+def inject(name):
+    """A fault that the rig produces."""
+    return lambda bench: bench.rig.say(name)
+
+
+def stall(bench):
+    """The node's executor hangs."""
+    bench.host_alive = False
+
+
+def command(*voltage):
+    """A voltage that is no number."""
+    return lambda bench: bench.call(bench.supervisor.command, voltage)
+
+
+def emergency_stop(bench):
+    """As topic and service do."""
+    bench.call(bench.supervisor.fail, Fault(FaultCode.EMERGENCY_STOP))
+
+
+# fault: (how, codes it may be latched as)
+FAULTS = {
+    "silence": (inject("silence"), {"NO_TELEMETRY", "NO_REPLY"}),
+    "deaf": (inject("deaf"), {"NO_REPLY", "HEARTBEAT"}),
+    "stuck": (inject("stuck"), {"NO_TELEMETRY", "NO_REPLY", "DEVICE_RESET", "GARBAGE_RECEIVED"}),
+    "garbage": (inject("garbage"), {"GARBAGE_RECEIVED"}),
+    "truncated line": (inject("truncate"), {"GARBAGE_RECEIVED"}),
+    "garbled command": (inject("noise"), {"GARBAGE", "SEQUENCE", "TWO_MASTERS", "NO_REPLY"}),
+    "reset": (inject("reset"), {"DEVICE_RESET", "GARBAGE_RECEIVED", "NO_REPLY", "UNEXPECTED_STATE"}),
+    "over-current": (inject("overcurrent"), {"OVERCURRENT"}),
+    "interlock": (inject("interlock"), {"INTERLOCK"}),
+    "unplugged": (inject("unplug"), {"LINK_LOST"}),
+    "two masters": (second_master, {"TWO_MASTERS", "SEQUENCE", "NO_REPLY", "GARBAGE_RECEIVED", "GARBAGE"}),
+    "stalled node": (stall, {"HOST_STALLED"}),
+    "not a number": (command(math.nan, 0.0), {"INVALID_COMMAND"}),
+    "infinite": (command(1000.0, math.inf), {"INVALID_COMMAND"}),
+    "emergency stop": (emergency_stop, {"EMERGENCY_STOP"}),
+}
+
+
+def provoke(bench, how, codes) -> None:
+    """One fault while live: grounded in time, latched, truthful, and nothing comes back by itself."""
+    bench.arm()
+    bench.drive_until_live()
+    time.sleep(random.uniform(0.0, 0.03))  # meet the line and the heartbeat at any phase
+    at_s = time.monotonic()
+    how(bench)
+    go_on_commanding(bench, lambda: bench.supervisor.fault is not None and not bench.rig.live)
+    dead_s = bench.rig.await_live(False)
+    assert dead_s - at_s < GROUNDED_WITHIN_S
+    assert bench.supervisor.fault.code.name in codes, str(bench.supervisor.fault)
+    bench.rig.say("recover")
+    bench.host_alive = True
+    go_on_commanding(bench, lambda: False, timeout_s=0.1)
+    assert not bench.rig.live
+    assert bench.status().mode is Mode.FAULT
+    with pytest.raises(RefusedError):
+        bench.call(bench.supervisor.arm)
+    assert bench.false_claims() == []
+
+
+def go_on_commanding(bench, until, timeout_s: float = 0.6) -> None:
+    """What a controller does that has noticed nothing."""
+    end_s = time.monotonic() + timeout_s
+    while time.monotonic() < end_s and not until():
+        bench.call(bench.supervisor.command, (3000.0, -2000.0))
+        time.sleep(0.01)
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_grounds_latches_and_does_not_rearm(bench, name):
+    """Every fault, repeatedly: grounded within 500 ms, FAULT until cleared by hand, no false claim."""
+    for _ in range(REPEATS):
+        provoke(bench, *FAULTS[name])
+        if name == "unplugged":
+            bench.rig.replug()
+            bench.port.path = bench.rig.port
+        bench.call(bench.supervisor.clear_fault)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+@pytest.mark.parametrize("name", FAULTS)
+def test_grounds_many_times(bench, name):
+    """Every fault fifty times."""
+    for _ in range(50):
+        provoke(bench, *FAULTS[name])
+        if name == "unplugged":
+            bench.rig.replug()
+            bench.port.path = bench.rig.port
+        bench.call(bench.supervisor.clear_fault)

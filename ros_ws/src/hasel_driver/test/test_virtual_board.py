@@ -1,0 +1,77 @@
+"""The virtual board under any conversation at all, in simulated time."""
+
+from hasel_driver import protocol
+from hasel_driver.mode import Mode
+from hasel_driver.virtual_board import VirtualBoard
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+COMMANDS = st.sampled_from(
+    [
+        "ARM",
+        "DISARM",
+        "STOP",
+        "CLEAR",
+        "START",
+        "PING",
+        "SET VOLTAGE 3000 -3000",
+        "SET VOLTAGE 0 0",
+        "SET VOLTAGE 99999 0",
+        "SET WAVEFORM sine 4000 5000 3 1000 alternating both",
+        "SET MAXIMUM 5000",
+    ]
+)
+STEPS = st.lists(
+    st.one_of(
+        st.tuples(st.just("command"), COMMANDS),
+        st.tuples(st.just("bytes"), st.binary(max_size=30)),
+        st.tuples(st.just("wait"), st.integers(1, 700)),
+        st.tuples(st.just("reset"), st.just("external")),
+    ),
+    max_size=25,
+)
+
+
+@settings(max_examples=60, deadline=None)
+@given(STEPS)
+def test_is_live_only_while_armed_and_heard(steps):
+    """No conversation leaves voltage on in STANDBY or FAULT, above MAXIMUM, or longer than the heartbeat."""
+    board, sequence, silent_ms, armed = VirtualBoard(), 0, 0, False
+    for kind, value in steps:
+        if kind == "command":
+            sequence += 1
+            board.receive(protocol.encode_command(sequence % 256, *value.split()))
+            armed = armed or value == "ARM"
+            silent_ms = 0
+        elif kind == "bytes":
+            board.receive(value)
+        elif kind == "reset":
+            board.reset(value)
+            armed = False
+        for _ in range(value if kind == "wait" else 10):
+            board.tick()
+            silent_ms += 1
+            voltages = [abs(muscle.voltage_v) for muscle in board.muscles]
+            assert max(voltages) <= board.settings["MAXIMUM"] + 1
+            assert armed or max(voltages) < 50 or not board.mode.may_be_live
+            if silent_ms > 520:
+                assert max(voltages) < 50
+                assert board.grounded
+    for _ in range(30):
+        board.tick()
+    if board.mode in (Mode.STANDBY, Mode.FAULT):
+        assert board.grounded
+
+
+def test_a_reset_forgets_everything_but_the_charge():
+    """After a reset the board is grounded, disarmed and at its default settings."""
+    board = VirtualBoard()
+    for sequence, words in enumerate(("SET MAXIMUM 3000", "ARM", "SET VOLTAGE 3000 0")):
+        board.receive(protocol.encode_command(sequence, *words.split()))
+    for _ in range(100):
+        board.tick()
+    assert board.muscles[0].voltage_v > 2990
+    board.reset("watchdog")
+    assert (board.mode, board.grounded, board.settings["MAXIMUM"]) == (Mode.STANDBY, True, 10_000)
+    assert board.muscles[0].voltage_v > 2990
+    assert b"reset=watchdog" in board.transmitted

@@ -1,0 +1,58 @@
+"""The electrical model against circuit theory."""
+
+import math
+
+import pytest
+from hasel_driver.virtual_muscle import Contact, VirtualMuscle
+
+
+def run(muscle: VirtualMuscle, duration_s: float, contact: Contact, set_point_v: float = 0.0) -> None:
+    """Advance in milliseconds."""
+    for _ in range(round(duration_s * 1000)):
+        muscle.step(1e-3, contact, set_point_v)
+
+
+def test_charges_at_the_current_limit():
+    """Far from the set point the voltage rises by I/C: 5 W at 10 kV is 0.5 mA."""
+    muscle = VirtualMuscle(capacitance_f=2e-9)
+    run(muscle, 0.010, Contact.POSITIVE, 10_000.0)
+    assert muscle.voltage_v == pytest.approx(500e-6 / 2e-9 * 0.010, rel=0.01)
+    assert muscle.current_a == 500e-6
+
+
+def test_holds_the_set_point_against_leakage():
+    """Once charged, the current is what leaks: V/R."""
+    muscle = VirtualMuscle()
+    run(muscle, 0.2, Contact.NEGATIVE, 6000.0)
+    assert muscle.voltage_v == pytest.approx(-6000.0)
+    assert muscle.current_a == pytest.approx(6000.0 / 1e9, rel=1e-3)
+
+
+def test_discharges_slowly_when_left_alone():
+    """An open muscle loses its charge with R C, half a second here: 0 V set is not 0 V."""
+    muscle = VirtualMuscle(voltage_v=6000.0)
+    run(muscle, 0.5, Contact.OPEN)
+    assert muscle.voltage_v == pytest.approx(6000.0 / math.e, rel=1e-6)
+
+
+def test_a_lowered_set_point_does_not_discharge():
+    """A converter cannot take charge back: the voltage stays above the new set point."""
+    muscle = VirtualMuscle(voltage_v=6000.0)
+    run(muscle, 0.05, Contact.POSITIVE, 1000.0)
+    assert muscle.voltage_v == pytest.approx(6000.0 * math.exp(-0.1), rel=1e-6)
+    assert muscle.current_a == 0.0
+
+
+def test_grounding_is_quick():
+    """Through the 2 MΩ ground resistor 10 kV fall below 50 V in about six milliseconds."""
+    muscle = VirtualMuscle(voltage_v=10_000.0)
+    run(muscle, 0.006, Contact.GROUND)
+    assert abs(muscle.voltage_v) < 50.0
+
+
+def test_a_short_draws_the_limit():
+    """A short keeps the converter at its limit and the voltage at I R."""
+    muscle = VirtualMuscle(short_ohm=2e6)
+    run(muscle, 0.05, Contact.POSITIVE, 6000.0)
+    assert muscle.current_a == 500e-6
+    assert muscle.voltage_v == pytest.approx(1000.0, rel=0.01)
