@@ -45,10 +45,17 @@ def changed_packages(source: Path, build: Path) -> dict[str, str]:
     return changed
 
 
+def remove_old_files(root: Path, name: str) -> None:
+    """Remove what the last build of a Python package installed, so that deleted modules do not live on."""
+    shutil.rmtree(root / "build" / name / "build", ignore_errors=True)
+    record = root / "build" / name / "install.log"
+    if record.exists():
+        for line in record.read_text(encoding="utf-8").splitlines():
+            Path(line).unlink(missing_ok=True)
+
+
 def colcon_build(root: Path, packages: list[str]) -> int:
     """Build the packages into root/install and return colcon's exit code."""
-    for name in packages:
-        shutil.rmtree(root / "build" / name / "build", ignore_errors=True)  # setuptools keeps deleted modules
     python = sys.executable  # colcon's too: it becomes the interpreter of the executables
     command = [python, "-m", "colcon", "--log-level", "error", "--log-base", "log", "build"]
     command += ["--base-paths", "ros_ws/src", "--merge-install", "--packages-select", *packages]
@@ -73,6 +80,8 @@ def build(root: Path = ROOT) -> int:
         if not changed:
             return 0
         print("Building", ", ".join(changed), flush=True)
+        for name in changed:
+            remove_old_files(root, name)
         code = colcon_build(root, list(changed))
         if code == 0:
             for name, digest in changed.items():

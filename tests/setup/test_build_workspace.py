@@ -1,3 +1,4 @@
+import shutil
 from pathlib import Path
 
 import build_workspace
@@ -19,6 +20,13 @@ def root(tmp_path: Path, monkeypatch) -> Path:
         (root / "install").mkdir(exist_ok=True)
         for name in packages:
             (root / "build" / name).mkdir(exist_ok=True)
+            installed = [
+                root / "install" / f"{name}_{file.name}"
+                for file in (root / "ros_ws/src" / name / name).glob("*.py")
+            ]
+            for file in installed:
+                file.write_text("")
+            (root / "build" / name / "install.log").write_text("\n".join(map(str, installed)))
         with (root / "built").open("a") as log:
             log.write(" ".join(packages) + "\n")
         return 1 if (root / "broken").exists() else 0
@@ -77,6 +85,17 @@ def test_removed_install_builds_all(root):
     """Without install/ everything is built again."""
     build_workspace.build(root)
     built(root)
-    (root / "install").rmdir()
+    shutil.rmtree(root / "install")
     build_workspace.build(root)
     assert built(root) == ["alpha beta"]
+
+
+def test_deleted_module_is_uninstalled(root):
+    """A module that was deleted is gone after the next build; those of other packages stay."""
+    build_workspace.build(root)
+    (root / "ros_ws" / "src" / "beta" / "beta" / "module.py").rename(root / "ros_ws/src/beta/beta/renamed.py")
+    build_workspace.build(root)
+    assert sorted(path.name for path in (root / "install").iterdir()) == [
+        "alpha_module.py",
+        "beta_renamed.py",
+    ]
