@@ -1,0 +1,166 @@
+"""A simulation that is fed with the supply's state as it comes in."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hasel_sim.build import Builder, marker_points
+from hasel_sim.errors import SimulationError
+from hasel_sim.live.angle_history import AngleHistory
+from hasel_sim.live.drive_history import DriveHistory
+from hasel_sim.live.stamp_order import Arrival, StampOrder
+from hasel_sim.mechanics.initial import initial_state
+from hasel_sim.mechanics.state import State
+from hasel_sim.mechanics.stepper import Stepper
+from hasel_sim.mechanics.steps import plan_steps
+from hasel_sim.mechanics.system import DriveState
+from hasel_sim.mesh.mesh import Mesh
+from hasel_sim.model import Model
+from hasel_sim.observation import MarkerRows
+
+
+@dataclass(frozen=True)
+class LiveAngle:
+    """The simulated sine of the bending angle at a state message's stamp [ns]."""
+
+    stamp_ns: int
+    sin_theta: float
+
+
+@dataclass(frozen=True)
+class LiveAnswer:
+    """What one state message led to; `sentence` tells what was out of the ordinary (else empty)."""
+
+    arrival: Arrival
+    angles: tuple[LiveAngle, ...] = ()
+    simulated: float = 0.0
+    """Time [s] by which the body was moved on."""
+    sentence: str = ""
+
+
+class LiveSimulator:
+    """Moves the body on to the stamp of every state message, under the voltage that held until then.
+
+    history: how far back [s] drive and observation effects remember; gap, reset: see `StampOrder`;
+    load_factor: a run starts in equilibrium under this many times all loads, 0: relaxed.
+    The angles agree with those of `simulate` on the same schedule.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        history: float = 20.0,
+        gap: float = 0.1,
+        reset: float = 2.0,
+        load_factor: float = 0.0,
+    ) -> None:
+        self.history, self.load_factor = history, load_factor
+        self.order = StampOrder(gap, reset)
+        self._state: State | None = None
+        self._build(model)
+
+    @property
+    def mesh(self) -> Mesh:
+        """The body's mesh."""
+        return self._stepper.system.mesh
+
+    @property
+    def position(self) -> np.ndarray:
+        """Nodal positions [m] [nodes, 2] now; the reference shape before the first message."""
+        return self.mesh.nodes if self._state is None else self._state.position
+
+    @property
+    def markers(self) -> np.ndarray:
+        """Positions [m] of head, middle and tail marker now, [3, 2]."""
+        return self._rows(self.position)[0]
+
+    def receive(self, stamp_ns: int, voltage: np.ndarray) -> LiveAnswer:
+        """Move on to a state message's stamp [ns]; its voltage [V] [2] holds from there on.
+
+        A message out of order changes nothing. When the motion cannot be followed, the next message starts from rest.
+        """
+        verdict = self.order.judge(stamp_ns)
+        if verdict.arrival == Arrival.HELD:
+            return LiveAnswer(verdict.arrival, sentence=verdict.sentence)
+        try:
+            if verdict.arrival in (Arrival.START, Arrival.RESTART):
+                self._start(stamp_ns)
+            simulated = self._move_to(stamp_ns)
+        except SimulationError as error:
+            self.restart()
+            return LiveAnswer(verdict.arrival, sentence=f"{error}; the next state message starts from rest")
+        self._drive.hold(self._time, np.asarray(voltage, dtype=float))
+        angles = tuple(LiveAngle(stamp, sine) for stamp, sine in self._angles.ready())
+        return LiveAnswer(verdict.arrival, angles, simulated, verdict.sentence)
+
+    def restart(self) -> None:
+        """Let the next message start a run from rest."""
+        self.order.forget()
+        self._state = None
+
+    def use(self, model: Model) -> None:
+        """Go on with another model: in the present motion when the body is the same, from rest otherwise.
+
+        Raises ModelError for a model that cannot be built; the present one then stays.
+        """
+        before = self.model
+        self._build(model)
+        if self._state is None or model.description.body != before.description.body:
+            self.restart()
+            return
+        self._drive.use(model)
+        self._angles.use(model)
+        _fit_branches(self._state, self._stepper)
+
+    def _build(self, model: Model) -> None:
+        builder = Builder(model)
+        fixed = model.description.markers
+        rows = MarkerRows(
+            builder.mesh,
+            marker_points(model),
+            np.array([fixed.head.fixed, fixed.middle.fixed, fixed.tail.fixed]),
+        )
+        stepper = Stepper(builder.system(), model.description.numerics.tolerance_m)
+        self.model, self._rows, self._stepper = model, rows, stepper
+
+    def _start(self, stamp_ns: int) -> None:
+        self._origin_ns, self._time = stamp_ns, 0.0
+        self._stepper = Stepper(self._stepper.system, self._stepper.tolerance)
+        still = DriveState(np.zeros(2), np.zeros(2), 0.0)
+        self._state, _ = initial_state(self._stepper.system, still, self.load_factor, [])
+        self._drive = DriveHistory(self.model, self.history, 0.0)
+        self._angles = AngleHistory(self.model, self.history)
+        self._see(np.zeros(1), [self._state.position])
+
+    def _move_to(self, stamp_ns: int) -> float:
+        """Step to a stamp [ns] and return by how much [s]."""
+        time, numerics = (stamp_ns - self._origin_ns) * 1e-9, self.model.description.numerics
+        step = time - self._time
+        if step > 0:
+            plan = plan_steps(
+                np.array([time]), numerics.steps_per_second, numerics.spectral_radius, self._time, time
+            )
+            instants = plan.balance_times
+            voltage, contraction = self._drive.advance(instants)
+            positions = []
+            for index, coefficients in enumerate(plan.coefficients):
+                drive = DriveState(voltage[index], contraction[index], instants[index])
+                self._state, _ = self._stepper.step(self._state, drive, coefficients)
+                positions.append(self._state.position)
+            self._see(plan.boundaries[1:], positions)
+            self._time = time
+        self._angles.expect(stamp_ns, time)
+        return step
+
+    def _see(self, times: np.ndarray, positions: list[np.ndarray]) -> None:
+        self._angles.add(times, *self._rows(np.array(positions)))
+
+
+def _fit_branches(state: State, stepper: Stepper) -> None:
+    """Give a moving body the internal branches of another material, relaxed as of now."""
+    solid = stepper.system.solid
+    count = len(solid.branches)
+    if count == (0 if state.branch is None else len(state.branch)):
+        return
+    state.branch = np.zeros((count, *solid.areas.shape, 3)) if count else None
+    state.green = solid.green_stress(solid.gradient(state.position)) if count else None
