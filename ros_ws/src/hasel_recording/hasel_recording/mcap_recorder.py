@@ -88,16 +88,22 @@ class McapRecorder:
         with self._lock:
             if self._file.closed:
                 return
-            first = self._first_ns or 0
+            try:
+                self._finish()
+            except OSError as error:
+                raise RecordingError(
+                    f"{self.path} could not be finished ({error.strerror}): what it holds so far can be read."
+                ) from None
+
+    def _finish(self) -> None:
+        first = self._first_ns or 0
+        bag = bag_metadata(self.path.name, self._topics, first, max(first, self._last_ns), self._metadata)
+        with self._file:
             self._writer.flush()
-            self._writer.add_metadata(
-                "rosbag2",
-                bag_metadata(self.path.name, self._topics, first, max(first, self._last_ns), self._metadata),
-            )
+            self._writer.add_metadata("rosbag2", bag)
             self._writer.finish()
             self._file.flush()
             os.fsync(self._file.fileno())
-            self._file.close()
 
     def __enter__(self) -> "McapRecorder":
         return self

@@ -118,6 +118,21 @@ def test_full_disk_is_reported_at_the_next_write(tmp_path, monkeypatch):
     recorder.close()
 
 
+def test_failure_to_finish_is_one_sentence(tmp_path, monkeypatch):
+    """When the disk fails at the end, closing says so, and what was written can still be read."""
+
+    def fail(_: int) -> None:
+        raise OSError(5, "Input/output error")
+
+    recorder = McapRecorder(tmp_path / "run.mcap")
+    recorder.write(COMMAND, {"voltage": [1.0, 2.0]}, 1)
+    monkeypatch.setattr(os, "fsync", fail)
+    with pytest.raises(RecordingError, match="could not be finished .Input/output error"):
+        recorder.close()
+    recorder.close()
+    assert len(read_file(tmp_path / "run.mcap").messages[COMMAND]) == 1
+
+
 def test_unknown_topic_needs_a_type(tmp_path):
     """A mapping on a topic of unknown type is refused with the nearest topic of the stack."""
     with (
