@@ -1,0 +1,5 @@
+"""What can go wrong in identification; every message is one sentence with a next step."""
+
+
+class SysidError(Exception):
+    """Recordings, options or results with which identification cannot go on."""

@@ -1,0 +1,137 @@
+"""Trust-region least squares with exact sensitivities (scipy), the default way to fit."""
+
+from collections.abc import Callable
+
+import numpy as np
+from hasel_sim.errors import SimulationError
+from hasel_sim.model import Model
+from scipy.optimize import least_squares
+
+from hasel_sysid.draft import draft
+from hasel_sysid.fit.result import FitResult
+from hasel_sysid.fit.uncertainty import parameter_covariance
+from hasel_sysid.noise import estimate_noise
+from hasel_sysid.problem import Evaluation, Problem
+
+Progress = Callable[[str, float], None]
+"""Called with a line of text and the share done, 0 to 1."""
+
+
+def fit_least_squares(
+    problem: Problem,
+    model: Model,
+    progress: Progress | None = None,
+    tolerance: float = 1e-4,
+    most_evaluations: int = 25,
+    drafts: bool = True,
+) -> FitResult:
+    """Minimise the squared residuals over the model's free parameters within their bounds.
+
+    A draft of the model (coarse mesh, long steps) leads most of the way; the model itself goes the rest.
+    tolerance: relative change of the parameters or of the sum of squares at which to stop; drafts: whether to start
+    with the draft, which is a waste of time when the start is already good.
+    Raises SimulationError when even the start cannot be simulated.
+    """
+    if not model.free:
+        return fitted_result(problem.evaluate(model), 1)
+    count = 0
+    if drafts:
+        led, count = _minimise(problem, draft(model), progress, 1e-2, most_evaluations)
+        model = model.with_values({name: led.model.values[name] for name in model.free})
+    evaluation, more = _minimise(problem, model, progress, tolerance, most_evaluations)
+    return fitted_result(evaluation, count + more)
+
+
+def _minimise(
+    problem: Problem, model: Model, progress: Progress | None, tolerance: float, most_evaluations: int
+) -> tuple[Evaluation, int]:
+    names = model.free
+    search = _Search(problem, model, names, progress, most_evaluations)
+    lower, upper, start = _bounds_and_start(model, names)
+    scale = np.maximum(np.abs(start), [_scale(model, name) for name in names])
+    search.at(start)
+    found = least_squares(
+        search.residual,
+        start,
+        jac=search.jacobian,
+        bounds=(lower, upper),
+        x_scale=scale,
+        xtol=tolerance,
+        ftol=0.1 * tolerance,
+        gtol=1e-12,
+        max_nfev=most_evaluations,
+    )
+    return search.at(found.x), search.count
+
+
+class _Search:
+    """Evaluates the model where scipy asks, once per point; a point that cannot be simulated counts as a bad one."""
+
+    def __init__(self, problem: Problem, model: Model, names: tuple[str, ...], progress, most: int) -> None:
+        self.problem, self.model, self.names = problem, model, names
+        self.progress, self.most, self.count = progress, most, 0
+        self._known: dict[bytes, Evaluation] = {}
+        self._first: Evaluation | None = None
+
+    def at(self, x: np.ndarray) -> Evaluation:
+        key = x.tobytes()
+        if key not in self._known:
+            values = dict(zip(self.names, x, strict=True))
+            self._known[key] = self.problem.evaluate(self.model.with_values(values), self.names)
+            self._first = self._first or self._known[key]
+            self.count += 1
+            if self.progress:
+                error = self._known[key].mean_absolute_error
+                self.progress(f"fit, step {self.count}: mean |Δ sin θ| = {error:.5f}", self.count / self.most)
+        return self._known[key]
+
+    def residual(self, x: np.ndarray) -> np.ndarray:
+        try:
+            return self.at(x).residual
+        except SimulationError:
+            return np.full_like(self._first.residual, 1.0)
+
+    def jacobian(self, x: np.ndarray) -> np.ndarray:
+        return -self.at(x).jacobian
+
+
+def _scale(model: Model, name: str) -> float:
+    for effect in model.effects:
+        for p in effect.parameters:
+            if f"{effect.id}.{p.name}" == name:
+                return abs(p.typical) or 1.0
+    return 1e-3
+
+
+def _bounds_and_start(model: Model, names: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    parameters = [model.parameters[name] for name in names]
+    lower = np.array([p.lower for p in parameters])
+    upper = np.array([p.upper for p in parameters])
+    start = np.clip([p.value for p in parameters], lower, upper)
+    return lower, upper, start
+
+
+def fitted_result(evaluation: Evaluation, count: int) -> FitResult:
+    """Add standard errors, bounds reached and parameters that are not determined."""
+    model, names = evaluation.model, evaluation.names
+    noise = estimate_noise(evaluation.residual, evaluation.runs, evaluation.jacobian, "what the fit leaves")
+    covariance, undetermined = parameter_covariance(evaluation.jacobian, noise, evaluation.runs)
+    errors = dict(zip(names, np.sqrt(np.diag(covariance)), strict=True))
+    finite = {name: float(error) for name, error in errors.items() if np.isfinite(error)}
+    parameters = [model.parameters[name] for name in names]
+    at_bound = tuple(p.name for p in parameters if _on(p.value, p.lower, p) or _on(p.value, p.upper, p))
+    return FitResult(
+        model.with_values(model.values, finite),
+        evaluation,
+        at_bound,
+        tuple(name for name, hidden in zip(names, undetermined, strict=True) if hidden),
+        count,
+        "least squares",
+    )
+
+
+def _on(value: float, bound: float, parameter) -> bool:
+    width = parameter.upper - parameter.lower
+    return bool(np.isfinite(bound)) and abs(value - bound) < 1e-4 * (
+        width if np.isfinite(width) else abs(bound) or 1.0
+    )

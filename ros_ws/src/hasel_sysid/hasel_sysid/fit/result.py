@@ -1,0 +1,46 @@
+"""What a fit found, in numbers and in sentences."""
+
+from dataclasses import dataclass
+
+from hasel_sim.model import Model
+
+from hasel_sysid.problem import Evaluation
+
+
+@dataclass(frozen=True)
+class FitResult:
+    """The fitted model and how well it is determined.
+
+    model: with fitted values and standard errors; evaluation: at these values; at_bound: parameters on a bound;
+    undetermined: parameters that these recordings do not determine; iterations: simulations of all runs.
+    """
+
+    model: Model
+    evaluation: Evaluation
+    at_bound: tuple[str, ...]
+    undetermined: tuple[str, ...]
+    iterations: int
+    method: str
+
+    @property
+    def mean_absolute_error(self) -> float:
+        """Mean |Δ sin θ| on the fitted runs."""
+        return self.evaluation.mean_absolute_error
+
+    @property
+    def sentences(self) -> list[str]:
+        """What a user should know about the parameters, one sentence each."""
+        notes = []
+        for name in self.at_bound:
+            p = self.model.parameters[name]
+            side = "upper" if abs(p.value - p.upper) < abs(p.value - p.lower) else "lower"
+            notes.append(
+                f"{name} is at its {side} bound: something else is missing, or the bound is too tight."
+            )
+        notes += [f"{name} cannot be determined from these recordings." for name in self.undetermined]
+        return notes
+
+    def __str__(self) -> str:
+        values = "; ".join(str(self.model.parameters[name]) for name in self.evaluation.names)
+        text = f"Fitted by {self.method} to mean |Δ sin θ| = {self.mean_absolute_error:.5f}: {values}."
+        return " ".join([text, *self.sentences])

@@ -1,0 +1,100 @@
+"""The noise of the measured angle: white, plus a part that neighbouring frames share."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import matmul_toeplitz
+from scipy.optimize import minimize
+from scipy.signal import lfilter
+
+
+@dataclass(frozen=True)
+class NoiseModel:
+    """Autocovariance white (lag 0) + coloured correlation^lag, lag in frames; the variances are of sin theta.
+
+    source: where the numbers come from, in words.
+    """
+
+    white: float
+    coloured: float
+    correlation: float
+    source: str = "what the best model leaves"
+
+    @property
+    def standard_deviation(self) -> float:
+        """Of one frame."""
+        return float(np.sqrt(self.white + self.coloured))
+
+    @property
+    def mean_absolute(self) -> float:
+        """Mean |noise|, what mean |Δ sin θ| would be for a perfect model."""
+        return float(np.sqrt(2 / np.pi) * self.standard_deviation)
+
+    def covariance_product(self, columns: np.ndarray, runs: np.ndarray) -> np.ndarray:
+        """Covariance matrix times columns [frames, n]; runs [frames] are independent of each other."""
+        out = np.empty_like(columns)
+        for run in np.unique(runs):
+            here = runs == run
+            first = self.coloured * self.correlation ** np.arange(here.sum())
+            first[0] += self.white
+            out[here] = matmul_toeplitz(first, columns[here])
+        return out
+
+    def sample(self, runs: np.ndarray, count: int, generator: np.random.Generator) -> np.ndarray:
+        """Draw noise series, the mean of every run removed, [frames, count]."""
+        out = np.empty((len(runs), count))
+        for run in np.unique(runs):
+            here = runs == run
+            n = here.sum()
+            drive = generator.standard_normal((n, count))
+            drive[1:] *= np.sqrt(1 - self.correlation**2)
+            slow = np.sqrt(self.coloured) * lfilter([1.0], [1.0, -self.correlation], drive, axis=0)
+            series = slow + np.sqrt(self.white) * generator.standard_normal((n, count))
+            out[here] = series - series.mean(axis=0)
+        return out
+
+    def __str__(self) -> str:
+        share = self.coloured / max(self.white + self.coloured, 1e-300)
+        memory = -1 / np.log(min(max(self.correlation, 1e-9), 1 - 1e-9))
+        return (
+            f"noise of {self.standard_deviation:.2g} rms, {share:.0%} of its power shared by neighbouring frames "
+            f"over {memory:.0f} frames (from {self.source})"
+        )
+
+
+def estimate_noise(residual: np.ndarray, runs: np.ndarray, fitted: np.ndarray, source: str) -> NoiseModel:
+    """Fit the noise to what a model leaves, by Whittle's likelihood of the periodograms of all runs.
+
+    residual [frames]; fitted [frames, n]: directions already taken out of it, which lack the noise's power.
+    """
+    basis = np.linalg.qr(fitted)[0] if fitted.shape[1] else fitted
+    frequency, power, left = [], [], []
+    for run in np.unique(runs):
+        here = runs == run
+        n = here.sum()
+        if n < 16:
+            continue
+        transform = np.fft.rfft(residual[here])[1:]
+        frequency.append(2 * np.pi * np.arange(1, len(transform) + 1) / n)
+        power.append(np.abs(transform) ** 2 / n)
+        taken = (np.abs(np.fft.rfft(basis[here], axis=0)[1:]) ** 2).sum(axis=1) / n
+        left.append(np.clip(1 - taken, 0.05, 1.0))
+    if not frequency:
+        return NoiseModel(float(np.var(residual)), 0.0, 0.5, source)
+    omega, periodogram, remaining = (np.concatenate(part) for part in (frequency, power, left))
+    level = np.log(max(periodogram.mean(), 1e-30))
+
+    def negative_likelihood(parameters: np.ndarray) -> float:
+        white, coloured, rho = np.exp(parameters[0]), np.exp(parameters[1]), 1 / (1 + np.exp(-parameters[2]))
+        spectrum = white + coloured * (1 - rho**2) / (1 - 2 * rho * np.cos(omega) + rho**2)
+        expected = spectrum * remaining
+        return float(np.sum(np.log(expected) + periodogram / expected))
+
+    bounds = [(level - 8, level + 3), (level - 8, level + 6), (-1.0, 4.0)]
+    starts = ([level, level - 2, 2.0], [level - 2, level, 2.0], [level, level - 5, 0.0])
+    best = min(
+        (minimize(negative_likelihood, s, bounds=bounds, method="L-BFGS-B") for s in starts),
+        key=lambda r: r.fun,
+    )
+    white, coloured, rho = np.exp(best.x[0]), np.exp(best.x[1]), 1 / (1 + np.exp(-best.x[2]))
+    return NoiseModel(float(white), float(coloured), float(rho), source)

@@ -1,0 +1,101 @@
+"""Residuals of many runs and their derivatives, with the unknown offset of every run taken out."""
+
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+import numpy as np
+from hasel_sim.model import Model
+from hasel_sim.parallel import submit_all
+from hasel_sim.run import Simulation
+
+from hasel_sysid.dataset import Experiment
+from hasel_sysid.errors import SysidError
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """One model against all runs.
+
+    residual: measured minus simulated sin theta, the mean of every run removed (its offset is a nuisance), [frames];
+    jacobian: derivative of the simulated series by `names`, treated alike, [frames, parameters]; runs: number of the
+    run each frame belongs to, [frames]; offsets: what was removed, [runs]; frames: which frames of every run have both
+    a measured and a simulated angle.
+    """
+
+    model: Model
+    names: tuple[str, ...]
+    simulations: tuple[Simulation, ...]
+    residual: np.ndarray
+    jacobian: np.ndarray
+    runs: np.ndarray
+    offsets: np.ndarray
+    frames: tuple[np.ndarray, ...]
+
+    @property
+    def mean_absolute_error(self) -> float:
+        """Mean |Δ sin θ| over all frames of all runs."""
+        return float(np.abs(self.residual).mean())
+
+    @property
+    def sum_of_squares(self) -> float:
+        """Sum of the squared residuals."""
+        return float(self.residual @ self.residual)
+
+    def simulated(self) -> np.ndarray:
+        """The simulated series at the frames of `residual`, the mean of every run removed, [frames]."""
+        chosen = [s.sin_theta[used] for s, used in zip(self.simulations, self.frames, strict=True)]
+        return np.concatenate([series - series.mean() for series in chosen])
+
+
+class Problem:
+    """Measured runs to be explained; `evaluate` is the only thing that simulates."""
+
+    def __init__(self, experiments: Sequence[Experiment], pool: Executor) -> None:
+        if not experiments:
+            raise SysidError("no recording was given; expected at least one: name .csv or .mcap files")
+        self.experiments, self.pool = tuple(experiments), pool
+        self.evaluations = 0
+
+    def evaluate(self, model: Model, names: Sequence[str] = ()) -> Evaluation:
+        """Simulate every run with the model, with derivatives by the named parameters."""
+        return self.evaluate_all([model], [names])[0]
+
+    def evaluate_all(self, models: Sequence[Model], names: Sequence[Sequence[str]]) -> list[Evaluation]:
+        """Several models at once, so that all workers stay busy."""
+        pending = [
+            submit_all(self.pool, model, [e.run for e in self.experiments], by)
+            for model, by in zip(models, names, strict=True)
+        ]
+        self.evaluations += len(models)
+        return [
+            self._collect(model, tuple(by), [future.result() for future in futures])
+            for model, by, futures in zip(models, names, pending, strict=True)
+        ]
+
+    def _collect(self, model: Model, names: tuple[str, ...], simulations: list[Simulation]) -> Evaluation:
+        residuals, jacobians, runs, offsets, frames = [], [], [], [], []
+        for number, (experiment, simulation) in enumerate(zip(self.experiments, simulations, strict=True)):
+            used = np.isfinite(experiment.sin_theta) & np.isfinite(simulation.sin_theta)
+            if not used.any():
+                raise SysidError(
+                    f"{experiment.name} has no frame with both a measured and a simulated angle; "
+                    "check its time column and initial_time_s"
+                )
+            difference = (experiment.sin_theta - simulation.sin_theta)[used]
+            slopes = simulation.slopes[used]
+            offsets.append(difference.mean())
+            residuals.append(difference - difference.mean())
+            jacobians.append(slopes - slopes.mean(axis=0))
+            runs.append(np.full(used.sum(), number))
+            frames.append(used)
+        return Evaluation(
+            model,
+            names,
+            tuple(simulations),
+            np.concatenate(residuals),
+            np.concatenate(jacobians),
+            np.concatenate(runs),
+            np.array(offsets),
+            tuple(frames),
+        )
