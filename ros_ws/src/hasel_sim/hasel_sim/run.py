@@ -11,8 +11,9 @@ from hasel_sim.drive.voltage import VoltageSchedule
 class Run:
     """One experiment: frames [s], the commanded voltage (None for a passive body) and how it starts.
 
-    initial_state: "rest" (relaxed, without loads) or "static_equilibrium" under initial_load_factor times all loads,
-    let go at initial_time [s] (default: the first frame or switch, whichever comes first).
+    initial_state: "rest" (relaxed, without loads), "static_equilibrium" under initial_load_factor times all loads, or
+    "held_shape", the nodal positions initial_shape [m] [nodes, 2] (such as one of `Simulation.shapes`); let go without
+    speed at initial_time [s] (default: the first frame or switch, whichever comes first).
     """
 
     name: str
@@ -21,6 +22,7 @@ class Run:
     initial_state: str = "rest"
     initial_load_factor: float = 1.0
     initial_time: float | None = None
+    initial_shape: np.ndarray | None = None
 
     @property
     def start(self) -> float:

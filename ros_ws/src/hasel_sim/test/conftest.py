@@ -4,8 +4,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from threadpoolctl import threadpool_limits
-
 from hasel_sim.build import Builder
 from hasel_sim.drive.voltage import VoltageSchedule
 from hasel_sim.effects.base import EffectParameter, ForceEffect
@@ -14,6 +12,7 @@ from hasel_sim.mechanics.system import DriveState
 from hasel_sim.model import Model, Parameter, load_model
 from hasel_sim.model.description import Description
 from hasel_sim.run import Run
+from threadpoolctl import threadpool_limits
 
 
 class TipForce(ForceEffect):
@@ -114,8 +113,10 @@ def equilibrium_of(still):
 @pytest.fixture(scope="session")
 def swimmer() -> Model:
     """The default swimmer with amplitudes near those of a real one at 5.5 kV."""
-    return load_model("swimmer").with_levels(np.array([5500.0])).with_values(
-        {"amplitude_5500": 0.0624, "slope": 0.264}
+    return (
+        load_model("swimmer")
+        .with_levels(np.array([5500.0]))
+        .with_values({"amplitude_5500": 0.0624, "slope": 0.264})
     )
 
 

@@ -50,7 +50,7 @@ class BandFactors:
         if len(columns) == 0:
             return out
         k, flat = self._half_bandwidth, columns.reshape(len(columns), -1)
-        right = np.asfortranarray(flat[:, self._held :].T)
+        right = np.array(flat[:, self._held :].T, order="F")
         solution, _ = lapack.dgbtrs(
             self._factors, k, k, right, self._pivots, trans=1 if transposed else 0, overwrite_b=1
         )

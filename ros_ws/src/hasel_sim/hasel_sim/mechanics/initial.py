@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.branches import green_stress_direction
 from hasel_sim.mechanics.residual_slopes import ForceSlope, ResidualSlope, SolidSlope
 from hasel_sim.mechanics.state import State, StateSlopes
@@ -12,13 +13,21 @@ _EQUILIBRIUM_TOLERANCE = 1e-11
 
 
 def initial_state(
-    system: System, drive: DriveState, load_factor: float, parameters: list[ResidualSlope]
+    system: System,
+    drive: DriveState,
+    load_factor: float,
+    parameters: list[ResidualSlope],
+    held_shape: np.ndarray | None = None,
 ) -> tuple[State, StateSlopes]:
-    """At rest in equilibrium under load_factor times all loads, about to move under all of them.
+    """At rest in equilibrium under load_factor times all loads, or in a held shape [m] [nodes, 2], about to move.
 
-    The derivatives have one column per parameter. Raises SimulationError when there is no equilibrium.
+    The derivatives have one column per parameter. Raises SimulationError when there is no equilibrium, or for a shape
+    of another mesh.
     """
-    position, line = equilibrium(system, drive, load_factor, _EQUILIBRIUM_TOLERANCE)
+    if held_shape is None:
+        position, line = equilibrium(system, drive, load_factor, _EQUILIBRIUM_TOLERANCE)
+    else:
+        position, line = _held(system, drive, held_shape)
     still = np.zeros_like(position)
     state = State(position, still.copy(), still.copy())
     branches = system.solid.branches
@@ -29,7 +38,8 @@ def initial_state(
     by_parameter = _residual_slopes(parameters, motion, drive, line, state)
     scale = np.array([load_factor if isinstance(p, ForceSlope) else 1.0 for p in parameters])
     right = system.held_to_zero(scale[:, None, None] * by_parameter)
-    slopes = StateSlopes(equilibrium_slope(line, right), np.zeros_like(right), np.zeros_like(right))
+    moved = equilibrium_slope(line, right) if held_shape is None else np.zeros_like(right)
+    slopes = StateSlopes(moved, np.zeros_like(right), np.zeros_like(right))
     if len(branches):
         _branch_slopes(system, state, parameters, slopes)
 
@@ -40,12 +50,24 @@ def initial_state(
     return state, slopes
 
 
+def _held(system: System, drive: DriveState, shape: np.ndarray) -> tuple[np.ndarray, Linearisation]:
+    if shape.shape != system.nodes.shape:
+        raise SimulationError(
+            f"the initial shape has the size {shape.shape}; expected {system.nodes.shape}, one position per node: take it "
+            "from a simulation with the same body and mesh density"
+        )
+    position = shape.copy()
+    position[: system.held] = system.nodes[: system.held]
+    still = np.zeros_like(position)
+    return position, system.linearise(Motion(position, still, still), drive, Memory())
+
+
 def _residual_slopes(
     parameters: list[ResidualSlope], motion: Motion, drive: DriveState, line: Linearisation, state: State
 ) -> np.ndarray:
     out = np.zeros((len(parameters), *motion.position.shape))
     for column, parameter in enumerate(parameters):
-        parameter.add(motion, drive, line, state, 1e-9, out[column])
+        parameter.add(motion, drive, line, state, 0.0, out[column])
     return out
 
 

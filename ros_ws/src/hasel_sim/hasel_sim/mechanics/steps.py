@@ -26,9 +26,12 @@ class StepPlan:
 def plan_steps(
     frame_times: np.ndarray, steps_per_second: float, rho: float, start: float, end: float
 ) -> StepPlan:
-    """Equal steps, at least `steps_per_second` of them, between neighbouring frames [s] and on to `end` [s]."""
+    """Equal steps, about `steps_per_second` of them, between neighbouring frames [s] and on to `end` [s].
+
+    Frame times come rounded and jitter a little; a tenth of a step too long is not worth another step.
+    """
     marks = np.unique(np.concatenate([[start], frame_times, [max(end, frame_times[-1])]]))
-    counts = np.maximum(1, np.ceil(np.diff(marks) * steps_per_second - 1e-2).astype(int))
+    counts = np.maximum(1, np.ceil(np.diff(marks) * steps_per_second - 0.1).astype(int))
     pieces = [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(marks[:-1], marks[1:], counts, strict=True)]
     boundaries = np.concatenate([marks[:1], *pieces])
     frames = np.concatenate([[0], np.cumsum(counts)])[np.searchsorted(marks, frame_times)]

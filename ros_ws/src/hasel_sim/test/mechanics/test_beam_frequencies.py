@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from scipy.linalg import eigh
-
 from hasel_sim.build import Builder
 from hasel_sim.mechanics.system import Memory, Motion
+from scipy.linalg import eigh
 
 LENGTH, HEIGHT, MODULUS, DENSITY, RATIO = 0.1, 0.1 / 60, 1e5, 1000.0, 0.3
 CLAMPED_FREE = np.array([1.87510407, 4.69409113, 7.85475744])
@@ -17,7 +16,9 @@ def _dense(band) -> np.ndarray:
     out = np.zeros((n, n))
     for column in range(n):
         low, high = max(0, column - k), min(n, column + k + 1)
-        out[low:high, column] = band.entries[band.diagonal + low - column : band.diagonal + high - column, column]
+        out[low:high, column] = band.entries[
+            band.diagonal + low - column : band.diagonal + high - column, column
+        ]
     return out[band.held :, band.held :]
 
 

@@ -1,0 +1,60 @@
+"""The whole drive from voltage to contraction."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from hasel_sim.drive.chain import DriveChain
+from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.effects.base import DriveEffect, DriveStage, EffectParameter
+
+VALUES = {"amplitude_5500": 0.06, "slope": 0.3}
+
+
+class Gain(DriveEffect):
+    """Multiplies the voltage."""
+
+    id = "gain"
+    stage = DriveStage.SUPPLY
+    parameters = (EffectParameter("factor", "g", "1", 1.0, 0.0, 2.0, 0.5),)
+
+    def respond(self, time, signal, p: SimpleNamespace):
+        """Scaled."""
+        return p.factor * signal
+
+
+class Delay(DriveEffect):
+    """Shifts the contraction in time."""
+
+    id = "delay"
+    stage = DriveStage.CONTRACTION
+    parameters = (EffectParameter("time", "t", "s", 0.0, 0.0, 1.0, 0.1),)
+
+    def clock(self, time, p: SimpleNamespace):
+        """Later."""
+        return time + p.time
+
+
+def _contraction(effects, values, times):
+    schedule = VoltageSchedule(np.array([0.0, 0.5]), np.array([[5500.0, 0.0], [0.0, 5500.0]]))
+    chain = DriveChain(effects, np.array([5500.0]))
+    return chain.contraction(schedule, times, VALUES, values)
+
+
+def test_a_switch_between_two_instants_acts_from_its_own_time():
+    """The grid of the answer does not move the ramp: exact at any instants asked for."""
+    coarse = _contraction([], {}, np.array([0.0, 0.45, 0.55, 0.62]))
+    assert coarse == pytest.approx(
+        np.array([[0.0, 0.0], [0.06, 0.0], [0.045, 0.015], [0.024, 0.036]]), abs=1e-12
+    )
+
+
+def test_effects_act_in_the_order_of_their_stage():
+    """A gain on the voltage changes the target, a delay the contraction, however they are listed."""
+    times = np.linspace(0, 1, 21)
+    values = {"gain": SimpleNamespace(factor=0.0), "delay": SimpleNamespace(time=0.1)}
+    assert not _contraction([Delay(), Gain()], values, times).any()
+    values["gain"].factor = 1.0
+    found, plain = _contraction([Delay(), Gain()], values, times), _contraction([], {}, times)
+    assert found[2:] == pytest.approx(plain[:-2])

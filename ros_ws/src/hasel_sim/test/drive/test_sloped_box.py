@@ -1,0 +1,45 @@
+"""The seed paper's muscle: amplitude per voltage, one slope."""
+
+import numpy as np
+import pytest
+
+from hasel_sim.drive.sloped_box import limit_rate, target_contraction
+
+LEVELS, AMPLITUDES = np.array([3500.0, 4500.0, 5500.0]), np.array([0.02, 0.05, 0.06])
+
+
+def test_the_target_passes_through_the_amplitudes_of_either_sign():
+    """Exact at the levels and at zero, the same for negative voltages."""
+    found = target_contraction(np.array([0.0, 3500.0, -4500.0, 5500.0]), LEVELS, AMPLITUDES)
+    assert found == pytest.approx([0.0, 0.02, 0.05, 0.06])
+
+
+def test_the_target_rises_monotonically_between_and_beyond_the_levels():
+    """PCHIP overshoots nowhere; above the highest level it goes on."""
+    found = target_contraction(np.linspace(0, 7000, 400), LEVELS, AMPLITUDES)
+    assert np.all(np.diff(found) >= 0)
+    assert found[-1] >= 0.06
+
+
+def test_without_levels_nothing_contracts():
+    """A model that has seen no voltage yet."""
+    assert not target_contraction(np.array([1000.0]), np.array([]), np.array([])).any()
+
+
+def test_the_contraction_is_a_box_with_sloped_sides():
+    """Rises and falls at the slope, holds at the amplitude; each muscle by itself."""
+    time = np.linspace(0, 1, 1001)
+    target = np.stack([np.where(time < 0.5995, 0.06, 0.0), np.where(time < 0.5995, 0.0, 0.06)], axis=1)
+    found = limit_rate(time, target, 0.3)
+    after = time - 0.599
+    expected = np.where(time < 0.5995, np.minimum(0.3 * time, 0.06), np.maximum(0.06 - 0.3 * after, 0.0))
+    assert found[:, 0] == pytest.approx(expected, abs=1e-9)
+    assert found[:, 1] == pytest.approx(np.where(time < 0.5995, 0.0, np.minimum(0.3 * after, 0.06)), abs=1e-9)
+
+
+def test_a_slope_too_low_for_the_frequency_gives_a_triangle():
+    """The amplitude is never reached; the contraction stays continuous."""
+    time = np.linspace(0, 1, 1001)
+    found = limit_rate(time, np.where(time < 0.5, 1.0, 0.0)[:, None].repeat(2, 1), 0.1)
+    assert found.max() == pytest.approx(0.05, abs=1e-3)
+    assert np.abs(np.diff(found, axis=0)).max() <= 0.1 * 1e-3 + 1e-12
