@@ -18,5 +18,9 @@ setup(
     maintainer_email="maintainers@example.org",
     description="Planar finite elements of the swimmer, its muscles and the physical effects on it.",
     license="Apache-2.0",
-    entry_points={"console_scripts": []},
+    entry_points={
+        "console_scripts": [
+            "simulator = hasel_sim.simulator_node:main",
+        ]
+    },
 )

@@ -1,0 +1,205 @@
+"""`ros2 run hasel_sim simulator`: the supply's state comes in, the simulated bending angle goes out at its stamps."""
+
+import sys
+import time
+from collections import Counter
+
+import numpy as np
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from hasel_interfaces.msg import BendingAngle, SupplyState
+from hasel_interfaces.srv import AddEffect, LoadModel, RemoveEffect
+from rclpy.exceptions import InvalidParameterValueException
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
+from threadpoolctl import threadpool_limits
+from visualization_msgs.msg import MarkerArray
+
+from hasel_sim.errors import HaselSimError
+from hasel_sim.live.live_model import live_model
+from hasel_sim.live.live_simulator import LiveAnswer, LiveSimulator
+from hasel_sim.live.pace import Pace
+from hasel_sim.model import Model
+from hasel_sim.model_parameters import ModelParameters
+from hasel_sim.node_parameters import NodeParameter, declare, words
+from hasel_sim.simulator_messages import BodyMessage, angle_message, diagnostics, to_nanoseconds
+
+EVERY_MESSAGE = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.RELIABLE)
+PARAMETERS = (
+    NodeParameter("model", "swimmer", "model simulated at the start: its name or file"),
+    NodeParameter(
+        "effects", [""], "effects added to the model at the start: ids, or path/to/file.py:ClassName"
+    ),
+    NodeParameter(
+        "rate", 0.0, "most angles published per second; 0: one for every state", "1/s", 0.0, 1000.0, True
+    ),
+    NodeParameter(
+        "shape_rate", 20.0, "shapes published per second, if anybody listens", "1/s", 0.0, 20.0, True
+    ),
+    NodeParameter("history", 20.0, "how far back drive and observation effects remember", "s", 1.0, 600.0),
+    NodeParameter("gap", 0.1, "state messages further apart are reported as missing", "s", 0.001, 10.0),
+    NodeParameter("reset", 2.0, "a longer jump in the stamps starts a new run from rest", "s", 0.01, 3600.0),
+    NodeParameter(
+        "load_factor", 0.0, "a run starts in equilibrium under this many times all loads", "1", 0.0, 10.0
+    ),
+    NodeParameter("frame_id", "swimmer", "frame of the stamped messages"),
+)
+
+
+class SimulatorNode(Node):
+    """Thin: all that is simulated happens in `LiveSimulator`."""
+
+    def __init__(self) -> None:
+        super().__init__("hasel_simulator")
+        declare(self, PARAMETERS)
+        model, warning = live_model(self._value("model"), words(self, "effects"))
+        self._warn(warning)
+        options = {name: self._value(name) for name in ("history", "gap", "reset", "load_factor")}
+        self.model_parameters = ModelParameters(self, self._use)
+        model = self.model_parameters.declare(model)
+        self.live = LiveSimulator(model, **options)
+        _warm_up(LiveSimulator(model, **options))
+        self._body = BodyMessage(self.live.mesh, self._value("frame_id"))
+        self._pace, self._counts = Pace(), Counter()
+        self._next_angle_ns = self._next_shape_s = 0
+        self._angles = self.create_publisher(BendingAngle, "/hasel/bending/simulated", EVERY_MESSAGE)
+        self._shapes = self.create_publisher(MarkerArray, "/hasel/swimmer", 2)
+        self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
+        self.create_service(AddEffect, "/hasel/add_effect", self._add_effect)
+        self.create_service(RemoveEffect, "/hasel/remove_effect", self._remove_effect)
+        self.create_service(LoadModel, "/hasel/load_model", self._load_model)
+        self.create_timer(1.0, self._report)
+        self.create_subscription(SupplyState, "/hasel/state", self._on_state, EVERY_MESSAGE)
+        self.get_logger().info(f"Simulating model '{model.name}', ready for /hasel/state.")
+
+    def _value(self, name: str):
+        return self.get_parameter(name).value
+
+    def _warn(self, sentence: str) -> None:
+        if sentence:
+            self.get_logger().warning(sentence[:1].upper() + sentence[1:] + ".")
+
+    def _on_state(self, state: SupplyState, info: dict) -> None:
+        begun = time.perf_counter()
+        answer = self.live.receive(to_nanoseconds(state.header.stamp), np.array(state.commanded_voltage))
+        self._publish(answer)
+        waited = (time.time_ns() - info["received_timestamp"]) * 1e-9
+        self._pace.add(answer.simulated, time.perf_counter() - begun, max(0.0, waited))
+        self._counts[answer.arrival.value] += 1
+        self._warn(answer.sentence)
+
+    def _publish(self, answer: LiveAnswer) -> None:
+        rate, frame_id = self._value("rate"), self._value("frame_id")
+        for angle in answer.angles:
+            early = angle.stamp_ns < self._next_angle_ns and answer.arrival.value == "next"
+            if rate > 0 and early:
+                continue
+            self._angles.publish(angle_message(angle.stamp_ns, angle.sin_theta, frame_id))
+            self._next_angle_ns = angle.stamp_ns + (int(1e9 / rate) if rate > 0 else 0)
+        shape_rate, now = self._value("shape_rate"), time.monotonic()
+        if (
+            answer.angles
+            and shape_rate > 0
+            and now >= self._next_shape_s
+            and self._shapes.get_subscription_count()
+        ):
+            stamp_ns = answer.angles[-1].stamp_ns
+            self._shapes.publish(self._body.moved(stamp_ns, self.live.position, self.live.markers))
+            self._next_shape_s = now + 1.0 / shape_rate
+
+    def _report(self) -> None:
+        pace, counts = self._pace.report(), self._counts
+        level = DiagnosticStatus.WARN if pace.behind else DiagnosticStatus.OK
+        values = {
+            "model": self.live.model.name,
+            "effects": ", ".join(effect.id for effect in self.live.model.effects) or "none",
+            "real-time factor": f"{pace.real_time_factor:.2f}",
+            "mean lag [ms]": f"{1e3 * pace.mean_lag:.2f}",
+            "worst lag [ms]": f"{1e3 * pace.worst_lag:.2f}",
+            "state messages in the last second": pace.messages,
+            "held: late or repeated messages": counts["held"],
+            "gaps bridged": counts["gap"],
+            "runs started": counts["start"] + counts["restart"],
+        }
+        if counts["held"] or counts["gap"]:
+            level = DiagnosticStatus.WARN
+        self._diagnostics.publish(diagnostics(level, str(pace), values, self.get_clock().now().to_msg()))
+        self._counts = Counter({name: counts[name] for name in ("start", "restart")})
+
+    def _use(self, model: Model) -> None:
+        another_body = model.description.body != self.live.model.description.body
+        self.live.use(model)
+        if another_body:
+            self._body = BodyMessage(self.live.mesh, self._value("frame_id"))
+
+    def _add_effect(self, request: AddEffect.Request, response: AddEffect.Response) -> AddEffect.Response:
+        def add() -> str:
+            model = self.live.model.with_effects(request.effect)
+            added = model.effects[-1]
+            names = [
+                f"parameters.{added.id}.{p.name} (typically {p.typical:g} {p.unit})" for p in added.parameters
+            ]
+            self._change(model)
+            return f"Effect '{added.id}' is in the model, so far without influence: set {', '.join(names)}."
+
+        return self._serve(add, response)
+
+    def _remove_effect(self, request: RemoveEffect.Request, response: RemoveEffect.Response):
+        def remove() -> str:
+            self._change(self.live.model.without_effects(request.effect))
+            return f"Effect '{request.effect}' is out of the model."
+
+        return self._serve(remove, response)
+
+    def _load_model(self, request: LoadModel.Request, response: LoadModel.Response) -> LoadModel.Response:
+        def load() -> str:
+            model, warning = live_model(request.model)
+            self._warn(warning)
+            self._change(model)
+            return f"Model '{model.name}' is simulated from now on."
+
+        return self._serve(load, response)
+
+    def _change(self, model: Model) -> None:
+        self._use(model)
+        self.model_parameters.declare(model)
+
+    def _serve(self, action, response):
+        try:
+            response.message, response.success = action(), True
+            self.get_logger().info(response.message)
+        except HaselSimError as error:
+            response.message, response.success = str(error), False
+            self._warn(response.message)
+        return response
+
+
+def _warm_up(live: LiveSimulator) -> None:
+    """Have everything compiled and loaded before the first message."""
+    for stamp_ns in (0, 8_000_000, 16_000_000):
+        live.receive(stamp_ns, np.zeros(2))
+
+
+def main() -> int:
+    """Run the node until it is interrupted; returns the exit code."""
+    rclpy.init()
+    node = None
+    try:
+        with threadpool_limits(1):
+            node = SimulatorNode()
+            rclpy.spin(node)
+    except (HaselSimError, InvalidParameterValueException) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        if node is not None:
+            node.destroy_node()
+        rclpy.try_shutdown()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
