@@ -14,13 +14,13 @@ class DriveHistory:
 
     The chain works on whole series. It is evaluated anew over the last `history` seconds at every step, on the instants
     that a simulation of the whole run would use: as long as the run is not longer than that, both agree exactly. In a
-    longer run, effects that remember more than `history` seconds forget the rest.
+    longer run, effects that remember more than `history` seconds take what was before for a rest at 0 V; the start of
+    the run is never forgotten.
     """
 
     def __init__(self, model: Model, history: float, start: float) -> None:
-        self._history = history
+        self._history, self._start = history, start
         self._instants = Window(history)
-        self._instants.add(np.array([start]), np.empty((1, 0)))
         self._schedule = VoltageSchedule(np.empty(0), np.empty((0, 2)))
         self.use(model)
 
@@ -47,7 +47,6 @@ class DriveHistory:
         voltage = self._schedule.at(times)
         if self._chain is None:
             return voltage, np.zeros((len(times), 2))
-        contraction = self._chain.contraction(
-            self._schedule, self._instants.time, self._values, self._effect_values
-        )
+        instants = np.concatenate([[self._start], self._instants.time])
+        contraction = self._chain.contraction(self._schedule, instants, self._values, self._effect_values)
         return voltage, contraction[-len(times) :]

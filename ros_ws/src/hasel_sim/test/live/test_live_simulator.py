@@ -106,6 +106,15 @@ def test_a_history_that_outlasts_the_lag_is_enough(swimmer):
     assert np.abs(heard - whole(model, stamps, voltage)).max() < 1e-6
 
 
+def test_the_start_of_the_run_is_not_forgotten(swimmer):
+    """A drift counts from the start however short the history is."""
+    model = swimmer.with_effects("gain_drift").with_values({"gain_drift.rate": 0.2})
+    stamps, voltage = frames(2.0, 2.0)
+    heard = np.array(list(live(LiveSimulator(model, history=1.0), stamps, voltage).values()))
+    assert np.abs(heard - whole(model, stamps, voltage)).max() < 1e-6
+    assert np.abs(heard - whole(swimmer, stamps, voltage)).max() > 1e-2
+
+
 @pytest.mark.parametrize(("shift", "untold"), [(0.02, 0), (-0.02, 3)])
 def test_a_shifted_camera_agrees_once_it_can_be_known(swimmer, shift, untold):
     """A late clock looks back; an early one delays the answer by its advance."""
