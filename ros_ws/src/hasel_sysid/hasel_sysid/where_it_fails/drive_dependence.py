@@ -1,0 +1,70 @@
+"""Whether a residual still depends on the drive: cross-correlation of command and residual."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import norm
+
+from hasel_sysid.where_it_fails.run_series import RunSeries
+
+_LONGEST_S = 0.4
+
+
+@dataclass(frozen=True)
+class DriveDependence:
+    """lag_time [s] [lags]: residual after command; correlation [lags]; band: 99 % half width if independent."""
+
+    lag_time: np.ndarray
+    correlation: np.ndarray
+    band: float
+
+    @property
+    def strongest(self) -> tuple[float, float]:
+        """Lag [s] and correlation of the largest magnitude."""
+        index = int(np.argmax(np.abs(self.correlation)))
+        return float(self.lag_time[index]), float(self.correlation[index])
+
+    @property
+    def depends(self) -> bool:
+        """Whether the largest correlation leaves the band."""
+        return abs(self.strongest[1]) > self.band
+
+    def __str__(self) -> str:
+        lag, value = self.strongest
+        if not self.depends:
+            return f"The residual does not depend on the drive (correlation within ±{self.band:.2f})."
+        return (
+            f"The residual depends on the drive: correlation {value:+.2f} (band ±{self.band:.2f}) with the command "
+            f"{lag * 1e3:.0f} ms before, so what follows that command is not fully described."
+        )
+
+
+def drive_dependence(run: RunSeries) -> DriveDependence | None:
+    """Correlate the drive (|upper| - |lower| voltage) with the residual; None for a passive or constant drive.
+
+    The band is Bartlett's for two correlated series: variance of the correlation = sum of the products of both
+    autocorrelations over n, widened for looking at many lags.
+    """
+    if run.drive_time is None or len(run.time) < 20:
+        return None
+    index = np.searchsorted(run.drive_time, run.time + 1e-9, side="right") - 1
+    magnitude = np.abs(run.drive_voltage)[np.maximum(index, 0)]
+    command = np.where(index >= 0, magnitude[:, 0] - magnitude[:, 1], 0.0)
+    command = command - command.mean()
+    residual = run.residual
+    scale = np.sqrt(float(command @ command) * float(residual @ residual))
+    if scale == 0:
+        return None
+    lags = int(min(len(residual) // 3, round(_LONGEST_S / run.frame_time)))
+    values = [float(command[: len(command) - lag] @ residual[lag:]) / scale for lag in range(lags + 1)]
+    both = _autocorrelation(command, lags) * _autocorrelation(residual, lags)
+    taper = 1 - np.arange(lags + 1) / (lags + 1)
+    variance = max(1.0 + 2.0 * float((taper * both)[1:].sum()), 1.0) / len(residual)
+    independent = max(1.0, (lags + 1) / max(1.0, variance * len(residual)))
+    band = norm.ppf(1 - 0.005 / independent) * np.sqrt(variance)
+    return DriveDependence(np.arange(lags + 1) * run.frame_time, np.array(values), float(band))
+
+
+def _autocorrelation(series: np.ndarray, lags: int) -> np.ndarray:
+    power = float(series @ series)
+    return np.array([float(series[: len(series) - lag] @ series[lag:]) / power for lag in range(lags + 1)])

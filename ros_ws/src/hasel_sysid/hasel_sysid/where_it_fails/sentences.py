@@ -1,0 +1,93 @@
+"""The words for a component of a difference: what a researcher would say at the plot."""
+
+from collections.abc import Callable
+
+from hasel_sysid.where_it_fails.component import Component, Kind
+
+
+def _digits(value: float) -> str:
+    return f"{value:.0f}" if value >= 9.5 else f"{value:.2g}"
+
+
+def _milliseconds(value_s: float) -> str:
+    return f"{_digits(abs(value_s) * 1e3)} ms"
+
+
+def _percent(value: float) -> str:
+    return f"{_digits(abs(value) * 100)} %"
+
+
+def _offset(c: Component) -> str:
+    return f"sits {abs(c.value):.2g} {'above' if c.value > 0 else 'below'} the model in sin θ"
+
+
+def _gain(c: Component) -> str:
+    return f"moves {_percent(c.value)} {'more' if c.value > 0 else 'less'} than the model"
+
+
+def _lag(c: Component) -> str:
+    if c.value > 0:
+        return f"lags {_milliseconds(c.value)} after every switch"
+    return f"leads the model by {_milliseconds(c.value)}"
+
+
+def _ringing(c: Component) -> str:
+    where = "" if not c.detail else f" at {c.detail['frequency_hz']:.2g} Hz"
+    return f"swings differently{where} after every switch, by {c.value:.2g} in sin θ at first"
+
+
+def _rise_against_fall(c: Component) -> str:
+    slow, fast = ("bending away", "coming back") if c.value > 0 else ("coming back", "bending away")
+    return f"lags {_milliseconds(c.value)} more when {slow} than when {fast}"
+
+
+def _upper_against_lower(c: Component) -> str:
+    return (
+        f"bends {_percent(c.value)} {'more' if c.value > 0 else 'less'} to the lower than to the upper side"
+    )
+
+
+def _gain_drift(c: Component) -> str:
+    return f"{'grows' if c.value > 0 else 'fades'} by {_percent(c.value)} per second against the model"
+
+
+def _offset_drift(c: Component) -> str:
+    return (
+        f"wanders to the {'upper' if c.value > 0 else 'lower'} side by {abs(c.value):.2g} in sin θ per second"
+    )
+
+
+def _swing_frequency(c: Component) -> str:
+    text = f"swings {_percent(c.value)} {'faster' if c.value > 0 else 'slower'} than the model"
+    if c.detail and "measured_hz" in c.detail:
+        text += f" ({c.detail['measured_hz']:.3g} Hz against {c.detail['simulated_hz']:.3g} Hz)"
+    return text
+
+
+def _swing_decay(c: Component) -> str:
+    text = f"dies out {'faster' if c.value > 0 else 'slower'} than the model by {abs(c.value):.2g} 1/s"
+    if c.detail and "measured_damping_ratio" in c.detail:
+        text += (
+            f" (damping ratio {c.detail['measured_damping_ratio']:.2g} "
+            f"against {max(c.detail['simulated_damping_ratio'], 0.0):.2g})"
+        )
+    return text
+
+
+_WORDS: dict[Kind, Callable[[Component], str]] = {
+    Kind.OFFSET: _offset,
+    Kind.GAIN: _gain,
+    Kind.LAG: _lag,
+    Kind.RINGING: _ringing,
+    Kind.RISE_AGAINST_FALL: _rise_against_fall,
+    Kind.UPPER_AGAINST_LOWER: _upper_against_lower,
+    Kind.GAIN_DRIFT: _gain_drift,
+    Kind.OFFSET_DRIFT: _offset_drift,
+    Kind.SWING_FREQUENCY: _swing_frequency,
+    Kind.SWING_DECAY: _swing_decay,
+}
+
+
+def words(component: Component) -> str:
+    """A component as a predicate, without full stop: "lags 35 ms after every switch"."""
+    return _WORDS[component.kind](component)
