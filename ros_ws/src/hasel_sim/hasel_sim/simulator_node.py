@@ -39,7 +39,15 @@ PARAMETERS = (
     ),
     NodeParameter("history", 20.0, "how far back drive and observation effects remember", "s", 1.0, 600.0),
     NodeParameter("gap", 0.1, "state messages further apart are reported as missing", "s", 0.001, 10.0),
-    NodeParameter("reset", 2.0, "a longer jump in the stamps starts a new run from rest", "s", 0.01, 3600.0),
+    NodeParameter("reset", 2.0, "a longer gap starts a new run from rest", "s", 0.01, 3600.0),
+    NodeParameter(
+        "late",
+        0.5,
+        "an older message is ignored; if older by more than this, starts a new run",
+        "s",
+        0.0,
+        60.0,
+    ),
     NodeParameter(
         "load_factor", 0.0, "a run starts in equilibrium under this many times all loads", "1", 0.0, 10.0
     ),
@@ -55,7 +63,7 @@ class SimulatorNode(Node):
         declare(self, PARAMETERS)
         model, warning = live_model(self._value("model"), words(self, "effects"))
         self._warn(warning)
-        options = {name: self._value(name) for name in ("history", "gap", "reset", "load_factor")}
+        options = {name: self._value(name) for name in ("history", "gap", "reset", "late", "load_factor")}
         self.model_parameters = ModelParameters(self, self._use)
         model = self.model_parameters.declare(model)
         self.live = LiveSimulator(model, **options)

@@ -41,7 +41,7 @@ class LiveAnswer:
 class LiveSimulator:
     """Moves the body on to the stamp of every state message, under the voltage that held until then.
 
-    history: how far back [s] drive and observation effects remember; gap, reset: see `StampOrder`;
+    history: how far back [s] drive and observation effects remember; gap, reset, late: see `StampOrder`;
     load_factor: a run starts in equilibrium under this many times all loads, 0: relaxed.
     The angles agree with those of `simulate` on the same schedule.
     """
@@ -52,10 +52,11 @@ class LiveSimulator:
         history: float = 20.0,
         gap: float = 0.1,
         reset: float = 2.0,
+        late: float = 0.5,
         load_factor: float = 0.0,
     ) -> None:
         self.history, self.load_factor = history, load_factor
-        self.order = StampOrder(gap, reset)
+        self.order = StampOrder(gap, reset, late)
         self._state: State | None = None
         self._build(model)
 

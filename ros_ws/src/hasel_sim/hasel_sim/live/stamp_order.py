@@ -26,11 +26,11 @@ class StampOrder:
     """Compares each stamp [ns] with the newest one accepted.
 
     gap: messages further apart [s] than this count as missing; the body moves on under the voltage held.
-    reset: a jump longer [s] than this, forwards or backwards, begins a new run.
+    reset: a longer gap [s] begins a new run; late: so does a message older than the newest by more than this [s].
     """
 
-    def __init__(self, gap: float, reset: float) -> None:
-        self.gap, self.reset = gap, reset
+    def __init__(self, gap: float, reset: float, late: float) -> None:
+        self.gap, self.reset, self.late = gap, reset, late
         self._newest: int | None = None
 
     def forget(self) -> None:
@@ -44,11 +44,10 @@ class StampOrder:
             self._newest = stamp_ns
             return StampVerdict(Arrival.START)
         step = (stamp_ns - newest) * 1e-9
-        if abs(step) > self.reset:
+        if not -self.late <= step <= self.reset:
             self._newest = stamp_ns
             return StampVerdict(
-                Arrival.RESTART,
-                f"the stamps jumped by {step:+.3g} s, more than {self.reset:g} s: a new run starts from rest",
+                Arrival.RESTART, f"the stamps jumped by {step:+.3g} s: a new run starts from rest"
             )
         if step <= 0:
             what = "came twice" if step == 0 else f"is {-step:.3g} s older than the newest"

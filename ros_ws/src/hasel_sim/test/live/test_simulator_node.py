@@ -151,6 +151,7 @@ def test_another_body_can_be_loaded(rig):
     rig.until(lambda: rig.shapes)
     assert rig.call(LoadModel, "/hasel/load_model", model="beam").success
     rig.shapes.clear()
+    time.sleep(0.1)  # shapes come at most 20 times a second
     rig.say(10_000_000, [0.0, 0.0])
     rig.until(lambda: rig.shapes)
     assert not {marker.ns for marker in rig.shapes[0].markers} & {"upper_muscle", "lower_muscle"}

@@ -14,12 +14,13 @@ _FRAME = 8_333_333
         (-_FRAME, Arrival.HELD),
         (500_000_000, Arrival.GAP),
         (3_000_000_000, Arrival.RESTART),
-        (-3_000_000_000, Arrival.RESTART),
+        (-400_000_000, Arrival.HELD),
+        (-600_000_000, Arrival.RESTART),
     ],
 )
 def test_a_step_in_the_stamps_is_judged_by_its_length(step, arrival):
     """Next, twice, late, gap and new run are told apart, and all but the ordinary one is said."""
-    order = StampOrder(gap=0.1, reset=2.0)
+    order = StampOrder(gap=0.1, reset=2.0, late=0.5)
     order.judge(10_000_000_000)
     verdict = order.judge(10_000_000_000 + step)
     assert verdict.arrival == arrival
@@ -28,7 +29,7 @@ def test_a_step_in_the_stamps_is_judged_by_its_length(step, arrival):
 
 def test_a_held_message_does_not_become_the_newest():
     """After one late message the next in order is an ordinary one."""
-    order = StampOrder(gap=0.1, reset=2.0)
+    order = StampOrder(gap=0.1, reset=2.0, late=0.5)
     order.judge(10 * _FRAME)
     order.judge(5 * _FRAME)
     assert order.judge(6 * _FRAME).arrival == Arrival.HELD
@@ -37,7 +38,7 @@ def test_a_held_message_does_not_become_the_newest():
 
 def test_a_forgotten_order_begins_anew():
     """The first message after `forget` starts a run whatever its stamp."""
-    order = StampOrder(gap=0.1, reset=2.0)
+    order = StampOrder(gap=0.1, reset=2.0, late=0.5)
     order.judge(10 * _FRAME)
     order.forget()
     assert order.judge(5 * _FRAME).arrival == Arrival.START
