@@ -17,7 +17,7 @@ from hasel_sim.mechanics.system import System
 from hasel_sim.mesh.bodies import half_height, rectangle_mesh, swimmer_mesh
 from hasel_sim.mesh.mesh import Mesh, Region
 from hasel_sim.mesh.serendipity import reference_gradients
-from hasel_sim.mesh.sites import Sites, node_sites, point_sites, skin_sites
+from hasel_sim.mesh.sites import Sites, body_sites, point_sites, skin_sites
 from hasel_sim.model import Model
 from hasel_sim.model.description import RectangleBody, SwimmerBody
 
@@ -86,6 +86,7 @@ def _material(model: Model, mesh: Mesh, nodes: np.ndarray) -> tuple[Coefficients
     coefficients = Coefficients(
         shear=choose(pairs[0][0], pairs[1][0]),
         lame=choose(pairs[0][1], pairs[1][1]),
+        equilibrium=np.ones(len(spine)),
         retardation=choose(soft_material.retardation_time_s, spine_material.retardation_time_s),
         fibre=np.full(len(spine), description.muscle.fibre_stiffness_pa if description.muscle else 0.0),
         region=mesh.region,
@@ -102,8 +103,8 @@ class Builder:
         self.model = model
         self.mesh = model_mesh(model)
         self.nodes = self.mesh.nodes if nodes is None else nodes
-        _, density = _material(model, self.mesh, self.nodes)
-        self.mass = Mass(self.mesh, element_masses(self.mesh, self.nodes, density))
+        _, self._density = _material(model, self.mesh, self.nodes)
+        self.mass = Mass(self.mesh, element_masses(self.mesh, self.nodes, self._density))
         self._values = model.effect_values()
 
     def system(self) -> System:
@@ -114,7 +115,9 @@ class Builder:
         return System(self.mesh, self.nodes, self._solid(self._values), self.mass, gravity, forces, stresses)
 
     def _of(self, kind: type[Effect]) -> list:
-        return [effect for effect in self.model.effects if isinstance(effect, kind)]
+        """Effects of one kind, in an order that the model file has no part in."""
+        found = [effect for effect in self.model.effects if isinstance(effect, kind)]
+        return sorted(found, key=lambda effect: effect.id)
 
     def _solid(self, values: dict[str, SimpleNamespace]) -> Solid:
         coefficients, _ = _material(self.model, self.mesh, self.nodes)
@@ -127,18 +130,21 @@ class Builder:
         return Solid(self.mesh, self.nodes, coefficients, Branches(branches), plane_stress, order)
 
     def _sites(self, effect: ForceEffect, p: SimpleNamespace) -> Sites:
-        if effect.sites == "nodes":
-            return node_sites(self.mass.lumped)
+        if effect.sites == "body":
+            return body_sites(self.mesh, self.nodes, self._density)
         if effect.sites == "skin":
             return skin_sites(self.mesh)
         return point_sites(self.mesh, effect.points(marker_points(self.model), p))
 
     def _force_law(self, effect: ForceEffect, p: SimpleNamespace) -> ForceLaw:
-        return ForceLaw(effect, p, self._sites(effect, p), self.nodes)
+        gravity = self.model.description.material.gravity_m_per_s2
+        return ForceLaw(effect, p, self._sites(effect, p), self.nodes, gravity)
 
     def _stress_law(self, effect: MaterialEffect, p: SimpleNamespace) -> StressLaw:
         muscle = np.where(self.mesh.region >= Region.UPPER_MUSCLE, self.mesh.region - 1, 0)
-        return StressLaw(effect, p, self.mesh.region, muscle)
+        muscles = self.model.description.muscle
+        fibre = muscles.fibre_stiffness_pa if muscles else 0.0
+        return StressLaw(effect, p, self.mesh.region, muscle, fibre)
 
     def residual_slope(self, name: str) -> ResidualSlope:
         """The derivative of the residual by one of the model's parameters."""

@@ -35,7 +35,9 @@ class _RunSimulation:
         self.model, self.run, self.names = model, run, names
         self.parameters = [model.parameter(name) for name in names]
         numerics = model.description.numerics
-        self.observed_by = [e for e in model.effects if isinstance(e, ObservationEffect)]
+        self.observed_by = sorted(
+            (e for e in model.effects if isinstance(e, ObservationEffect)), key=lambda effect: effect.id
+        )
         values = model.effect_values()
         ahead = max([0.0, *(e.look_ahead(values[e.id]) for e in self.observed_by)])
         frames = run.time[run.time >= run.start - 1e-9]
@@ -104,7 +106,8 @@ class _RunSimulation:
         voltage = self.schedule.at(plan.balance_times)
         start = DriveState(np.zeros(2), np.zeros(2), self.run.start)
         load_factor = self.run.initial_load_factor if self.run.initial_state == "static_equilibrium" else 0.0
-        state, slopes = initial_state(stepper.system, start, load_factor, moving)
+        shape = self.run.initial_shape if self.run.initial_state == "held_shape" else None
+        state, slopes = initial_state(stepper.system, start, load_factor, moving, shape)
         where, across = [[part] for part in self.rows(state.position)]
         d_where, d_across = [[part] for part in self.rows.slopes(slopes.position)]
         shapes = [state.position]

@@ -54,6 +54,7 @@ class Effect:
     separated_by: ClassVar[str] = ""
     citation: ClassVar[str] = ""
     needs_muscles: ClassVar[bool] = False
+    needs_spine: ClassVar[bool] = False
     exclusive: ClassVar[str] = ""
     """Effects with the same non-empty word here do the same thing and are refused side by side."""
     source: ClassVar[str | None] = None
@@ -83,7 +84,8 @@ class DriveEffect(Effect):
     """Between the commanded voltage and the contraction.
 
     Up to `ZIPPING` the signal is the signed voltage [V] of the upper and lower muscle; at `TARGET` it is the
-    contraction aimed at [1], at `CONTRACTION` the contraction itself. Equal times mark a jump (value before, value after).
+    contraction aimed at [1], at `CONTRACTION` the contraction itself. Equal times mark a jump: value before, value
+    after.
     """
 
     place = "drive"
@@ -104,8 +106,8 @@ class SiteState:
     """Motion and drive at n places; arrays are [n, 2] unless said.
 
     position [m], velocity [m/s], acceleration [m/s^2], tangent: derivative of the position along the skin [1];
-    reference: position at rest [m]; measure [n]: lumped mass [kg per m depth], skin length [m] or 1;
-    voltage [V] and contraction [1]: of the upper and lower muscle, shape [2]; time [s].
+    reference: position at rest [m]; measure [n]: mass [kg per m depth], skin length [m] or 1;
+    voltage [V] and contraction [1]: of the upper and lower muscle, shape [2]; time [s]; gravity [m/s^2], shape [2].
     """
 
     position: np.ndarray
@@ -117,6 +119,7 @@ class SiteState:
     voltage: np.ndarray
     contraction: np.ndarray
     time: float
+    gravity: np.ndarray
 
     @property
     def normal(self) -> np.ndarray:
@@ -128,12 +131,12 @@ class SiteState:
 class ForceEffect(Effect):
     """A force on the body, per unit of what a site stands for and per unit depth.
 
-    sites: "nodes" (per lumped mass [N/kg]), "skin" (per skin length [N/m^2]) or "points" (force itself [N/m]).
+    sites: "body" (per mass [N/kg]), "skin" (per skin length [N/m^2]) or "points" (force itself [N/m]).
     depends_on: which of position, velocity, acceleration, tangent the force depends on.
     """
 
     place = "force"
-    sites: ClassVar[str] = "nodes"
+    sites: ClassVar[str] = "body"
     depends_on: ClassVar[tuple[str, ...]] = ("position", "velocity")
 
     def points(self, markers: np.ndarray, p: SimpleNamespace) -> np.ndarray:
@@ -149,18 +152,47 @@ class ForceEffect(Effect):
 class Coefficients:
     """Material constants per element, shape [elements]; an effect changes them in place.
 
-    shear, lame: elastic constants [Pa]; retardation: Kelvin-Voigt time [s]; fibre: fibre stiffness [Pa];
-    region: `Region` of each element; rest_stretch: stretch along the body of the stress-free shape [elements, points];
+    shear, lame: elastic constants [Pa]; equilibrium: share of them that acts for ever [1] (viscosity and branches keep
+    the whole); retardation: Kelvin-Voigt time [s]; fibre: fibre stiffness [Pa]; region: `Region` of each element;
+    rest_stretch: stretch along the body of the stress-free shape [elements, points];
     height: reference y of the Gauss points [m] [elements, points].
     """
 
     shear: np.ndarray
     lame: np.ndarray
+    equilibrium: np.ndarray
     retardation: np.ndarray
     fibre: np.ndarray
     region: np.ndarray
     rest_stretch: np.ndarray
     height: np.ndarray
+
+
+@dataclass(frozen=True)
+class MaterialPoints:
+    """Strain and drive at n material points.
+
+    deformation: gradient F [n, 2, 2] with the first axis along the body at rest, rate: dF/dt [1/s] [n, 2, 2];
+    contraction [1] and voltage [V]: of the muscle here [n] (0 in none); fibre: stiffness of its fibres [Pa]; time [s].
+    """
+
+    deformation: np.ndarray
+    rate: np.ndarray
+    contraction: np.ndarray
+    voltage: np.ndarray
+    fibre: float
+    time: float
+
+    @property
+    def stretch(self) -> np.ndarray:
+        """Stretch of the fibres [1], [n]."""
+        return np.hypot(self.deformation[:, 0, 0], self.deformation[:, 1, 0])
+
+    def along_fibre(self, tension: np.ndarray) -> np.ndarray:
+        """First Piola stress [Pa] [n, 2, 2] of a tension [Pa] [n] along the fibres."""
+        stress = np.zeros_like(self.deformation)
+        stress[:, :, 0] = (tension / self.stretch)[:, None] * self.deformation[:, :, 0]
+        return stress
 
 
 class MaterialEffect(Effect):
@@ -177,18 +209,8 @@ class MaterialEffect(Effect):
         """Maxwell branches as (modulus ratio [1], relaxation time [s])."""
         return []
 
-    def first_piola(
-        self,
-        deformation: np.ndarray,
-        rate: np.ndarray,
-        contraction: np.ndarray,
-        time: float,
-        p: SimpleNamespace,
-    ) -> np.ndarray:
-        """Additional first Piola stress [Pa] [n, 2, 2].
-
-        deformation: gradient F [n, 2, 2], rate: dF/dt [1/s] [n, 2, 2], contraction: of the muscle here [n] (0 in none).
-        """
+    def first_piola(self, at: MaterialPoints, p: SimpleNamespace) -> np.ndarray:
+        """Additional first Piola stress [Pa] [n, 2, 2] at material points."""
         raise NotImplementedError
 
 

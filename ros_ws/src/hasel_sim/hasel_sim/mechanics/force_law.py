@@ -19,9 +19,15 @@ class ForceLaw:
     """
 
     def __init__(
-        self, effect: ForceEffect, values: SimpleNamespace, sites: Sites, reference: np.ndarray
+        self,
+        effect: ForceEffect,
+        values: SimpleNamespace,
+        sites: Sites,
+        reference: np.ndarray,
+        gravity: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         self.effect, self.values, self.sites = effect, values, sites
+        self._gravity = np.array(gravity)
         self._reference = sites.value(reference)
         self._slopes: dict[str, np.ndarray] = {}
 
@@ -38,6 +44,7 @@ class ForceLaw:
             voltage=drive.voltage,
             contraction=drive.contraction,
             time=drive.time,
+            gravity=self._gravity,
         )
 
     def add_force(
@@ -49,8 +56,10 @@ class ForceLaw:
 
     def linearise(self, position, velocity, acceleration, drive) -> None:
         """Keep the derivatives at this state: one [n, 2, 2] array per quantity the effect depends on."""
-        state = self._state(position, velocity, acceleration, drive)
         names = self.effect.depends_on
+        if not names:
+            return
+        state = self._state(position, velocity, acceleration, drive)
         n, copies = len(self._reference), 4 * len(names)
         fields = {
             name: np.tile(getattr(state, name), (copies, 1))
@@ -67,6 +76,7 @@ class ForceLaw:
             voltage=state.voltage,
             contraction=state.contraction,
             time=state.time,
+            gravity=state.gravity,
         )
         force = self.effect.force(batch, self.values).reshape(len(names), 2, 2, n, 2)
         for index, name in enumerate(names):
@@ -93,6 +103,8 @@ class ForceLaw:
         self, shift: np.ndarray, rate: np.ndarray, acceleration: np.ndarray, out: np.ndarray
     ) -> None:
         """Subtract the change of the nodal forces along many directions [columns, nodes, 2] from out."""
+        if not self.effect.depends_on:
+            return
         moved = {
             "position": lambda: self.sites.value(shift),
             "velocity": lambda: self.sites.value(rate),

@@ -66,9 +66,8 @@ class SolidSlope:
         for solid, sign in ((self.more, 1.0), (self.less, -1.0)):
             F = line.F if self._same_shape else solid.gradient(motion.position)
             rate = line.rate if self._same_shape else solid.gradient(motion.velocity)
-            history = (
-                None if len(solid.branches) == 0 else solid.branches.history(state.branch, state.green, at)
-            )
+            relaxed = len(solid.branches) == 0 or at == 0.0
+            history = None if relaxed else solid.branches.history(state.branch, state.green, at)
             P = solid.stress(F, rate, drive.contraction, history, at)
             solid.add_force((sign / self.width) * P, out)
 

@@ -43,8 +43,8 @@ class Solid:
             lame = 2 * material.shear * lame / (lame + 2 * material.shear)
         self.shear, self.linear_lame = np.ascontiguousarray(material.shear), np.ascontiguousarray(lame)
         self._table = np.zeros((len(mesh.elements), compiled.COEFFICIENTS))
-        self._table[:, compiled.SHEAR] = material.shear
-        self._table[:, compiled.LAME] = material.lame
+        self._table[:, compiled.SHEAR] = material.equilibrium * material.shear
+        self._table[:, compiled.LAME] = material.equilibrium * material.lame
         self._table[:, compiled.VISCOUS_SHEAR] = material.retardation * material.shear
         self._table[:, compiled.VISCOUS_LAME] = material.retardation * lame
         self._table[:, compiled.FIBRE] = np.where(self.muscle > 0, material.fibre, 0.0)
@@ -57,8 +57,11 @@ class Solid:
         return out
 
     def table(self, step: float) -> np.ndarray:
-        """Coefficients for the compiled loops when the branches have run for `step` [s] since the last known state."""
-        if len(self.branches) == 0:
+        """Coefficients for the compiled loops when the branches have run for `step` [s] since the last known state.
+
+        A step of 0 means at rest for ever: the branches have relaxed.
+        """
+        if len(self.branches) == 0 or step == 0.0:
             return self._table
         table, gain = self._table.copy(), self.branches.factors(step)[1].sum()
         table[:, compiled.BRANCH_SHEAR] = gain * self.shear

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from hasel_sim.effects.base import MaterialEffect
+from hasel_sim.effects.base import MaterialEffect, MaterialPoints
 
 _DIFFERENCE_F, _DIFFERENCE_RATE = 1e-6, 1e-4
 
@@ -13,9 +13,14 @@ class StressLaw:
     """One additional stress at the Gauss points of the elements it concerns; derivatives by central differences."""
 
     def __init__(
-        self, effect: MaterialEffect, values: SimpleNamespace, region: np.ndarray, muscle: np.ndarray
+        self,
+        effect: MaterialEffect,
+        values: SimpleNamespace,
+        region: np.ndarray,
+        muscle: np.ndarray,
+        fibre: float = 0.0,
     ) -> None:
-        self.effect, self.values = effect, values
+        self.effect, self.values, self._fibre = effect, values, fibre
         self.elements = np.flatnonzero(np.isin(region, [int(r) for r in effect.regions]))
         self._muscle = muscle[self.elements]
 
@@ -27,8 +32,12 @@ class StressLaw:
         ).reshape(here.shape)
 
     def _evaluate(self, F: np.ndarray, rate: np.ndarray, drive, points: int, copies: int) -> np.ndarray:
-        contraction = np.concatenate([[0.0], drive.contraction])[np.repeat(self._muscle, points)]
-        return self.effect.first_piola(F, rate, np.tile(contraction, copies), drive.time, self.values)
+        muscle = np.tile(np.repeat(self._muscle, points), copies)
+        contraction, voltage = (
+            np.concatenate([[0.0], of_both])[muscle] for of_both in (drive.contraction, drive.voltage)
+        )
+        at = MaterialPoints(F, rate, contraction, voltage, self._fibre, drive.time)
+        return self.effect.first_piola(at, self.values)
 
     def add_moduli(
         self, deformation: np.ndarray, rate: np.ndarray, drive, elastic: np.ndarray, viscous: np.ndarray

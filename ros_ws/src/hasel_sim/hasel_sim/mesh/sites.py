@@ -1,11 +1,11 @@
-"""Places where forces act: nodes, the skin, points of the centre line; each interpolates a few nodes."""
+"""Places where forces act: the body, the skin, points of the centre line; each interpolates a few nodes."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from hasel_sim.mesh.mesh import Mesh
-from hasel_sim.mesh.serendipity import edge_functions
+from hasel_sim.mesh.serendipity import edge_functions, reference_gradients
 
 
 @dataclass(frozen=True)
@@ -35,10 +35,19 @@ class Sites:
         np.add.at(out, (..., self.nodes, slice(None)), share)
 
 
-def node_sites(lumped_mass: np.ndarray) -> Sites:
-    """Every node, standing for its lumped mass [kg per m depth]."""
-    n = len(lumped_mass)
-    return Sites(np.arange(n)[:, None], np.ones((n, 1)), np.zeros((n, 1)), lumped_mass)
+def body_sites(mesh: Mesh, nodes: np.ndarray, density: np.ndarray) -> Sites:
+    """2 x 2 Gauss points in every element, standing for their mass [kg per m depth]; density [kg/m^3] [elements].
+
+    A force per mass that is the same everywhere then accelerates the body without bending it.
+    """
+    values, _, areas = reference_gradients(nodes[mesh.elements], 2)
+    points = areas.shape[1]
+    return Sites(
+        np.repeat(mesh.elements, points, axis=0),
+        np.tile(values, (len(mesh.elements), 1)),
+        np.zeros((areas.size, values.shape[1])),
+        (density[:, None] * areas).ravel(),
+    )
 
 
 def skin_sites(mesh: Mesh) -> Sites:

@@ -11,7 +11,7 @@ from hasel_sim.errors import ModelError, nearest_name
 from hasel_sim.model.description import Description
 from hasel_sim.model.parameter import Parameter
 
-_AMPLITUDE_START_PER_VOLT = 0.08 / 5500.0
+_AMPLITUDE_START_PER_VOLT = 0.04 / 5500.0
 
 
 def _amplitude(level: float) -> Parameter:
@@ -38,6 +38,11 @@ class Model:
     def has_muscles(self) -> bool:
         """Whether voltages move this body."""
         return self.description.muscle is not None
+
+    @property
+    def has_spine(self) -> bool:
+        """Whether a spine runs through this body."""
+        return self.description.body.kind == "swimmer"
 
     @property
     def levels(self) -> np.ndarray:
@@ -135,4 +140,9 @@ def check_together(effects: tuple[Effect, ...], model: Model) -> None:
             raise ModelError(
                 f"effect '{effect.id}' acts on the muscles, and model '{model.name}' has none; "
                 "remove it or use a model with a muscle section"
+            )
+        if effect.needs_spine and not model.has_spine:
+            raise ModelError(
+                f"effect '{effect.id}' acts on the spine, and model '{model.name}' has none; "
+                "remove it or use a model whose body is a swimmer"
             )
