@@ -17,5 +17,9 @@ setup(
     maintainer_email="maintainers@example.org",
     description="Launch files, configurations and the demonstration of the HASEL swimmer stack.",
     license="Apache-2.0",
-    entry_points={"console_scripts": []},
+    entry_points={
+        "console_scripts": [
+            "replay = hasel_bringup.replay.command:main",
+        ]
+    },
 )

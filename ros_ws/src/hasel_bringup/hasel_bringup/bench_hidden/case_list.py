@@ -1,0 +1,76 @@
+"""Which cases the benchmark runs."""
+
+from collections.abc import Sequence
+from itertools import chain
+
+from hasel_sim.effects.registry import catalogue
+from hasel_sim.errors import nearest_name
+
+from hasel_bringup.bench_hidden.case import Case, both_signs
+from hasel_bringup.bench_hidden.unlisted import UNLISTED
+from hasel_bringup.errors import BringupError
+
+SIZES = (1.0, 2.0, 0.5)
+"""In typical values; a seed takes one after the other."""
+NOTHING_PER_SEED = 8
+PAIRS = (
+    ("quadratic_drag", "muscle_asymmetry"),
+    ("charging_lag", "gain_drift"),
+    ("viscoelastic_creep", "camera_latency"),
+    ("linear_drag", "charge_retention"),
+    ("hydraulic_lag", "soft_modulus"),
+    ("material_damping", "muscle_asymmetry"),
+    ("surface_friction", "transport_delay"),
+    ("spine_modulus", "gain_drift"),
+    ("added_mass", "charging_lag"),
+    ("structural_damping", "force_length"),
+)
+"""Of effects that act in different ways, so that each leaves something of its own."""
+
+
+def list_cases(kinds: Sequence[str], seeds: int, effects: Sequence[str], numerics: str) -> list[Case]:
+    """All cases of these kinds, seed by seed, so that a benchmark broken off early is a smaller whole one.
+
+    effects: only cases that hide one of these; empty for all. Raises BringupError for an unknown effect.
+    """
+    for name in effects:
+        if name not in known_effects():
+            raise BringupError(f"There is no effect '{name}' to hide; {nearest_name(name, known_effects())}.")
+    listed = chain.from_iterable(_of_seed(seed, numerics) for seed in range(seeds))
+    chosen = set(effects)
+    return [case for case in listed if case.kind in kinds and (not chosen or chosen & set(case.effects))]
+
+
+def known_effects() -> list[str]:
+    """Ids of everything that can be hidden."""
+    return [*catalogue(), *UNLISTED]
+
+
+def _of_seed(seed: int, numerics: str) -> list[Case]:
+    size = SIZES[seed % len(SIZES)]
+    cases = [
+        Case("nothing", (), 0.0, seed * NOTHING_PER_SEED + n, ("white", "coloured")[n % 2], numerics)
+        for n in range(NOTHING_PER_SEED)
+    ]
+    for kind, hidden in (
+        *(("single", (identity,)) for identity in catalogue()),
+        *(("unlisted", (identity,)) for identity in UNLISTED),
+        *(("pair", pair) for pair in PAIRS[seed % 2 :: 2]),
+    ):
+        sign = -1.0 if seed % 2 and kind != "pair" and both_signs(hidden[0]) else 1.0
+        colour = ("white", "coloured")[(seed + len(cases)) % 2]
+        cases.append(Case(kind, hidden, sign * size, seed, colour, numerics))
+    return cases
+
+
+def quick_cases(numerics: str) -> list[Case]:
+    """A handful that shows within minutes whether anything is broken."""
+    return [
+        Case("nothing", (), 0.0, 0, "coloured", numerics),
+        Case("single", ("quadratic_drag",), 1.0, 0, "white", numerics),
+        Case("single", ("muscle_asymmetry",), -1.0, 1, "coloured", numerics),
+        Case("single", ("charging_lag",), 1.0, 0, "white", numerics),
+        Case("unlisted", ("stirred_bath",), 1.0, 0, "white", numerics),
+    ]
+
+

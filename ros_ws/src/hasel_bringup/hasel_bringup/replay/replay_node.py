@@ -1,0 +1,91 @@
+"""Publishes a recording's states and measured angles."""
+
+import math
+import time
+from collections.abc import Sequence
+
+from builtin_interfaces.msg import Time
+from hasel_interfaces.msg import BendingAngle, SupplyState
+from hasel_recording.topics import MEASURED, STATE
+from rclpy.duration import Duration
+from rclpy.node import Node
+from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
+from std_msgs.msg import Header
+
+from hasel_bringup.errors import BringupError
+from hasel_bringup.replay.clock import ReplayClock
+from hasel_bringup.replay.timeline import ReplayedFrame
+
+EVERY_MESSAGE = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.RELIABLE)
+_SETTLED_S = 1.0
+_UNKNOWN_PAIR, _UNKNOWN_TRIPLE = [math.nan] * 2, [math.nan] * 3
+
+
+class ReplayNode(Node):
+    """Nothing is lost: subscribers are waited for, messages are kept until they are acknowledged."""
+
+    def __init__(self) -> None:
+        super().__init__("hasel_replay")
+        self._states = self.create_publisher(SupplyState, STATE, EVERY_MESSAGE)
+        self._angles = self.create_publisher(BendingAngle, MEASURED, EVERY_MESSAGE)
+
+    def wait_for_subscribers(self, expected: Sequence[str], seconds: float) -> None:
+        """Wait until every expected node hears the states and all known subscribers are connected.
+
+        Without names, wait for anybody and then until nobody came for a second. Raises BringupError after `seconds`.
+        """
+        end, counts, since = time.monotonic() + seconds, (0, 0), time.monotonic()
+        while time.monotonic() < end:
+            time.sleep(0.02)
+            now = tuple(p.get_subscription_count() for p in (self._states, self._angles))
+            if now != counts:
+                counts, since = now, time.monotonic()
+            if expected and self._hear(expected):
+                return
+            if not expected and counts[0] and time.monotonic() - since > _SETTLED_S:
+                return
+        missing = f"{', '.join(expected)} did not subscribe" if expected else "nobody subscribed"
+        raise BringupError(
+            f"{missing} to {STATE} within {seconds:g} s; start the simulator (ros2 run hasel_sim simulator) "
+            "in the same ROS_DOMAIN_ID, or wait longer with --wait"
+        )
+
+    def _hear(self, expected: Sequence[str]) -> bool:
+        for publisher in (self._states, self._angles):
+            known = [info.node_name for info in self.get_subscriptions_info_by_topic(publisher.topic_name)]
+            if publisher.get_subscription_count() < len(known):
+                return False
+            if publisher is self._states and not set(expected) <= set(known):
+                return False
+        return True
+
+    def replay(self, frames: Sequence[ReplayedFrame], rate: float, on_frame=lambda: None) -> None:
+        """Publish one recording at `rate` times real time (infinite: as fast as it is taken)."""
+        clock = ReplayClock(rate)
+        clock.start(frames[0].stamp_ns)
+        for frame in frames:
+            clock.wait_for(frame.stamp_ns)
+            self._publish(frame)
+            on_frame()
+
+    def finish(self, seconds: float = 10.0) -> None:
+        """Wait until every message has arrived. Raises BringupError when one has not."""
+        for publisher in (self._states, self._angles):
+            if not publisher.wait_for_all_acked(Duration(seconds=seconds)):
+                raise BringupError(
+                    f"not all of {publisher.topic_name} arrived within {seconds:g} s; a subscriber is too slow or was "
+                    "stopped: replay again with a lower --rate"
+                )
+
+    def _publish(self, frame: ReplayedFrame) -> None:
+        seconds, nanoseconds = divmod(frame.stamp_ns, 1_000_000_000)
+        header = Header(stamp=Time(sec=seconds, nanosec=nanoseconds))
+        state = SupplyState(header=header, commanded_voltage=list(frame.voltage), mode=SupplyState.ACTIVE)
+        state.measured_voltage = state.current = _UNKNOWN_PAIR
+        self._states.publish(state)
+        if frame.sin_theta is None:
+            return
+        angle = BendingAngle(header=header, sin_theta=frame.sin_theta, valid=math.isfinite(frame.sin_theta))
+        angle.theta = math.asin(max(-1.0, min(1.0, frame.sin_theta))) if angle.valid else math.nan
+        angle.marker_x = angle.marker_y = angle.marker_quality = _UNKNOWN_TRIPLE
+        self._angles.publish(angle)
