@@ -121,8 +121,7 @@ def test_random_bytes_neither_arm_nor_hang_the_board(board, rig):
         board.send(generator.randbytes(generator.randrange(1, 150)))
         time.sleep(0.01)
     board.send(b"\n")
-    board.listen(0.3, heartbeat=False)
-    board._replies.clear()
+    board.forget(0.3)
     assert board.ask("PING") == (True, "PING")
     assert board.report().mode is Mode.STANDBY
     assert rig.changes == []

@@ -65,30 +65,21 @@ FAULTS = {
 def provoke(bench, how, codes) -> None:
     """One fault while live: grounded in time, latched, truthful, and nothing comes back by itself."""
     bench.arm()
-    bench.drive_until_live()
+    assert bench.command_until(lambda: bench.rig.live)
     time.sleep(random.uniform(0.0, 0.03))  # meet the line and the heartbeat at any phase
     at_s = time.monotonic()
     how(bench)
-    go_on_commanding(bench, lambda: bench.supervisor.fault is not None and not bench.rig.live)
-    dead_s = bench.rig.await_live(False)
-    assert dead_s - at_s < GROUNDED_WITHIN_S
+    bench.command_until(lambda: bench.supervisor.fault is not None and not bench.rig.live)
+    assert bench.rig.await_live(False) - at_s < GROUNDED_WITHIN_S
     assert bench.supervisor.fault.code.name in codes, str(bench.supervisor.fault)
     bench.rig.say("recover")
     bench.host_alive = True
-    go_on_commanding(bench, lambda: False, timeout_s=0.1)
+    bench.command_until(lambda: False, timeout_s=0.1)
     assert not bench.rig.live
     assert bench.status().mode is Mode.FAULT
     with pytest.raises(RefusedError):
         bench.call(bench.supervisor.arm)
     assert bench.false_claims() == []
-
-
-def go_on_commanding(bench, until, timeout_s: float = 0.6) -> None:
-    """What a controller does that has noticed nothing."""
-    end_s = time.monotonic() + timeout_s
-    while time.monotonic() < end_s and not until():
-        bench.call(bench.supervisor.command, (3000.0, -2000.0))
-        time.sleep(0.01)
 
 
 @pytest.mark.parametrize("name", FAULTS)

@@ -16,6 +16,7 @@ static Supply supply;
 static LineReader reader;
 static LineWriter writer;
 static Commands commands(supply, writer);
+static volatile bool ticked = false;
 static uint8_t reset_flags __attribute__((section(".noinit")));
 
 // The watchdog stays on through a reset: stop it before anything slow.
@@ -59,6 +60,7 @@ ISR(TIMER2_COMPA_vect, ISR_NOBLOCK) {
     ADCSRA |= _BV(ADSC);
   }
   supply.tick();
+  ticked = true;
   running = false;
 }
 
@@ -105,5 +107,8 @@ void loop() {
   send_events();
   send_telemetry();
   writer.pump();
-  sleep_mode();  // until the next interrupt, at most 1 ms
+  ticked = false;
+  do {
+    sleep_mode();
+  } while (!ticked && !Serial.available());
 }

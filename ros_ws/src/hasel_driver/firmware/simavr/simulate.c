@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "avr_adc.h"
+#include "avr_extint.h"
 #include "avr_ioport.h"
 #include "avr_uart.h"
 #include "muscle.h"
@@ -26,6 +27,7 @@ static const uint32_t HANG_ADDRESS = 0x7F00;
 static const uint64_t MOST_LAG_CYCLES = FREQUENCY_HZ / 10;
 
 static avr_t* avr;
+static avr_irq_t *analogue_irqs, *uart_irqs;
 static struct port port;
 static struct muscle muscles[CHANNELS];
 static double peaks_v[CHANNELS];
@@ -81,7 +83,7 @@ static double set_point_v(int channel) {
 
 static void raise_analogue(int input, double full_scale_share) {
   const uint32_t millivolts = fmin(5000.0, 5000.0 * full_scale_share);
-  avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0 + input), millivolts);
+  avr_raise_irq(analogue_irqs + input, millivolts);
 }
 
 static void set_interlock(void) {
@@ -101,7 +103,6 @@ static void tick(void) {
     raise_analogue(channel, volts / 10000.0);
     raise_analogue(CHANNELS + channel, muscles[channel].current_a / 1e-3);
   }
-  set_interlock();
   if (is_live != live) {
     live = is_live;
     printf("%s %.4f\n", live ? "live" : "dead", now_s());
@@ -123,14 +124,18 @@ static void feed_uart(void) {
   static uint64_t next_cycle;
   if (received_count == 0 || uart_full || avr->cycle < next_cycle) return;
   next_cycle = avr->cycle + BYTE_CYCLES;
-  avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT), (uint8_t)received[0]);
+  avr_raise_irq(uart_irqs + UART_IRQ_INPUT, (uint8_t)received[0]);
   memmove(received, received + 1, --received_count);
 }
 
 static void reset(void) {
   avr_reset(avr);
+  // Pins 2 and 3 are used as outputs; polled for external interrupts they would cost most of the time.
+  avr_extint_set_strict_lvl_trig(avr, EXTINT_IRQ_OUT_INT0, 0);
+  avr_extint_set_strict_lvl_trig(avr, EXTINT_IRQ_OUT_INT1, 0);
   avr_regbit_set(avr, avr->reset_flags.extrf);
   received_count = transmitted_count = 0;
+  set_interlock();
 }
 
 static void exchange(void) {
@@ -154,6 +159,7 @@ static void exchange(void) {
 
 static void recover(void) {
   silent = deaf = noise = truncate_next = interlock_open = false;
+  set_interlock();
   muscles[0].short_ohm = muscles[1].short_ohm = HUGE_VAL;
 }
 
@@ -181,7 +187,7 @@ static bool obey(const char* word) {
   else if (!strcmp(word, "deaf")) deaf = true;
   else if (!strcmp(word, "noise")) noise = true;
   else if (!strcmp(word, "truncate")) truncate_next = true;
-  else if (!strcmp(word, "interlock")) interlock_open = true;
+  else if (!strcmp(word, "interlock")) interlock_open = true, set_interlock();
   else if (!strcmp(word, "overcurrent")) muscles[0].short_ohm = 2e6;
   else if (!strcmp(word, "recover")) recover();
   else if (!strcmp(word, "reset")) reset();
@@ -245,10 +251,11 @@ static void start(const char* path) {
   avr_ioctl(avr, AVR_IOCTL_UART_GET_FLAGS('0'), &flags);
   flags &= ~(AVR_UART_FLAG_STDIO | AVR_UART_FLAG_POOL_SLEEP);
   avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0'), &flags);
-  avr_irq_t* const uart = avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), 0);
-  avr_irq_register_notify(uart + UART_IRQ_OUTPUT, uart_sent, NULL);
-  avr_irq_register_notify(uart + UART_IRQ_OUT_XOFF, uart_flow, avr);
-  avr_irq_register_notify(uart + UART_IRQ_OUT_XON, uart_flow, NULL);
+  uart_irqs = avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), 0);
+  analogue_irqs = avr_io_getirq(avr, AVR_IOCTL_ADC_GETIRQ, ADC_IRQ_ADC0);
+  avr_irq_register_notify(uart_irqs + UART_IRQ_OUTPUT, uart_sent, NULL);
+  avr_irq_register_notify(uart_irqs + UART_IRQ_OUT_XOFF, uart_flow, avr);
+  avr_irq_register_notify(uart_irqs + UART_IRQ_OUT_XON, uart_flow, NULL);
   for (int pin = 2; pin < 8; ++pin) {
     avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('D'), pin), pins_changed, NULL);
   }

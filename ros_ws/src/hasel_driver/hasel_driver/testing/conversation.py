@@ -1,0 +1,83 @@
+"""A host that talks to a board line by line."""
+
+import time
+from collections.abc import Callable
+
+from hasel_driver import protocol
+from hasel_driver.line_buffer import LineBuffer
+from hasel_driver.serial_port import SerialPort
+
+
+class Conversation:
+    """Opens the port and waits for the board's banner."""
+
+    def __init__(self, path: str) -> None:
+        self._port = SerialPort(path)
+        self._port.open()
+        self._lines = LineBuffer()
+        self._sequence = 255
+        self.events: list[protocol.Event] = []
+        self.reports: list[protocol.Telemetry] = []
+        self._replies: list[protocol.Reply] = []
+        self.until(lambda: any(event.words[0] == "BOOT" for event in self.events))
+
+    def send(self, data: bytes) -> None:
+        """Raw bytes."""
+        self._port.write(data)
+
+    def ask(self, *words: object, sequence: int | None = None) -> tuple[bool, str]:
+        """Whether a command was accepted, and the words of the reply."""
+        self._sequence = (self._sequence + 1) % 256 if sequence is None else sequence
+        self.send(protocol.encode_command(self._sequence, *words))
+        return self.reply()
+
+    def reply(self) -> tuple[bool, str]:
+        """The next reply."""
+        self.until(lambda: bool(self._replies))
+        reply = self._replies.pop(0)
+        return reply.accepted, " ".join(reply.words)
+
+    def report(self) -> protocol.Telemetry:
+        """Telemetry of now."""
+        self._take()
+        time.sleep(0.03)
+        self._take()
+        self.reports.clear()
+        self.until(lambda: bool(self.reports))
+        return self.reports[-1]
+
+    def listen(self, duration_s: float) -> list[protocol.Telemetry]:
+        """Telemetry of a while, during which the heartbeat goes on."""
+        self.reports.clear()
+        end_s = time.monotonic() + duration_s
+        while time.monotonic() < end_s:
+            self.ask("PING")
+            time.sleep(0.02)
+        return list(self.reports)
+
+    def forget(self, duration_s: float) -> None:
+        """Take whatever comes for a while, and drop it."""
+        end_s = time.monotonic() + duration_s
+        while time.monotonic() < end_s:
+            self._take()
+            time.sleep(0.01)
+        self._replies.clear()
+
+    def until(self, condition: Callable[[], bool], timeout_s: float = 3.0) -> None:
+        """Read until `condition()` holds."""
+        end_s = time.monotonic() + timeout_s
+        while not condition():
+            if time.monotonic() > end_s:
+                raise AssertionError(f"the board did not answer as expected within {timeout_s} s")
+            self._take()
+            time.sleep(0.001)
+
+    def _take(self) -> None:
+        kinds = {protocol.Event: self.events, protocol.Telemetry: self.reports, protocol.Reply: self._replies}
+        for line in self._lines.feed(self._port.read()):
+            message = protocol.parse_device_line(line)
+            kinds[type(message)].append(message)
+
+    def close(self) -> None:
+        """Close the port."""
+        self._port.close()

@@ -1,0 +1,132 @@
+"""A user of the driver's topics and services."""
+
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+import rclpy
+from hasel_interfaces.msg import Actuation, SupplyState
+from lifecycle_msgs.srv import ChangeState
+from rclpy.duration import Duration
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from std_msgs.msg import Bool
+from std_srvs.srv import Trigger
+
+from hasel_driver.limits import Voltages
+from hasel_driver.mode import Mode
+
+LATCHED = QoSProfile(
+    depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
+)
+ANSWER_TIMEOUT_S = 4.0
+
+
+class RosClient:
+    """One for a whole test run; `states` collects `/hasel/state`."""
+
+    def __init__(self) -> None:
+        rclpy.init()
+        self.node = rclpy.create_node("user")
+        self.states: list[SupplyState] = []
+        self.node.create_subscription(SupplyState, "/hasel/state", self.states.append, 200)
+        self.commands = self.node.create_publisher(Actuation, "/hasel/command", 1)
+        self._stop = None
+        self._clients: dict[str, Any] = {}
+        self._executor = SingleThreadedExecutor()
+        self._executor.add_node(self.node)
+        threading.Thread(target=self._spin, daemon=True).start()
+
+    def _spin(self) -> None:
+        with suppress(ExternalShutdownException):
+            self._executor.spin()
+
+    def close(self) -> None:
+        """Leave the graph."""
+        rclpy.try_shutdown()
+
+    def request(self, kind: type, name: str, request: Any) -> Any:
+        """Call a service and wait for its answer."""
+        if name not in self._clients:
+            self._clients[name] = self.node.create_client(kind, name)
+        client = self._clients[name]
+        for _ in range(3):
+            if client.wait_for_service(10.0):
+                future = client.call_async(request)
+                with suppress(AssertionError):  # a node that was killed may be taken for the one that comes
+                    self.wait(future.done, ANSWER_TIMEOUT_S)
+                    return future.result()
+        raise AssertionError(f"{name} gave no answer")
+
+    def trigger(self, name: str) -> Trigger.Response:
+        """Call /hasel/<name>."""
+        return self.request(Trigger, f"/hasel/{name}", Trigger.Request())
+
+    def transition(self, identifier: int) -> None:
+        """Request a lifecycle transition and wait for it."""
+        request = ChangeState.Request()
+        request.transition.id = identifier
+        if not self.request(ChangeState, "/hasel_driver/change_state", request).success:
+            raise AssertionError(f"the transition {identifier} failed")
+
+    def illegal_transition(self, identifier: int) -> None:
+        """Request a transition that will never be answered."""
+        client = self.node.create_client(ChangeState, "/hasel_driver/change_state")
+        if not client.wait_for_service(5.0):
+            raise AssertionError("there is no lifecycle service")
+        request = ChangeState.Request()
+        request.transition.id = identifier
+        client.call_async(request)
+
+    def command(self, voltage_v: Voltages, age_s: float = 0.0) -> None:
+        """Publish one command."""
+        message = Actuation(voltage=list(voltage_v))
+        message.header.stamp = (self.node.get_clock().now() - Duration(seconds=age_s)).to_msg()
+        self.commands.publish(message)
+
+    def drive(
+        self,
+        until: Callable[[], bool],
+        voltage_v: Voltages = (3000.0, -2000.0),
+        timeout_s: float = 3.0,
+    ) -> None:
+        """Command at 50 Hz until `until()`."""
+        end_s = time.monotonic() + timeout_s
+        while not until():
+            if time.monotonic() > end_s:
+                raise AssertionError(f"nothing came of the commands, the last state is {self.states[-1:]}")
+            self.command(voltage_v)
+            time.sleep(0.02)
+
+    def emergency_stop_topic(self, stop: bool) -> None:
+        """Publish on the latched topic."""
+        if self._stop is None:
+            self._stop = self.node.create_publisher(Bool, "/hasel/emergency_stop", LATCHED)
+        self._stop.publish(Bool(data=stop))
+
+    def drop_emergency_stop_topic(self) -> None:
+        """Take its publisher away."""
+        if self._stop is not None:
+            self.node.destroy_publisher(self._stop)
+            self._stop = None
+
+    @property
+    def state(self) -> SupplyState:
+        """The last state."""
+        return self.states[-1]
+
+    def wait(self, condition: Callable[[], bool], timeout_s: float = 5.0) -> None:
+        """Until `condition()` holds."""
+        end_s = time.monotonic() + timeout_s
+        while not condition():
+            if time.monotonic() > end_s:
+                raise AssertionError(f"waited {timeout_s} s in vain, the last state is {self.states[-1:]}")
+            time.sleep(0.005)
+
+    def await_mode(self, mode: Mode, timeout_s: float = 10.0) -> SupplyState:
+        """Until a state published from now on has this mode; returns it."""
+        self.states.clear()
+        self.wait(lambda: bool(self.states) and self.states[-1].mode == mode, timeout_s)
+        return self.states[-1]

@@ -1,0 +1,146 @@
+"""The node: states, commands, services, lifecycle; on a supply that knows the truth about its output."""
+
+import math
+import time
+
+import pytest
+from hasel_driver.faults import FaultCode
+
+STANDBY, ARMED, ACTIVE, FAULT = range(4)
+GROUNDED_WITHIN_S = 0.5
+CONFIGURE, CLEANUP, ACTIVATE, DEACTIVATE = 1, 2, 3, 4
+
+
+def test_nothing_is_live_before_arming(driver, shared_rig, ros):
+    """Configured and active, the node is in STANDBY; commands are not obeyed until the service arm is called."""
+    ros.await_mode(STANDBY, 10.0)
+    for _ in range(20):
+        ros.command((3000.0, 3000.0))
+        time.sleep(0.02)
+    assert shared_rig.changes == []
+    driver.arm()
+    assert ros.await_mode(ARMED).commanded_voltage.tolist() == [0.0, 0.0]
+
+
+def test_commands_are_clipped_reported_and_expire(driver, shared_rig, ros):
+    """What is above the limit is sent, reported and measured at the limit; 200 ms after the last it is zero."""
+    driver.arm()
+    ros.drive(lambda: ros.state.mode == ACTIVE and ros.state.measured_voltage[0] > 5900, (9000.0, -1000.0))
+    last_s = time.monotonic()
+    assert ros.state.commanded_voltage.tolist() == [6000.0, -1000.0]
+    dead_s = shared_rig.await_live(False)
+    assert 0.15 < dead_s - last_s < GROUNDED_WITHIN_S
+    assert ros.await_mode(ARMED).commanded_voltage.tolist() == [0.0, 0.0]
+    assert shared_rig.ask("output")[4] < 6100
+
+
+def test_old_and_future_commands_are_ignored(driver, shared_rig, ros):
+    """A stamp more than 200 ms off is not obeyed."""
+    driver.arm()
+    for _ in range(15):
+        ros.command((3000.0, 3000.0), age_s=0.25)
+        ros.command((3000.0, 3000.0), age_s=-5.0)
+        time.sleep(0.02)
+    assert shared_rig.changes == []
+    assert ros.await_mode(ARMED)
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf])
+def test_not_a_number_is_a_fault(driver, shared_rig, ros, bad):
+    """NaN means that the controller is broken: grounded and latched."""
+    driver.arm()
+    ros.drive(lambda: shared_rig.live)
+    at_s = time.monotonic()
+    ros.command((1000.0, bad))
+    assert shared_rig.await_live(False) - at_s < GROUNDED_WITHIN_S
+    assert ros.await_mode(FAULT).fault_code == FaultCode.INVALID_COMMAND
+
+
+def test_deactivating_disarms_and_activating_does_not_arm(driver, shared_rig, ros):
+    """The lifecycle leads away from high voltage, never to it."""
+    driver.arm()
+    ros.drive(lambda: shared_rig.live)
+    ros.transition(DEACTIVATE)
+    assert not shared_rig.live
+    assert "not active" in ros.trigger("arm").message
+    ros.transition(ACTIVATE)
+    ros.await_mode(STANDBY)
+    ros.command((3000.0, 0.0))
+    ros.transition(DEACTIVATE)
+    ros.transition(CLEANUP)
+    assert "port is closed" in ros.trigger("arm").message
+    ros.transition(CONFIGURE)
+    ros.await_mode(STANDBY)
+    assert not shared_rig.live
+
+
+def test_illegal_transitions(driver, shared_rig, ros):
+    """An illegal transition, which in rclpy ends spinning, grounds the output, is said, and is survived."""
+    for _ in range(3):
+        driver.arm()
+        ros.drive(lambda: shared_rig.live)
+        at_s = time.monotonic()
+        ros.transition(CONFIGURE, answered=False)
+        assert shared_rig.await_live(False) - at_s < GROUNDED_WITHIN_S
+        state = ros.await_mode(FAULT)
+        assert (state.fault_code, "reports its output grounded" in state.fault_text) == (110, True)
+        assert ros.trigger("clear_fault").success
+    ros.transition(CLEANUP, answered=False)
+    ros.await_mode(STANDBY)
+    assert driver.process.poll() is None
+    assert "Illegal lifecycle transition" in "".join(driver.log)
+
+
+def test_two_masters(driver, shared_rig, ros):
+    """A second publisher of commands is a fault while armed, and forbids arming."""
+    from hasel_interfaces.msg import Actuation
+
+    driver.arm()
+    ros.drive(lambda: shared_rig.live)
+    second = ros.node.create_publisher(Actuation, "/hasel/command", 1)
+    try:
+        ros.drive(lambda: ros.state.mode == FAULT)
+        assert ros.state.fault_code == FaultCode.TWO_MASTERS
+        shared_rig.await_live(False)
+        assert ros.trigger("clear_fault").success
+        answer = ros.trigger("arm")
+        assert (answer.success, "More than one node publishes" in answer.message) == (False, True)
+    finally:
+        ros.node.destroy_publisher(second)
+
+
+def test_parameters_are_checked(driver, ros):
+    """A value out of range, or a change while the port is open, is refused with its reason."""
+    from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+    from rcl_interfaces.srv import DescribeParameters, SetParameters
+
+    def change(name: str, value: float) -> str:
+        number = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=value)
+        request = SetParameters.Request(parameters=[Parameter(name=name, value=number)])
+        (result,) = ros.request(SetParameters, "/hasel_driver/set_parameters", request).results
+        return "accepted" if result.successful else result.reason
+
+    ros.await_mode(STANDBY, 10.0)
+    assert "maximum_voltage" in change("maximum_voltage", 20_000.0)
+    assert change("maximum_voltage", 20_000.0) != "accepted"
+    assert "in use" in change("maximum_voltage", 3000.0)
+    request = DescribeParameters.Request(names=["maximum_voltage"])
+    (described,) = ros.request(DescribeParameters, "/hasel_driver/describe_parameters", request).descriptors
+    assert described.floating_point_range[0].to_value == 10_000.0
+    assert "[V]" in described.description
+
+
+def test_diagnostics_tell_state_and_output(driver, ros):
+    """/diagnostics carries mode, output and device."""
+    from diagnostic_msgs.msg import DiagnosticArray
+
+    received = []
+    subscription = ros.node.create_subscription(DiagnosticArray, "/diagnostics", received.append, 10)
+    try:
+        ros.wait(lambda: received and received[-1].status[0].level == b"\x00", 10.0)
+    finally:
+        ros.node.destroy_subscription(subscription)
+    entry = received[-1].status[0]
+    values = {pair.key: pair.value for pair in entry.values}
+    assert (values["mode"], values["output"]) == ("STANDBY", "grounded")
+    assert values["device"].startswith("hasel-supply")

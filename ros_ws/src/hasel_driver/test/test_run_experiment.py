@@ -1,0 +1,148 @@
+"""The action: progress, recording, its completeness, and every way to end early."""
+
+import time
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hasel_interfaces.action import RunExperiment
+from hasel_interfaces.msg import BendingAngle
+from hasel_recording.mcap_file import read_file
+from rclpy.action import ActionClient
+
+STANDBY, ARMED, ACTIVE, FAULT = range(4)
+SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
+
+
+@pytest.fixture
+def run(ros, tmp_path):
+    """Sends a goal; returns a function that waits for its end."""
+    client = ActionClient(ros.node, RunExperiment, "/hasel/run_experiment")
+
+    def begin(**changes):
+        goal = {
+            "voltage": 3000.0,
+            "frequency": 4.0,
+            "periods": 4,
+            "waveform": "box",
+            "polarity": "alternating",
+            "duty": 1.0,
+            "muscles": "both",
+            "rest_time": 0.3,
+            "output": str(tmp_path / "run.mcap"),
+        } | changes
+        assert client.wait_for_server(10.0)
+        feedback = []
+        sent = client.send_goal_async(
+            RunExperiment.Goal(**goal), feedback_callback=lambda message: feedback.append(message.feedback)
+        )
+        ros.wait(sent.done)
+        handle = sent.result()
+
+        def end(timeout_s: float = 15.0):
+            answer = handle.get_result_async()
+            ros.wait(answer.done, timeout_s)
+            return answer.result().status, answer.result().result
+
+        return handle, feedback, end
+
+    yield begin
+    client.destroy()
+
+
+def test_runs_records_and_reports_progress(driver, ros, run):
+    """The recording holds rest, every drive of both muscles with its sign, and rest; progress goes from 0 to 1."""
+    driver.arm()
+    _, feedback, end = run()
+    status, result = end()
+    assert (status, result.success) == (SUCCEEDED, True), result.message
+    progress = [message.progress for message in feedback]
+    assert all(a <= b for a, b in pairwise(progress))
+    assert (progress[0] < 0.2, progress[-1] > 0.8) == (True, True)
+    assert max(abs(message.voltage[0]) for message in feedback) == 3000.0
+    recording = read_file(Path(result.recording))
+    states = recording.decoded("/hasel/state", "hasel_interfaces/msg/SupplyState")
+    voltage = np.array([state.commanded_voltage for state in states])
+    assert set(np.unique(voltage)) == {-3000.0, 0.0, 3000.0}
+    assert np.count_nonzero(np.diff(voltage[:, 0]) > 1500) == 4
+    stamps = np.array([s.header.stamp.sec + s.header.stamp.nanosec * 1e-9 for s in states])
+    assert stamps[-1] - stamps[0] == pytest.approx(1.6, abs=0.15)
+    first = stamps[np.argmax(voltage[:, 0] > 0)] - stamps[0]
+    assert first == pytest.approx(0.3, abs=0.1)
+    assert ros.await_mode(ARMED)
+
+
+def test_cancel_grounds_and_keeps_what_was_recorded(driver, shared_rig, ros, run):
+    """A cancelled run ends at 0 V, armed, with status cancelled."""
+    driver.arm()
+    handle, _, end = run(periods=100)
+    shared_rig.await_live(True)
+    cancelled_s = time.monotonic()
+    ros.wait(handle.cancel_goal_async().done)
+    status, result = end()
+    assert shared_rig.await_live(False) - cancelled_s < 0.5
+    assert (status, result.success, "cancelled" in result.message) == (CANCELED, False, True)
+    assert len(read_file(Path(result.recording)).messages["/hasel/state"]) > 20
+    ros.await_mode(ARMED)
+
+
+def test_emergency_stop_during_the_waveform(driver, shared_rig, ros, run):
+    """The stop grounds, the goal is aborted and says why."""
+    driver.arm()
+    _, _, end = run(periods=100)
+    shared_rig.await_live(True)
+    at_s = time.monotonic()
+    assert ros.trigger("emergency_stop").success
+    assert shared_rig.await_live(False) - at_s < 0.5
+    status, result = end()
+    assert (status, "emergency stop" in result.message.lower()) == (ABORTED, True)
+    ros.await_mode(FAULT)
+
+
+def test_a_command_during_the_waveform_is_a_second_master(driver, shared_rig, ros, run):
+    """An experiment is not mixed with commands."""
+    driver.arm()
+    _, _, end = run(periods=100)
+    shared_rig.await_live(True)
+    ros.command((1000.0, 1000.0))
+    shared_rig.await_live(False)
+    status, result = end()
+    assert (status, "more than one source of commands" in result.message) == (ABORTED, True)
+
+
+def test_fails_when_the_recording_lacks_a_topic(driver, ros, run):
+    """A tracker that falls silent during the run makes it a failure, and is named."""
+    publisher = ros.node.create_publisher(BendingAngle, "/hasel/bending/measured", 10)
+    try:
+        driver.arm()
+        ros.wait(lambda: publisher.get_subscription_count() > 0)
+        _, _, end = run()
+        status, result = end()
+    finally:
+        ros.node.destroy_publisher(publisher)
+    assert (status, result.success) == (ABORTED, False)
+    assert "no message of /hasel/bending/measured" in result.message
+
+
+REFUSALS = {
+    "the limit is 6000 V": {"voltage": 9000.0},
+    "one of box, ramp, sine, triangle": {"waveform": "saw"},
+    "frequency_hz is nan": {"frequency": float("nan")},
+    "rest_time is -1.0 s": {"rest_time": -1.0},
+    "/proc/no": {"output": "/proc/no/such/place.mcap"},
+}
+
+
+def test_refuses_what_cannot_be_done(driver, shared_rig, ros, run):
+    """Not armed, or out of range: one sentence, and the output never was live."""
+    ros.await_mode(STANDBY, 10.0)
+    _, _, end = run()
+    assert "needs the state ARMED" in end()[1].message
+    driver.arm()
+    for words, changes in REFUSALS.items():
+        _, _, end = run(**changes)
+        status, result = end()
+        assert (status, words in result.message) == (ABORTED, True), result.message
+    assert shared_rig.changes == []
+    ros.await_mode(ARMED)
