@@ -14,7 +14,7 @@ from hasel_sim.mechanics.residual_slopes import ForceSlope, NoSlope, ResidualSlo
 from hasel_sim.mechanics.solid import Solid, lame_constants
 from hasel_sim.mechanics.stress_law import StressLaw
 from hasel_sim.mechanics.system import System
-from hasel_sim.mesh.bodies import half_height, rectangle_mesh, swimmer_mesh
+from hasel_sim.mesh.bodies import outline_fault, rectangle_mesh, swimmer_mesh
 from hasel_sim.mesh.mesh import Mesh, Region
 from hasel_sim.mesh.serendipity import reference_gradients
 from hasel_sim.mesh.sites import Sites, body_sites, point_sites, skin_sites
@@ -38,15 +38,9 @@ def body_mesh(body: SwimmerBody | RectangleBody, density: float) -> Mesh:
             elements_through=through,
         )
     outline = np.array(body.outline_coefficients)
-    x = np.linspace(0, 1, 401)
-    height = half_height(outline, body.largest_half_height_m, x)
-    if np.any(height <= 0.5 * body.spine_thickness_m):
-        worst = x[np.argmin(height)] * body.body_length_m
-        raise ModelError(
-            f"the outline is {2 * height.min() * 1e3:.2f} mm high at x = {worst * 1e3:.0f} mm and crosses the spine of "
-            f"{body.spine_thickness_m * 1e3:.2f} mm; expected a body higher than its spine everywhere: change "
-            "outline_coefficients or spine_thickness_m"
-        )
+    fault = outline_fault(outline, body.largest_half_height_m, body.spine_thickness_m, body.body_length_m)
+    if fault:
+        raise ModelError(fault)
     return swimmer_mesh(
         body_length=body.body_length_m,
         fin_length=body.fin_length_m,

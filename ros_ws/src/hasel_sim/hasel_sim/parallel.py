@@ -41,7 +41,7 @@ def executor(jobs: int | None = None, scheduler: str | None = None) -> Iterator[
         from distributed import Client
 
         try:
-            client = Client(scheduler, timeout="10s")
+            client = Client(scheduler, timeout="5s")
         except (OSError, TimeoutError, ValueError) as error:
             raise SimulationError(
                 f"no Dask scheduler answers at '{scheduler}' ({error}); expected an address such as "

@@ -46,6 +46,14 @@ def equilibrium(
 
 
 def equilibrium_slope(line: Linearisation, residual_slope: np.ndarray) -> np.ndarray:
-    """Change of the equilibrium along parameters whose residual slopes are given, [columns, nodes, 2]."""
+    """Change of the equilibrium along parameters whose residual slopes are given, [columns, nodes, 2].
+
+    Iterative refinement takes out what a free body's anchor does to it.
+    """
     anchor = _ANCHOR if line.system.held == 0 else 0.0
-    return -line.matrix(1.0, 0.0, anchor).factorise().solve(residual_slope)
+    factors = line.matrix(1.0, 0.0, anchor).factorise()
+    still = np.zeros_like(residual_slope)
+    change = -factors.solve(residual_slope)
+    for _ in range(2):
+        change -= factors.solve(line.along(change, still, still) + residual_slope)
+    return change

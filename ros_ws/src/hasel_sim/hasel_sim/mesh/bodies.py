@@ -11,6 +11,21 @@ def half_height(coefficients: np.ndarray, largest_half_height: float, s: np.ndar
     return largest_half_height * np.polynomial.polynomial.polyval(s, coefficients)
 
 
+def outline_fault(
+    coefficients: np.ndarray, largest_half_height: float, spine_thickness: float, body_length: float
+) -> str | None:
+    """A sentence about where the outline crosses the spine, and so maybe itself; None where it does not."""
+    s = np.linspace(0, 1, 401)
+    height = half_height(coefficients, largest_half_height, s)
+    if np.all(height > 0.5 * spine_thickness):
+        return None
+    return (
+        f"the outline is {2e3 * height.min():.2f} mm high at x = {1e3 * s[np.argmin(height)] * body_length:.0f} mm and "
+        f"crosses the spine of {1e3 * spine_thickness:.2f} mm; expected a body higher than its spine everywhere: change "
+        "outline_coefficients or spine_thickness_m"
+    )
+
+
 def _elements(nominal: int, density: float) -> int:
     return max(1, round(nominal * density))
 
@@ -58,6 +73,8 @@ def swimmer_mesh(
         regions = [lower] * through + [Region.SPINE] + [upper] * through
         strip.add_elements(columns[index], columns[index + 1], columns[index + 2], regions)
     strip.end_face(columns[0][::-1])
+    for soft_face in (columns[-1][: 2 * through + 1], columns[-1][2 * through + 2 :]):
+        strip.end_face(soft_face)
 
     spine_nodes = columns[-1][2 * through : 2 * through + 3]
     fin_x = spread(body_length, body_length + fin_length, _elements(24, density))

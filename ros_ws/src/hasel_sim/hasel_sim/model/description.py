@@ -2,7 +2,10 @@
 
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from hasel_sim.mesh.bodies import outline_fault
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
@@ -32,7 +35,20 @@ class SwimmerBody(_Section):
             raise ValueError(
                 "expected head_length_m < muscle_end_m < body_length_m: correct these three lengths"
             )
+        fault = outline_fault(
+            np.array(self.outline_coefficients),
+            self.largest_half_height_m,
+            self.spine_thickness_m,
+            self.body_length_m,
+        )
+        if fault:
+            raise ValueError(fault)
         return self
+
+    @property
+    def whole_length_m(self) -> float:
+        """From the nose to the fin's tip [m]."""
+        return self.body_length_m + self.fin_length_m
 
 
 class RectangleBody(_Section):
@@ -42,6 +58,11 @@ class RectangleBody(_Section):
     length_m: Positive
     height_m: Positive
     clamped: bool = False
+
+    @property
+    def whole_length_m(self) -> float:
+        """From end to end [m]."""
+        return self.length_m
 
 
 class Material(_Section):
@@ -123,4 +144,12 @@ class Description(_Section):
     def _complete(self) -> "Description":
         if self.body.kind == "swimmer" and (self.material.spine is None or self.muscle is None):
             raise ValueError("a swimmer needs material.spine and muscle: add both sections")
+        length = self.body.whole_length_m
+        for name in ("head", "middle", "tail"):
+            marker = getattr(self.markers, name)
+            if not marker.fixed and not 0 <= marker.x_m <= length + 1e-9:
+                raise ValueError(
+                    f"markers.{name}.x_m is {marker.x_m:g}; expected 0 to {length:g} m, a place on the body: correct it "
+                    "or set fixed: true for a marker of the rig"
+                )
         return self

@@ -15,7 +15,7 @@ _AMPLITUDE_START_PER_VOLT = 0.04 / 5500.0
 
 
 def _amplitude(level: float) -> Parameter:
-    return Parameter(f"amplitude_{level:g}", _AMPLITUDE_START_PER_VOLT * level, "1", 0.0, 0.6)
+    return Parameter(f"amplitude_{level:g}", _AMPLITUDE_START_PER_VOLT * float(level), "1", 0.0, 0.6)
 
 
 @dataclass(frozen=True)

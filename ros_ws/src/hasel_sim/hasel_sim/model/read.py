@@ -38,7 +38,11 @@ def load_model(name_or_path: str | Path) -> Model:
             f"there is no model '{name}'; expected a model file or the name of a model, "
             f"{nearest_name(name, model_names())}"
         )
-    return _parse(path.read_text(), name, path.parent)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise ModelError(f"{name} is not a text file; expected a model file in YAML: give its path") from None
+    return _parse(text, name, path.parent)
 
 
 def _parse(text: str, source: str, folder: Path) -> Model:
@@ -72,6 +76,11 @@ def _parse(text: str, source: str, folder: Path) -> Model:
     for name in parameters:
         if name not in known and not _is_amplitude(name):
             raise ModelError(f"{source}: unknown parameter '{name}'; {nearest_name(name, known)}")
+        unit = model.parameters[name].unit if name in model.parameters else "1/s" if name == "slope" else "1"
+        if parameters[name].unit != unit:
+            raise ModelError(
+                f"{source}: {name} is given in '{parameters[name].unit}'; expected '{unit}': convert value and bounds"
+            )
     return Model(model.description, model.effects, {**model.parameters, **parameters})
 
 

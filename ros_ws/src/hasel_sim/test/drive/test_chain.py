@@ -4,7 +4,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-
 from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.voltage import VoltageSchedule
 from hasel_sim.effects.base import DriveEffect, DriveStage, EffectParameter

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from hasel_sim.drive.sloped_box import limit_rate, target_contraction
 
 LEVELS, AMPLITUDES = np.array([3500.0, 4500.0, 5500.0]), np.array([0.02, 0.05, 0.06])

@@ -1,7 +1,6 @@
 """A commanded voltage as a step function."""
 
 import numpy as np
-
 from hasel_sim.drive.voltage import VoltageSchedule
 
 SCHEDULE = VoltageSchedule(

@@ -113,7 +113,17 @@ def test_static_equilibrium_under_gravity(rectangle, equilibrium_of):
 
 def test_motion_under_gravity_from_rest(rectangle):
     """The tail's fall and swing over one period, damped, within 0.2 % of its reach at every frame."""
-    model = rectangle(LENGTH, HEIGHT, True, MODULUS, RATIO, RETARDATION, gravity=4.0, steps_per_second=480.0, mesh_density=2.0)
+    model = rectangle(
+        LENGTH,
+        HEIGHT,
+        True,
+        MODULUS,
+        RATIO,
+        RETARDATION,
+        gravity=4.0,
+        steps_per_second=480.0,
+        mesh_density=2.0,
+    )
     frames = np.arange(61) / 120
     tail = simulate(model, Run("fall", frames)).markers[:, 2]
     expected = _Beam(4.0).motion(240, 1 / 480)[::4]

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from hasel_sim.errors import SimulationError
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from hasel_sim.mechanics.generalised_alpha import step_coefficients
 from hasel_sim.mechanics.steps import plan_steps
 
@@ -38,7 +37,10 @@ def test_the_method_is_second_order_and_damps_as_rho_says(rho):
         c = step_coefficients(step, rho)
         # balance: acceleration terms + stiffness * position terms = 0 for (x, v, a) -> a1
         by_new = c.acceleration + stiffness * c.position
-        a1 = -np.array([stiffness, stiffness * c.position_v, c.acceleration_a + stiffness * c.position_a]) / by_new
+        a1 = (
+            -np.array([stiffness, stiffness * c.position_v, c.acceleration_a + stiffness * c.position_a])
+            / by_new
+        )
         x1 = np.array([1.0, c.step, c.end_position_a]) + c.end_position * a1
         v1 = np.array([0.0, 1.0, c.end_velocity_a]) + c.end_velocity * a1
         return np.linalg.eigvals(np.array([x1, v1, a1]))

@@ -1,0 +1,167 @@
+"""Model files: what is refused and how, and what comes back."""
+
+from importlib import resources
+
+import numpy as np
+import pytest
+from hasel_sim.errors import ModelError
+from hasel_sim.model import load_model, model_names, save_model
+from hasel_sim.simulate import simulate
+from ruamel.yaml import YAML
+
+OWN_EFFECT = """
+from hasel_sim.effects.base import DriveEffect, EffectParameter
+
+
+class Gain(DriveEffect):
+    id = "gain"
+    physics = "A gain."
+    equation = "u = g v"
+    parameters = (EffectParameter("factor", "g", "1", 1.0, 0.0, 2.0, 0.5),)
+
+    def respond(self, time, signal, p):
+        return p.factor * signal
+"""
+
+
+@pytest.fixture
+def content() -> dict:
+    """The default swimmer's file as a dictionary."""
+    return YAML(typ="safe").load((resources.files("hasel_sim") / "models" / "swimmer.yaml").read_text())
+
+
+@pytest.fixture
+def refusal(tmp_path):
+    """The sentence with which a file of this content is refused."""
+
+    def read(content: dict) -> str:
+        path = tmp_path / "model.yaml"
+        YAML(typ="safe").dump(content, path)
+        with pytest.raises(ModelError) as error:
+            load_model(path)
+        return str(error.value)
+
+    return read
+
+
+def test_the_models_that_come_with_the_package_can_be_read():
+    """By their names."""
+    assert model_names() == ["beam", "swimmer"]
+    for name in model_names():
+        assert load_model(name).name == name
+
+
+def test_an_unknown_key_is_refused_with_the_nearest_known_one(content, refusal):
+    """At the top and inside a section."""
+    content["numerics"]["mesh_densty"] = 2.0
+    assert "unknown key 'numerics.mesh_densty'; the nearest known one is 'mesh_density'" in refusal(content)
+    del content["numerics"]["mesh_densty"]
+    content["marker"] = {}
+    assert "unknown key 'marker'; the nearest known one is 'markers'" in refusal(content)
+
+
+def test_a_key_with_another_unit_is_refused_with_the_right_one(content, refusal):
+    """Millimetres where metres are expected."""
+    content["body"]["fin_length_mm"] = 1000 * content["body"].pop("fin_length_m")
+    sentence = refusal(content)
+    assert "fin_length_m" in sentence
+    content["body"]["fin_length_m"] = 0.03
+    assert "unknown key 'body.fin_length_mm'; the nearest known one is 'fin_length_m'" in refusal(content)
+
+
+@pytest.mark.parametrize(
+    ("section", "key", "value", "expected"),
+    [
+        ("body", "body_length_m", -0.1, "greater than 0"),
+        ("body", "kind", "circle", "rectangle"),
+        ("body", "head_length_m", 0.158, "head_length_m < muscle_end_m < body_length_m"),
+        ("body", "fin_length_m", float("nan"), "finite"),
+        ("material", "plane", "shell", "'strain' or 'stress'"),
+        ("numerics", "quadrature_order", 5, "2 or 3"),
+        ("muscle", "fibre_stiffness_pa", "much", "number"),
+    ],
+)
+def test_a_value_out_of_range_is_refused_with_what_was_expected(
+    section, key, value, expected, content, refusal
+):
+    """One sentence that names the key."""
+    content[section][key] = value
+    sentence = refusal(content)
+    assert section in sentence
+    assert expected in sentence
+
+
+def test_a_missing_section_is_named(content, refusal):
+    """Markers for all, a muscle for a swimmer."""
+    muscle = content.pop("muscle")
+    assert "a swimmer needs material.spine and muscle" in refusal(content)
+    content["muscle"] = muscle
+    del content["markers"]
+    assert "the key 'markers' is missing: add it" in refusal(content)
+
+
+def test_an_outline_that_crosses_the_spine_is_refused_when_the_file_is_read(content, refusal):
+    """Before any simulation."""
+    content["body"]["outline_coefficients"] = [0.3, -1.0]
+    assert "crosses the spine" in refusal(content)
+
+
+def test_a_marker_outside_the_body_is_refused_when_the_file_is_read(content, refusal):
+    """It names the marker."""
+    content["markers"]["tail"]["x_m"] = 0.5
+    sentence = refusal(content)
+    assert "tail" in sentence
+    assert "0.5" in sentence
+
+
+def test_an_unknown_effect_or_parameter_is_refused(content, refusal):
+    """With the nearest known name."""
+    content["parameters"]["slop"] = {"value": 1.0}
+    assert "unknown parameter 'slop'; the nearest known one is 'slope'" in refusal(content)
+    del content["parameters"]["slop"]
+    content["effects"] = ["quadratic_drg"]
+    assert "unknown effect 'quadratic_drg'; the nearest known one is 'quadratic_drag'" in refusal(content)
+
+
+def test_a_parameter_in_another_unit_is_refused(content, refusal):
+    """The unit a parameter has is known."""
+    content["parameters"]["slope"]["unit"] = "1/ms"
+    assert "slope is given in '1/ms'; expected '1/s'" in refusal(content)
+
+
+def test_a_file_that_is_no_model_is_refused(tmp_path):
+    """No file, no YAML, no mapping."""
+    with pytest.raises(ModelError, match="the nearest known one is 'swimmer'"):
+        load_model("swimer")
+    path = tmp_path / "model.yaml"
+    for text, expected in (("a: [1", "not valid YAML"), ("- 1", "holds no model")):
+        path.write_text(text)
+        with pytest.raises(ModelError, match=expected):
+            load_model(path)
+    path.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ModelError, match="not a text file"):
+        load_model(path)
+
+
+def test_a_saved_model_comes_back_the_same(tmp_path, boxes):
+    """Parameters, bounds, errors and effects; it simulates to the same angles."""
+    model = load_model("swimmer").with_levels(np.array([4500.0, 5500.0])).with_effects("quadratic_drag")
+    model = model.with_values({"slope": 0.3, "amplitude_5500": 0.05}, {"slope": 0.01})
+    save_model(model, tmp_path / "model.yaml")
+    back = load_model(tmp_path / "model.yaml")
+    assert back == model
+    run = boxes(duration=0.1)
+    assert np.array_equal(simulate(back, run).sin_theta, simulate(model, run).sin_theta)
+
+
+def test_an_effect_of_ones_own_is_found_beside_the_model_file(tmp_path):
+    """And is still found after saving somewhere else."""
+    (tmp_path / "gain.py").write_text(OWN_EFFECT)
+    (tmp_path / "elsewhere").mkdir()
+    save_model(load_model("swimmer"), tmp_path / "model.yaml")
+    text = (tmp_path / "model.yaml").read_text()
+    (tmp_path / "model.yaml").write_text(text.replace("effects: []", 'effects: ["gain.py:Gain"]'))
+    model = load_model(tmp_path / "model.yaml")
+    assert "gain.factor" in model.parameters
+    save_model(model, tmp_path / "elsewhere" / "model.yaml")
+    assert "gain.factor" in load_model(tmp_path / "elsewhere" / "model.yaml").parameters
