@@ -5,6 +5,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
+from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 from hasel_sim.parallel import submit_all
 from hasel_sim.run import Simulation
@@ -59,19 +60,27 @@ class Problem:
 
     def evaluate(self, model: Model, names: Sequence[str] = ()) -> Evaluation:
         """Simulate every run with the model, with derivatives by the named parameters."""
-        return self.evaluate_all([model], [names])[0]
+        result = self.evaluate_each([model], [names])[0]
+        if isinstance(result, SimulationError):
+            raise result
+        return result
 
-    def evaluate_all(self, models: Sequence[Model], names: Sequence[Sequence[str]]) -> list[Evaluation]:
-        """Several models at once, so that all workers stay busy."""
+    def evaluate_each(
+        self, models: Sequence[Model], names: Sequence[Sequence[str]]
+    ) -> list[Evaluation | SimulationError]:
+        """Several models at once, so that all workers stay busy; the error of one that cannot be simulated."""
         pending = [
             submit_all(self.pool, model, [e.run for e in self.experiments], by)
             for model, by in zip(models, names, strict=True)
         ]
         self.evaluations += len(models)
-        return [
-            self._collect(model, tuple(by), [future.result() for future in futures])
-            for model, by, futures in zip(models, names, pending, strict=True)
-        ]
+        results: list[Evaluation | SimulationError] = []
+        for model, by, futures in zip(models, names, pending, strict=True):
+            try:
+                results.append(self._collect(model, tuple(by), [future.result() for future in futures]))
+            except SimulationError as error:
+                results.append(error)
+        return results
 
     def _collect(self, model: Model, names: tuple[str, ...], simulations: list[Simulation]) -> Evaluation:
         residuals, jacobians, runs, offsets, frames = [], [], [], [], []

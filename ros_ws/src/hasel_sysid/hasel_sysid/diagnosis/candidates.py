@@ -1,0 +1,64 @@
+"""Where the search for each effect starts."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hasel_sim.effects.base import Effect, EffectParameter
+from hasel_sim.effects.registry import catalogue, find_effects
+from hasel_sim.errors import ModelError
+from hasel_sim.model import Model
+
+
+@dataclass(frozen=True)
+class Start:
+    """One effect at values from which to search: a signed effect at its null, a one-sided one at a typical size.
+
+    typical: values at which the effect's signature is judged; they share the nuisances with `values`.
+    """
+
+    effect: Effect
+    values: dict[str, float]
+    typical: dict[str, float]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the effect's parameters in a model."""
+        return tuple(self.values)
+
+
+def candidate_effects(model: Model, only: tuple[str, ...] | None = None) -> list[Effect]:
+    """Effects that could be added to this model: the catalogue or the named ones, less those that do not fit it."""
+    effects = list(find_effects(only)) if only else list(catalogue().values())
+    present = {effect.id for effect in model.effects}
+    return [effect for effect in effects if effect.id not in present and _fits(model, effect)]
+
+
+def _fits(model: Model, effect: Effect) -> bool:
+    try:
+        model.with_effects(effect.source or effect.id)
+    except ModelError:
+        return False
+    return True
+
+
+def starts(effect: Effect) -> list[Start]:
+    """One start for every value of the effect's first nuisance (a relaxation time, a position), else one."""
+    nuisance = next((p for p in effect.parameters if p.scan), None)
+    if nuisance is None:
+        return [_start(effect, {})]
+    return [_start(effect, {nuisance.name: value}) for value in nuisance.scan]
+
+
+def _start(effect: Effect, fixed: dict[str, float]) -> Start:
+    values, typical = {}, {}
+    for p in effect.parameters:
+        name = f"{effect.id}.{p.name}"
+        middle = fixed.get(p.name, p.scan[len(p.scan) // 2] if p.scan else p.typical)
+        typical[name] = middle
+        values[name] = p.null if _signed(p) else middle
+    return Start(effect, values, typical)
+
+
+def _signed(p: EffectParameter) -> bool:
+    return not p.scan and p.lower < p.null - 1e-12 and p.upper > p.null + 1e-12 and np.isfinite(p.null)

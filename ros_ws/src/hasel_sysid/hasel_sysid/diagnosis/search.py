@@ -1,0 +1,43 @@
+"""Which effects could explain what is left: many tried roughly, few thoroughly."""
+
+from collections.abc import Callable, Sequence
+
+from hasel_sim.effects.base import Effect
+from hasel_sysid.diagnosis.candidates import starts
+from hasel_sysid.diagnosis.trial import Trial, Trials
+
+_ROUNDS = (12, 6)
+"""How many effects go on to the second and to the third round."""
+
+Progress = Callable[[str, float], None]
+
+
+def search(trials: Trials, effects: Sequence[Effect], progress: Progress | None = None) -> tuple[list[Trial], list[Trial]]:
+    """The best trial of every effect, best first, and the first trial at every start.
+
+    The first round tries every start of every effect; later rounds take further steps with the effects that promise most.
+    """
+    every = [start for effect in effects for start in starts(effect)]
+    first: list[Trial] = []
+    batch = 6
+    for begin in range(0, len(every), batch):
+        first += trials.first(every[begin : begin + batch])
+        if progress:
+            progress(f"tried {len(first)} of {len(every)} starts", min(1.0, (begin + batch) / len(every)) * 0.6)
+    best = _best_of_each(first)
+    for number, keep in enumerate(_ROUNDS):
+        best = sorted(trials.further(best[:keep]) + best[keep:], key=_promise)
+        if progress:
+            progress(f"round {number + 2}: {best[0].start.effect.id} promises most", 0.6 + 0.2 * (number + 1))
+    return best, first
+
+
+def _promise(trial: Trial) -> float:
+    return trial.predicted
+
+
+def _best_of_each(trials: Sequence[Trial]) -> list[Trial]:
+    best: dict[str, Trial] = {}
+    for trial in sorted(trials, key=_promise):
+        best.setdefault(trial.start.effect.id, trial)
+    return list(best.values())

@@ -1,0 +1,118 @@
+"""Trying an effect: Gauss-Newton steps on drafts of the model, corrected for what a draft gets wrong."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import lsq_linear
+
+from hasel_sim.errors import SimulationError
+from hasel_sim.model import Model
+from hasel_sysid.diagnosis.candidates import Start
+from hasel_sysid.draft import draft
+from hasel_sysid.problem import Evaluation, Problem
+
+_MOST_CHANGE = 0.5
+"""A single step changes no baseline parameter by more than this share: beyond, the derivatives say nothing."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """An effect with the values reached so far.
+
+    model: draft with the effect; residual: corrected, at `model`'s values [frames]; jacobian [frames, names];
+    predicted: sum of squares expected after the next step, to `step` (values by name).
+    """
+
+    start: Start
+    model: Model
+    names: tuple[str, ...]
+    residual: np.ndarray
+    jacobian: np.ndarray
+    step: dict[str, float]
+    predicted: float
+
+    @property
+    def sum_of_squares(self) -> float:
+        """Sum of squared residuals at the model's values."""
+        return float(self.residual @ self.residual)
+
+
+class Trials:
+    """Tries effects on drafts of a fitted model.
+
+    fitted: the model as fitted, evaluated with its free parameters. A draft's own error, the difference between the two
+    at the fitted values, is added to every trial: what matters is what the effect changes.
+    """
+
+    def __init__(self, problem: Problem, fitted: Evaluation) -> None:
+        self.problem, self.fitted = problem, fitted
+        self.base = problem.evaluate(draft(fitted.model), fitted.names)
+        self._correction = fitted.residual - self.base.residual
+
+    def first(self, starts: Sequence[Start]) -> list[Trial]:
+        """Every effect at its start; those that cannot be simulated there are left out."""
+        models = []
+        for start in starts:
+            with_effect = draft(self.fitted.model).with_effects(start.effect.source or start.effect.id)
+            models.append((start, with_effect.with_values(start.values)))
+        return self._evaluate(models)
+
+    def further(self, trials: Sequence[Trial]) -> list[Trial]:
+        """Every trial one step on, or as it was where the step made it worse."""
+        moved = self._evaluate([(t.start, t.model.with_values(t.step)) for t in trials])
+        by_start = {id(trial.start): trial for trial in moved}
+        result = []
+        for trial in trials:
+            new = by_start.get(id(trial.start))
+            better = new is not None and new.sum_of_squares < trial.sum_of_squares
+            result.append(new if better else _shortened(trial))
+        return result
+
+    def _evaluate(self, models: Sequence[tuple[Start, Model]]) -> list[Trial]:
+        if not models:
+            return []
+        names = [(*self.fitted.names, *start.names) for start, _ in models]
+        found = self.problem.evaluate_each([model for _, model in models], names)
+        return [
+            self._trial(start, model, by, evaluation)
+            for (start, model), by, evaluation in zip(models, names, found, strict=True)
+            if not isinstance(evaluation, SimulationError)
+        ]
+
+    def _trial(self, start: Start, model: Model, names: tuple[str, ...], evaluation: Evaluation) -> Trial:
+        residual = evaluation.residual + self._correction
+        step, predicted = _bounded_step(model, names, residual, evaluation.jacobian)
+        return Trial(start, model, names, residual, evaluation.jacobian, step, predicted)
+
+
+def _bounded_step(
+    model: Model, names: tuple[str, ...], residual: np.ndarray, jacobian: np.ndarray
+) -> tuple[dict[str, float], float]:
+    """Least squares of the linearised problem within the bounds: the values reached and the sum of squares there."""
+    parameters = [model.parameters[name] for name in names]
+    value = np.array([p.value for p in parameters])
+    lower = np.array([p.lower for p in parameters]) - value
+    upper = np.array([p.upper for p in parameters]) - value
+    limited = np.array(["." not in name for name in names])
+    reach = np.where(limited, _MOST_CHANGE * np.abs(value), np.inf)
+    lower, upper = np.maximum(lower, -reach), np.minimum(upper, reach)
+    scale = np.linalg.norm(jacobian, axis=0)
+    seen = (scale > 1e-12) & (upper - lower > 1e-15)
+    change = np.zeros(len(names))
+    if seen.any():
+        solution = lsq_linear(
+            jacobian[:, seen] / scale[seen], residual, (lower[seen] * scale[seen], upper[seen] * scale[seen])
+        )
+        change[seen] = np.clip(solution.x / scale[seen], lower[seen], upper[seen])
+    left = residual - jacobian @ change
+    return dict(zip(names, value + change, strict=True)), float(left @ left)
+
+
+def _shortened(trial: Trial) -> Trial:
+    """Half the step, for a trial whose full step made things worse; what it predicts is what it has."""
+    values = trial.model.values
+    half = {name: 0.5 * (values[name] + trial.step[name]) for name in trial.names}
+    return Trial(
+        trial.start, trial.model, trial.names, trial.residual, trial.jacobian, half, 0.5 * (trial.predicted + trial.sum_of_squares)
+    )
