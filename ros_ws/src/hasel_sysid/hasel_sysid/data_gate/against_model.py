@@ -1,0 +1,112 @@
+"""Checks that need what a model predicts for the same command."""
+
+import numpy as np
+from hasel_recording import Recording
+
+from hasel_sysid.data_gate.channel_lag import check_channel_lag
+from hasel_sysid.data_gate.check import ordered
+from hasel_sysid.data_gate.finding import Finding, error, warning
+from hasel_sysid.where_it_fails.components.aligned import Alignment, align
+from hasel_sysid.where_it_fails.noise import high_frequency_noise
+from hasel_sysid.where_it_fails.run_series import RunSeries, run_series
+
+_ALIKE = 0.9
+_OPPOSITE = -0.5
+_LONGEST_PHYSICAL_LAG_S = 0.1
+_HARDLY_MORE = 1.5
+
+
+def check_against_model(
+    recording: Recording, sin_theta: np.ndarray, markers: np.ndarray | None = None
+) -> list[Finding]:
+    """Faults that show against a simulation, errors first.
+
+    sin_theta [n]: simulated at the recording's frames (NaN where not); markers [m] [n, 3, 2]: simulated, if recorded
+    ones shall be compared.
+    """
+    driven = recording.voltage is not None or recording.drive_time_s is not None
+    drive = recording.drive() if driven else None
+    run = run_series(recording.name, recording.time_s, recording.sin_theta, sin_theta, drive)
+    found = _lengths(recording, markers)
+    if len(run.time) >= 16 and np.ptp(run.simulated) > 0 and np.ptp(run.measured) > 0:
+        found += _same(run) or _sign(run) or _aligned(run)
+    return ordered(recording.name, found)
+
+
+def _same(run: RunSeries) -> list[Finding]:
+    apart = float(np.abs(run.measured - run.simulated).max())
+    if apart > 1e-9:
+        return []
+    evidence = "the measured angle is the simulated one to nine digits"
+    return [warning("simulation equals measurement", apart, evidence, "check which signal was recorded")]
+
+
+def _sign(run: RunSeries) -> list[Finding]:
+    """Opposite over the whole run and from the very start, where resonance has not yet shifted any phase."""
+    alike = float(np.corrcoef(run.measured, run.simulated)[0, 1])
+    beginning = run.time <= (run.time[0] + 0.5 * run.cycle.period if run.cycle else np.inf)
+    first = run.simulated[beginning] - run.simulated[0]
+    start = run.measured[beginning] - np.median(run.measured[:3])
+    scale = float(np.linalg.norm(first) * np.linalg.norm(start))
+    at_start = float(first @ start) / scale if scale > 0 and run.cycle else alike
+    if alike > _OPPOSITE or at_start > _OPPOSITE:
+        return []
+    evidence = f"measured and simulated angle have a correlation of {alike:.2f}"
+    advice = "head and tail marker, the channels or the image's sides are exchanged: swap them back"
+    return [error("sign flip or swapped channels", alike, evidence, advice)]
+
+
+def _aligned(run: RunSeries) -> list[Finding]:
+    aligned = align(run)
+    alike = float(np.corrcoef(run.measured, aligned.shifted)[0, 1])
+    if alike < _ALIKE:
+        return []
+    return _scale(aligned) or [*_lag(run, aligned), *check_channel_lag(run, aligned)]
+
+
+def _scale(aligned: Alignment) -> list[Finding]:
+    gain = aligned.gain
+    if 1 / 8 < gain < 8:
+        return []
+    evidence = f"the measured angle is {gain:.3g} times the simulated one"
+    if 40 < gain < 80:
+        return [error("unit of the angle", gain, evidence, "give its sine; is it the angle in degrees?")]
+    return [warning("scale of the angle", gain, evidence, "check units and calibration, or fit the model")]
+
+
+def _lag(run: RunSeries, aligned: Alignment) -> list[Finding]:
+    """A pure shift in time: it leaves hardly more than noise, which a lag of the body or the muscles would not."""
+    lag, shift = aligned.components[2], float(np.std(aligned.remainder))
+    pure = shift < _HARDLY_MORE * high_frequency_noise(run.measured)
+    gross = lag.value > _LONGEST_PHYSICAL_LAG_S and shift < 0.5 * float(np.std(run.residual))
+    if run.cycle is None or not (pure or gross):
+        return []
+    if abs(lag.value) < 0.5 * run.frame_time or lag.significance < 5:
+        return []
+    evidence = (
+        f"the angle comes {abs(lag.value) * 1e3:.1f} ms {'before' if lag.value < 0 else 'after'} what the command "
+        f"would give, and a shift in time takes the difference from {np.std(run.residual):.2g} to {shift:.2g} rms"
+    )
+    advice = "compare the clocks of supply and camera before looking for physics"
+    impossible = lag.value < -1.5 * run.frame_time or lag.value > _LONGEST_PHYSICAL_LAG_S
+    return [(error if impossible else warning)("command lag", lag.value, evidence, advice)]
+
+
+def _lengths(recording: Recording, markers: np.ndarray | None) -> list[Finding]:
+    if markers is None or recording.markers is None:
+        return []
+    measured, simulated = _parts(recording.markers), _parts(markers)
+    share, expected = measured[0] / measured.sum(), simulated[0] / simulated.sum()
+    if abs(share - expected) > 2 * abs(1 - share - expected) and abs(share - expected) > 0.01:
+        evidence = f"the head marker's distance is {share:.0%} of the whole, {expected:.0%} expected"
+        return [error("marker swap", share, evidence, "head and tail seem exchanged: track them again")]
+    if recording.marker_unit == "m" and not 0.5 < measured.sum() / simulated.sum() < 2:
+        ratio = float(measured.sum() / simulated.sum())
+        evidence = f"the markers are {ratio:.3g} times as far apart as on the model"
+        return [error("unit of the markers", ratio, evidence, "give metres, and choose the right model")]
+    return []
+
+
+def _parts(markers: np.ndarray) -> np.ndarray:
+    """Median distances head to middle and middle to tail, [2]."""
+    return np.nanmedian(np.linalg.norm(np.diff(markers, axis=1), axis=2), axis=0)

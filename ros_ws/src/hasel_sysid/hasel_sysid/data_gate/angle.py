@@ -1,0 +1,80 @@
+"""Faults of the measured angle: unit, lost and frozen frames, jumps, too little motion."""
+
+import numpy as np
+from hasel_recording import Recording
+from scipy.ndimage import median_filter
+
+from hasel_sysid.data_gate.finding import Finding, error, warning
+from hasel_sysid.where_it_fails.noise import high_frequency_noise
+
+_MANY_LOST = 0.2
+_FROZEN_S = 0.2
+_JUMP_IN_NOISE = 12.0
+_SMALLEST_JUMP = 0.05
+_LEAST_MOTION_IN_NOISE = 10.0
+
+
+def check_angle(recording: Recording) -> list[Finding]:
+    """Faults of sin theta alone."""
+    sin_theta = recording.sin_theta[recording.valid]
+    lost = _lost(recording)
+    if len(sin_theta) < 16:
+        return lost
+    unit = _unit(sin_theta)
+    return lost + (unit or [*_frozen(recording), *_jumps(sin_theta), *_motion(sin_theta)])
+
+
+def _lost(recording: Recording) -> list[Finding]:
+    share = 1.0 - float(recording.valid.mean())
+    if share == 0:
+        return []
+    make = error if share > _MANY_LOST else warning
+    evidence = f"{share:.1%} of the frames have no angle (NaN)"
+    return [make("lost frames", share, evidence, "look at the markers' colour and light in the video")]
+
+
+def _unit(sin_theta: np.ndarray) -> list[Finding]:
+    largest = float(np.abs(sin_theta).max())
+    outside = float(np.mean(np.abs(sin_theta) > 1.0))
+    if outside < 0.01:
+        return []
+    unit = "radians" if largest <= np.pi / 2 + 0.01 else "degrees"
+    evidence = f"sin_theta reaches {largest:.3g}, a sine ends at 1"
+    return [error("unit of the angle", largest, evidence, f"give its sine; is it the angle in {unit}?")]
+
+
+def _frozen(recording: Recording) -> list[Finding]:
+    values, time = recording.sin_theta, recording.time_s
+    starts = np.flatnonzero(np.concatenate([[True], values[1:] != values[:-1]]))
+    ends = np.append(starts[1:], len(values)) - 1
+    length = np.where(values[starts] != 0, time[ends] - time[starts], 0.0)
+    longest = float(length.max())
+    if longest < _FROZEN_S:
+        return []
+    evidence = f"the angle keeps exactly one value for {longest:.2f} s"
+    advice = "the camera or the tracker stood still: record again or cut the run there"
+    make = error if longest > 0.2 * recording.duration_s else warning
+    return [make("frozen angle", longest, evidence, advice)]
+
+
+def _jumps(sin_theta: np.ndarray) -> list[Finding]:
+    usual = median_filter(sin_theta, size=5, mode="nearest")
+    limit = max(_JUMP_IN_NOISE * high_frequency_noise(sin_theta), _SMALLEST_JUMP)
+    jumps = int(np.count_nonzero(np.abs(sin_theta - usual) > limit))
+    if jumps == 0:
+        return []
+    evidence = f"the angle jumps for a moment in {jumps} frames, by more than {limit:.2g}"
+    return [warning("jumping marker", jumps, evidence, "another object is taken for a marker: cover it")]
+
+
+def _motion(sin_theta: np.ndarray) -> list[Finding]:
+    noise = high_frequency_noise(sin_theta)
+    span = float(np.subtract(*np.percentile(sin_theta, [98, 2])))
+    if noise == 0 and span > 0:
+        return []
+    ratio = span / noise if noise > 0 else 0.0
+    if ratio >= _LEAST_MOTION_IN_NOISE:
+        return []
+    evidence = f"the body moves by {ratio:.1f} times the noise"
+    advice = "drive it harder or nearer to its resonance, and check that the muscles are connected"
+    return [(error if ratio < 6 else warning)("too little excitation", ratio, evidence, advice)]

@@ -1,0 +1,48 @@
+"""A fault of the set-up, named as what it is."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class Severity(str, Enum):
+    """error: results from this recording mislead; warning: look at it, results may still hold."""
+
+    ERROR = "error"
+    WARNING = "warning"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """fault: its name; evidence: what was found, with `number`; advice: what to do; recording: where."""
+
+    fault: str
+    severity: Severity
+    evidence: str
+    number: float
+    advice: str
+    recording: str = ""
+
+    def __str__(self) -> str:
+        where = f"{self.recording}: " if self.recording else ""
+        return f"{where}{self.fault}: {self.evidence}; {self.advice}."
+
+    def to_json(self) -> dict:
+        """Plain words and numbers."""
+        return {
+            "fault": self.fault,
+            "severity": self.severity.value,
+            "evidence": self.evidence,
+            "number": self.number,
+            "advice": self.advice,
+            "recording": self.recording,
+        }
+
+
+def error(fault: str, number: float, evidence: str, advice: str) -> Finding:
+    """A fault with which results mislead."""
+    return Finding(fault, Severity.ERROR, evidence, float(number), advice)
+
+
+def warning(fault: str, number: float, evidence: str, advice: str) -> Finding:
+    """A fault with which results may still hold."""
+    return Finding(fault, Severity.WARNING, evidence, float(number), advice)

@@ -1,0 +1,66 @@
+"""Faults of the frames' times: order, unit, gaps, jitter, rate."""
+
+import numpy as np
+from hasel_recording import Recording
+
+from hasel_sysid.data_gate.finding import Finding, error, warning
+
+_MOST_JITTER = 0.2
+_MANY_DROPPED = 0.2
+_LOWEST_RATE_HZ = 25.0
+
+
+def check_frames(recording: Recording) -> list[Finding]:
+    """Faults of the times alone."""
+    time = recording.time_s
+    if len(time) < 16:
+        return [
+            error("too few frames", len(time), f"there are {len(time)} frames", "record at least one period")
+        ]
+    steps = np.diff(time)
+    backwards = int(np.count_nonzero(steps <= 0))
+    if backwards:
+        return [
+            error(
+                "time order",
+                backwards,
+                f"{backwards} frames do not come after the one before",
+                "sort the rows by time and remove doubles, or record with one clock",
+            )
+        ]
+    return [*_unit(steps), *_gaps(steps), *_jitter(steps), *_rate(steps)]
+
+
+def _unit(steps: np.ndarray) -> list[Finding]:
+    usual = float(np.median(steps))
+    if usual < 0.5:
+        return []
+    evidence = f"frames are {usual:.3g} s apart"
+    return [error("unit of time", usual, evidence, "give time_s in seconds; is it in milliseconds?")]
+
+
+def _gaps(steps: np.ndarray) -> list[Finding]:
+    usual = float(np.median(steps))
+    missing = int(np.round(steps / usual - 1)[steps > 1.5 * usual].sum())
+    if missing == 0:
+        return []
+    make = error if missing > _MANY_DROPPED * (len(steps) + missing) else warning
+    evidence = f"{missing} frames are missing, the longest gap is {steps.max() * 1e3:.0f} ms"
+    return [make("dropped frames", missing, evidence, "record with less load, or a lower frame rate")]
+
+
+def _jitter(steps: np.ndarray) -> list[Finding]:
+    usual = float(np.median(steps))
+    jitter = float(np.std(steps[steps <= 1.5 * usual]) / usual)
+    if jitter <= _MOST_JITTER:
+        return []
+    evidence = f"the distance of frames varies by {jitter:.0%} (standard deviation)"
+    return [warning("jitter", jitter, evidence, "stamp frames when they are exposed, not when they arrive")]
+
+
+def _rate(steps: np.ndarray) -> list[Finding]:
+    rate = float(1 / np.median(steps))
+    if rate >= _LOWEST_RATE_HZ or rate <= 2:
+        return []
+    evidence = f"there are {rate:.3g} frames per second"
+    return [warning("frame rate", rate, evidence, f"record at least {_LOWEST_RATE_HZ:g} frames per second")]

@@ -1,0 +1,262 @@
+"""Every injected fault is named as what it is, and clean recordings are left in peace."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hasel_recording import Recording, read_recording
+from hasel_sysid.data_gate import Severity, check_recording
+
+
+def _markers(sin_theta: np.ndarray) -> np.ndarray:
+    """Head, middle and tail [m] [n, 3, 2] of a body that bends at its middle."""
+    angle = np.arcsin(sin_theta)
+    head, middle = np.array([0.005, 0.0]), np.array([0.094, 0.0])
+    tail = middle + 0.096 * np.column_stack([np.cos(angle), np.sin(angle)])
+    return np.stack([np.tile(head, (len(angle), 1)), np.tile(middle, (len(angle), 1)), tail], axis=1)
+
+
+def _with_markers(recording: Recording) -> Recording:
+    return replace(recording, markers=_markers(recording.sin_theta))
+
+
+def _changed(recording: Recording, rows, column_values) -> np.ndarray:
+    series = recording.sin_theta.copy()
+    series[rows] = column_values
+    return series
+
+
+def _without_rows(recording: Recording, rows) -> Recording:
+    kept = np.setdiff1d(np.arange(len(recording.time_s)), rows)
+    return replace(
+        recording,
+        time_s=recording.time_s[kept],
+        sin_theta=recording.sin_theta[kept],
+        voltage=recording.voltage[kept],
+    )
+
+
+def _swapped_rows(recording: Recording) -> Recording:
+    time = recording.time_s.copy()
+    time[[50, 51]] = time[[51, 50]]
+    return replace(recording, time_s=time)
+
+
+def _jittered(recording: Recording) -> Recording:
+    shake = np.random.default_rng(3).uniform(-0.4, 0.4, len(recording.time_s)) / 120
+    return replace(recording, time_s=recording.time_s + shake)
+
+
+def _early_camera(recording: Recording) -> Recording:
+    """The drive's clock runs 300 ms behind: rest, then motion, then the command."""
+    rest = 12
+    still = np.random.default_rng(4).normal(size=rest) * 0.002
+    time = np.arange(len(recording.time_s) + rest) / 120
+    late = round(0.3 * 120)
+    voltage = np.vstack([np.zeros((rest + late, 2)), recording.voltage[:-late]])
+    return replace(
+        recording, time_s=time, sin_theta=np.concatenate([still, recording.sin_theta]), voltage=voltage
+    )
+
+
+def _late_camera(recording: Recording) -> Recording:
+    late = round(0.4 * 120)
+    still = np.random.default_rng(5).normal(size=late) * 0.002
+    return replace(recording, sin_theta=np.concatenate([still, recording.sin_theta[:-late]]))
+
+
+def _exchanged(recording: Recording, first: int, second: int, rows=slice(None)) -> Recording:
+    markers = _markers(recording.sin_theta)
+    order = [0, 1, 2]
+    order[first], order[second] = order[second], order[first]
+    markers[rows] = markers[rows][:, order]
+    return replace(recording, markers=markers)
+
+
+FAULTS = {
+    "time order": (_swapped_rows, "time order", "error"),
+    "milliseconds": (lambda r: replace(r, time_s=r.time_s * 1e3), "unit of time", "error"),
+    "dropped frames": (lambda r: _without_rows(r, [40, 41, 42, 90]), "dropped frames", "warning"),
+    "jitter": (_jittered, "jitter", "warning"),
+    "15 frames/s": (
+        lambda r: _without_rows(r, np.flatnonzero(np.arange(len(r.time_s)) % 8)),
+        "frame rate",
+        "warning",
+    ),
+    "lost frames": (
+        lambda r: replace(r, sin_theta=_changed(r, slice(60, 64), np.nan)),
+        "lost frames",
+        "warning",
+    ),
+    "degrees": (
+        lambda r: replace(r, sin_theta=np.degrees(np.arcsin(r.sin_theta))),
+        "unit of the angle",
+        "error",
+    ),
+    "frozen": (
+        lambda r: replace(r, sin_theta=_changed(r, slice(80, 140), r.sin_theta[80])),
+        "frozen angle",
+        "error",
+    ),
+    "jumps": (
+        lambda r: replace(r, sin_theta=_changed(r, [70, 71, 150], 0.9)),
+        "jumping marker",
+        "warning",
+    ),
+    "no motion": (
+        lambda r: replace(r, sin_theta=0.002 * np.random.default_rng(6).normal(size=len(r.time_s))),
+        "too little excitation",
+        "error",
+    ),
+    "one step": (
+        lambda r: replace(r, voltage=np.tile([4500.0, 0.0], (len(r.time_s), 1))),
+        "too little excitation",
+        "warning",
+    ),
+    "kilovolts": (lambda r: replace(r, voltage=r.voltage / 1e3), "unit of the voltage", "error"),
+    "no command": (lambda r: replace(r, voltage=0 * r.voltage), "no command", "warning"),
+    "unused channel": (lambda r: replace(r, voltage=r.voltage * (1, 0)), "dead channel", "warning"),
+    "dead by the header": (
+        lambda r: replace(r, voltage=r.voltage * (0, 1), metadata={"muscles": "both"}),
+        "dead channel",
+        "error",
+    ),
+    "no answer to the lower side": (
+        lambda r: replace(r, sin_theta=np.where(r.sin_theta > 0, r.sin_theta, 0.05 * r.sin_theta)),
+        "dead channel",
+        "error",
+    ),
+    "same voltage twice": (
+        lambda r: replace(r, voltage=np.repeat(r.voltage[:, :1], 2, axis=1)),
+        "doubled channel",
+        "error",
+    ),
+    "clipped by the limit": (
+        lambda r: replace(r, metadata={"voltage_v": "6000"}),
+        "clipped command",
+        "error",
+    ),
+    "one channel clipped": (lambda r: replace(r, voltage=r.voltage * (1, 0.9)), "clipped command", "warning"),
+    "clipped sine": (
+        lambda r: replace(
+            r,
+            voltage=np.minimum(
+                4000.0, 4500 * np.abs(np.sin(2 * np.pi * 2 * r.time_s + 1e-9))[:, None] * (r.voltage > 0)
+            ),
+        ),
+        "clipped command",
+        "warning",
+    ),
+    "one switch late": (
+        lambda r: replace(
+            r,
+            voltage=r.voltage[
+                np.where(np.abs(np.arange(len(r.time_s)) - 95) <= 5, 89, np.arange(len(r.time_s)))
+            ],
+        ),
+        "shifted command",
+        "warning",
+    ),
+    "other frequency than said": (
+        lambda r: replace(r, metadata={"frequency_hz": "2.5"}),
+        "shifted command",
+        "warning",
+    ),
+    "faked command": (
+        lambda r: replace(r, sin_theta=(r.voltage[:, 0] - r.voltage[:, 1]) * 1e-4),
+        "command equals measurement",
+        "error",
+    ),
+    "sign flip": (lambda r: replace(r, sin_theta=-r.sin_theta), "sign flip or swapped channels", "error"),
+    "swapped channels": (
+        lambda r: replace(r, voltage=r.voltage[:, ::-1]),
+        "sign flip or swapped channels",
+        "error",
+    ),
+    "camera ahead": (_early_camera, "motion before command", "error"),
+    "camera behind": (_late_camera, "command lag", "warning"),
+    "millimetres": (
+        lambda r: replace(r, markers=1e3 * _markers(r.sin_theta)),
+        "unit of the markers",
+        "error",
+    ),
+    "middle and tail": (lambda r: _exchanged(r, 1, 2), "marker swap", "error"),
+    "head and middle": (lambda r: _exchanged(r, 0, 1), "marker swap", "error"),
+    "exchanged for a while": (lambda r: _exchanged(r, 0, 2, slice(100, 120)), "marker swap", "error"),
+    "head and tail": (lambda r: _exchanged(r, 0, 2), "sign flip", "error"),
+    "degrees beside markers": (
+        lambda r: replace(_with_markers(r), sin_theta=np.degrees(r.sin_theta) / 57.3 * 50),
+        "unit of the angle",
+        "error",
+    ),
+    "another angle than the markers'": (
+        lambda r: replace(_with_markers(r), sin_theta=0.9 * r.sin_theta),
+        "angle does not fit the markers",
+        "warning",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_fault_is_named(made_recording, name):
+    """The injected fault is found, with its severity, and the first thing said."""
+    inject, fault, severity = FAULTS[name]
+    found = check_recording(inject(made_recording()))
+    assert fault in [finding.fault for finding in found]
+    finding = next(f for f in found if f.fault == fault)
+    assert finding.severity is Severity(severity)
+    assert found[0].severity is Severity(severity)
+    assert str(finding).startswith(f"run: {fault}: ")
+    assert str(finding).endswith(".")
+
+
+def test_middle_and_tail_are_told_from_head_and_middle(made_recording):
+    """The advice names the two markers that are exchanged."""
+    tail = check_recording(_exchanged(made_recording(), 1, 2))[0]
+    head = check_recording(_exchanged(made_recording(), 0, 1))[0]
+    assert "middle and tail" in str(tail)
+    assert "middle and head" in str(head)
+
+
+@pytest.mark.parametrize("frequency", [0.5, 2.0, 2.5, 3.5])
+@pytest.mark.parametrize("seed", range(5))
+def test_clean_recording_has_no_finding(made_recording, frequency, seed):
+    """Nothing is said about a clean run, with or without markers."""
+    recording = made_recording(frequency=frequency, seed=seed)
+    assert check_recording(recording) == []
+    assert check_recording(_with_markers(recording)) == []
+
+
+def test_image_markers_have_y_downwards(made_recording):
+    """Pixels with y downwards give the same angle, so nothing is said."""
+    recording = made_recording()
+    pixels = 8000 * _markers(recording.sin_theta) * (1, -1) + 300
+    assert check_recording(replace(recording, markers=pixels, marker_unit="px")) == []
+
+
+def test_passive_body_needs_no_command(made_recording):
+    """A body that is let go has no voltage and is not blamed for it."""
+    time = np.arange(0, 2, 0.01)
+    swing = 0.1 * np.exp(-time) * np.cos(30 * time) + 1e-4 * np.random.default_rng(0).normal(size=len(time))
+    assert check_recording(Recording("beam", time, swing)) == []
+
+
+def test_too_short_recording_is_said_to_be(made_recording):
+    """A run of ten frames is refused before anything else."""
+    recording = _without_rows(made_recording(), np.arange(10, 240))
+    assert [finding.fault for finding in check_recording(recording)] == ["too few frames"]
+
+
+def test_no_false_alarm_on_the_unseen_rig(unseen_rig):
+    """None of the clean runs of the independent simulator, with or without a hidden effect, is blamed."""
+    paths = sorted(unseen_rig.glob("*/*.csv"))
+    assert paths
+    said = [str(finding) for path in paths for finding in check_recording(read_recording(path))]
+    assert said == []
+
+
+def test_measured_beam_is_clean(real_beam):
+    """The measured swings of the silicone beam pass."""
+    paths = sorted(real_beam.glob("*.csv"))
+    assert paths
+    assert [str(f) for path in paths for f in check_recording(read_recording(path))] == []
