@@ -19,6 +19,8 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
+            "bench = hasel_bringup.bench:main",
+            "bench_hidden = hasel_bringup.bench_hidden.command:main",
             "replay = hasel_bringup.replay.command:main",
         ]
     },

@@ -72,5 +72,3 @@ def quick_cases(numerics: str) -> list[Case]:
         Case("single", ("charging_lag",), 1.0, 0, "white", numerics),
         Case("unlisted", ("stirred_bath",), 1.0, 0, "white", numerics),
     ]
-
-

@@ -1,0 +1,50 @@
+"""`bench`: the benchmarks of the simulator, the driver and the tracker, one after the other, beside their bars."""
+
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from ament_index_python.packages import PackageNotFoundError, get_package_prefix
+
+from hasel_bringup.errors import BringupError
+
+PACKAGES = ("hasel_sim", "hasel_driver", "hasel_tracker")
+
+
+def bench_executable(package: str) -> Path:
+    """Where a package's `bench` is installed. Raises BringupError when it is not."""
+    try:
+        path = Path(get_package_prefix(package)) / "lib" / package / "bench"
+    except PackageNotFoundError:
+        path = None
+    if path is None or not path.is_file():
+        raise BringupError(
+            f"Package {package} has no executable bench; build the workspace with `make build`."
+        )
+    return path
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run all three; returns 0 if each reached its bars, 1 if one is missing, else the first other code."""
+    given = sys.argv[1:] if arguments is None else list(arguments)
+    if given:
+        print(
+            "usage: bench (without arguments; for options run a package's own: ros2 run hasel_tracker bench --help)",
+            file=sys.stderr,
+        )
+        return 0 if given[0] in ("-h", "--help") else 2
+    try:
+        executables = [bench_executable(package) for package in PACKAGES]
+    except BringupError as error:
+        print(error, file=sys.stderr)
+        return 1
+    codes = []
+    for package, executable in zip(PACKAGES, executables, strict=True):
+        print(f"\n{package}", flush=True)
+        codes.append(subprocess.run([executable], check=False).returncode)
+    return next((code for code in codes if code), 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

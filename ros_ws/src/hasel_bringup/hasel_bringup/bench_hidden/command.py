@@ -1,0 +1,110 @@
+"""`bench_hidden`: how often the right hidden effect is named, beside the bars."""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from hasel_sim.errors import ModelError, SimulationError
+from hasel_sim.parallel import executor
+
+from hasel_bringup.bench_hidden.case import Case
+from hasel_bringup.bench_hidden.case_list import list_cases, quick_cases
+from hasel_bringup.bench_hidden.explain import explain
+from hasel_bringup.bench_hidden.outcome import Outcome
+from hasel_bringup.bench_hidden.page import as_json, as_markdown
+from hasel_bringup.bench_hidden.run_cases import run_cases
+from hasel_bringup.bench_hidden.truth import NUMERICS
+from hasel_bringup.errors import BringupError
+
+_OUTPUT = Path("output/bench_hidden")
+_PAGE = Path("docs/hidden_effects.md")
+_KINDS = {"nothing": "nothing", "single": "single", "pairs": "pair", "unlisted": "unlisted"}
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command's options."""
+    options = argparse.ArgumentParser(
+        prog="bench_hidden",
+        description="Hide effects in a simulated truth, let `improve` look for them, and count. Takes hours; "
+        "stop with Ctrl-C and go on with --resume.",
+    )
+    options.add_argument(
+        "--seeds", type=int, default=5, metavar="N", help="per effect (default: %(default)s)"
+    )
+    options.add_argument("--effects", default="", metavar="A,B", help="only cases that hide one of these")
+    options.add_argument("--only", choices=list(_KINDS), help="only cases of this kind")
+    options.add_argument(
+        "--truth", choices=list(NUMERICS), default="near", help="discretisation of the truth"
+    )
+    options.add_argument("--quick", action="store_true", help="five cases, some minutes")
+    options.add_argument("--resume", action="store_true", help="keep what the output folder already holds")
+    options.add_argument("--output", type=Path, default=_OUTPUT, metavar="DIR", help="default: %(default)s")
+    options.add_argument("--page", type=Path, metavar="FILE", help=f"default: {_PAGE}, in DIR for a part")
+    options.add_argument("--jobs", type=int, metavar="N", help="processes (default: one per core)")
+    options.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, instead of processes")
+    return options
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    options = parser().parse_args(arguments)
+    try:
+        return _bench(options)
+    except (BringupError, ModelError, SimulationError) as error:
+        print(error, file=sys.stderr)
+        return 1
+
+
+def _bench(options: argparse.Namespace) -> int:
+    cases = _cases(options)
+    if not cases:
+        raise BringupError("No case is left to run; choose other --effects or another kind with --only.")
+    if not options.resume and any(options.output.glob("*.json")):
+        raise BringupError(
+            f"{options.output} already holds results; go on with --resume, or name another folder with --output."
+        )
+    outcomes: list[Outcome] = []
+    stopped = False
+    try:
+        with executor(options.jobs, options.scheduler) as pool:
+            for outcome in run_cases(cases, explain, pool, options.output, _say):
+                outcomes.append(outcome)
+    except KeyboardInterrupt:
+        stopped = True
+        _say(f"Stopped after {len(outcomes)} of {len(cases)} cases; go on with --resume.")
+    _write(outcomes, options.page or _default_page(options))
+    return 130 if stopped else 0
+
+
+def _cases(options: argparse.Namespace) -> list[Case]:
+    if options.quick:
+        return quick_cases(options.truth)
+    kinds = list(_KINDS.values()) if options.only is None else [_KINDS[options.only]]
+    effects = [name for name in options.effects.split(",") if name]
+    return list_cases(kinds, options.seeds, effects, options.truth)
+
+
+def _default_page(options: argparse.Namespace) -> Path:
+    part = options.quick or options.only or options.effects
+    return options.output / _PAGE.name if part else _PAGE
+
+
+def _write(outcomes: Sequence[Outcome], page: Path) -> None:
+    if not outcomes:
+        return
+    page.parent.mkdir(parents=True, exist_ok=True)
+    text = as_markdown(outcomes)
+    page.write_text(text)
+    page.with_suffix(".json").write_text(json.dumps(as_json(outcomes), indent=1))
+    print(text)
+    _say(f"Written to {page} and {page.with_suffix('.json')}.")
+
+
+def _say(sentence: str) -> None:
+    print(sentence, file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

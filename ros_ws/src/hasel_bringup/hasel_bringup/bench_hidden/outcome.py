@@ -1,0 +1,137 @@
+"""What became of one case: the answer of `improve` beside what only the benchmark knows."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+_NORMAL_95 = 1.96
+VISIBLE_SHARE = 0.5
+"""A hidden effect is visible when the fitted baseline's excess rms is at least this share of the noise's."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """An effect's parameter as `improve` found it, and as it was."""
+
+    name: str
+    value: float
+    standard_error: float | None
+    truth: float
+
+    @property
+    def covered(self) -> bool | None:
+        """Whether the 95 % interval holds the truth; None without an interval."""
+        if self.standard_error is None or not np.isfinite(self.standard_error):
+            return None
+        return abs(self.value - self.truth) <= _NORMAL_95 * self.standard_error
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """hidden: ids; ranked: ids, most probable first; missing: ids that `improve` says are missing and adds.
+
+    mae_*: mean |Δ sin θ| of the fitted baseline and of the last stage; floor_*: of the noise alone;
+    failure: why there is no answer, in which case all else is empty.
+    """
+
+    case: str
+    kind: str
+    hidden: tuple[str, ...]
+    size: float
+    colour: str
+    numerics: str
+    status: str = ""
+    missing: tuple[str, ...] = ()
+    ranked: tuple[str, ...] = ()
+    groups: tuple[tuple[str, ...], ...] = ()
+    mae_fitted: tuple[float, float] = (np.nan, np.nan)
+    mae_unseen: tuple[float, float] = (np.nan, np.nan)
+    floor_fitted: float = np.nan
+    floor_unseen: float = np.nan
+    estimates: tuple[Estimate, ...] = ()
+    seconds: float = np.nan
+    failure: str = ""
+
+    @property
+    def visible(self) -> bool:
+        """Whether the hidden effect leaves anything to be found once the baseline is fitted."""
+        excess = max(self.mae_fitted[0] ** 2 - self.floor_fitted**2, 0.0)
+        return excess >= (VISIBLE_SHARE * self.floor_fitted) ** 2
+
+    @property
+    def reports_something(self) -> bool:
+        """Whether anything is said to be missing."""
+        return self.status != "nothing_missing"
+
+    @property
+    def first(self) -> str:
+        """The effect named first, empty when nothing is said to be missing."""
+        return self.ranked[0] if self.ranked and self.reports_something else ""
+
+    @property
+    def right(self) -> bool:
+        """Whether the effect named first is a hidden one."""
+        return self.first in self.hidden
+
+    @property
+    def right_within_group(self) -> bool:
+        """Right, or stated to be indistinguishable from a hidden one."""
+        return self.right or any(alike(self.first, one, self.groups) for one in self.hidden)
+
+    @property
+    def accuses_with_confidence(self) -> bool:
+        """Whether the listed effects are said to explain what was seen."""
+        return self.status == "explained" and bool(self.missing)
+
+    @property
+    def says_none_of_them(self) -> bool:
+        """Whether the listed effects are said not to explain, or not wholly, what was seen."""
+        return self.status in ("unexplained", "partly_explained")
+
+    @property
+    def all_named(self) -> bool:
+        """Whether every hidden effect is among those added."""
+        return set(self.hidden) <= set(self.missing)
+
+    @property
+    def all_named_within_group(self) -> bool:
+        """The same, a stated indistinguishable one counting for each."""
+        return all(
+            one in self.missing or any(alike(m, one, self.groups) for m in self.missing)
+            for one in self.hidden
+        )
+
+    @property
+    def removed_fitted(self) -> float:
+        """Share of the fitted baseline's error above the noise that is gone at the last stage, on fitted runs."""
+        return _removed(self.mae_fitted, self.floor_fitted)
+
+    @property
+    def removed_unseen(self) -> float:
+        """The same on unseen runs."""
+        return _removed(self.mae_unseen, self.floor_unseen)
+
+    def as_dict(self) -> dict:
+        """For JSON."""
+        return asdict(self)
+
+
+def alike(first: str, second: str, groups: Sequence[Sequence[str]]) -> bool:
+    """Whether one of the stated groups holds both."""
+    return any(first in group and second in group for group in groups)
+
+
+def _removed(error: tuple[float, float], floor: float) -> float:
+    excess = error[0] - floor
+    return (error[0] - error[1]) / excess if excess > 0 else np.nan
+
+
+def outcome_from_dict(content: dict) -> Outcome:
+    """Read back what `as_dict` wrote."""
+    lists = {
+        name: tuple(content[name]) for name in ("hidden", "missing", "ranked", "mae_fitted", "mae_unseen")
+    }
+    groups = tuple(tuple(group) for group in content["groups"])
+    estimates = tuple(Estimate(**one) for one in content["estimates"])
+    return Outcome(**{**content, **lists, "groups": groups, "estimates": estimates})

@@ -1,0 +1,79 @@
+"""Run cases one after the other, each kept in a file of its own, so that hours of work survive a stop."""
+
+import json
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
+from pathlib import Path
+
+from hasel_sim.errors import SimulationError
+from hasel_sysid.errors import SysidError
+
+from hasel_bringup.bench_hidden.case import Case
+from hasel_bringup.bench_hidden.generate import Laboratory, measure
+from hasel_bringup.bench_hidden.judge import failed, judge
+from hasel_bringup.bench_hidden.outcome import Outcome, outcome_from_dict
+
+Explain = Callable[[Laboratory, Executor], dict]
+"""What is judged: from measurements to the content of `improve --json`."""
+
+
+def kept_outcome(case: Case, folder: Path) -> Outcome | None:
+    """What an earlier run left about a case."""
+    path = folder / f"{case.name}.json"
+    return outcome_from_dict(json.loads(path.read_text())["outcome"]) if path.is_file() else None
+
+
+def run_case(case: Case, explain: Explain, pool: Executor) -> tuple[Outcome, dict, dict]:
+    """Outcome, hidden values and the answer of one case; a failure to simulate or to explain is an outcome too."""
+    try:
+        laboratory = measure(case, pool)
+    except SimulationError as error:
+        return failed(case, f"the truth cannot be simulated: {error}"), {}, {}
+    start = time.perf_counter()
+    try:
+        answer = explain(laboratory, pool)
+    except (SysidError, SimulationError) as error:
+        return failed(case, f"improve gave up: {error}"), laboratory.values, {}
+    return (
+        judge(case, laboratory, answer, time.perf_counter() - start),
+        laboratory.values,
+        answer,
+    )
+
+
+def run_cases(
+    cases: Sequence[Case], explain: Explain, pool: Executor, folder: Path, say: Callable[[str], None]
+) -> Iterator[Outcome]:
+    """Outcomes of all cases, those already in the folder first; each new one is written there at once."""
+    folder.mkdir(parents=True, exist_ok=True)
+    kept = {case.name: kept_outcome(case, folder) for case in cases}
+    yield from (outcome for outcome in kept.values() if outcome is not None)
+    todo = [case for case in cases if kept[case.name] is None]
+    begin = time.perf_counter()
+    for number, case in enumerate(todo, start=1):
+        outcome, values, answer = run_case(case, explain, pool)
+        content = {
+            "case": case.as_dict(),
+            "hidden_values": values,
+            "outcome": outcome.as_dict(),
+            "answer": answer,
+        }
+        unfinished = folder / f"{case.name}.part"
+        unfinished.write_text(json.dumps(content, indent=1))
+        unfinished.replace(folder / f"{case.name}.json")
+        left = (time.perf_counter() - begin) / number * (len(todo) - number)
+        say(f"[{number}/{len(todo)}, {_duration(left)} left] {case}: {_in_words(outcome)}")
+        yield outcome
+
+
+def _in_words(outcome: Outcome) -> str:
+    if outcome.failure:
+        return outcome.failure
+    added = ", ".join(outcome.missing) or "nothing"
+    return f"{outcome.status}, {added} added, first of the ranking {outcome.first or '–'}, {outcome.seconds:.0f} s"
+
+
+def _duration(seconds: float) -> str:
+    minutes = round(seconds / 60)
+    return f"{minutes // 60} h {minutes % 60} min" if minutes >= 60 else f"{minutes} min"
