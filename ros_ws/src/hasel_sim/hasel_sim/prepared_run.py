@@ -1,0 +1,120 @@
+"""A run made ready to be stepped through: its mesh, system, time steps, drive and how it is observed."""
+
+import numpy as np
+
+from hasel_sim.build import Builder, difference_points, marker_points
+from hasel_sim.drive.chain import DriveChain
+from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.effects.base import DriveEffect, EffectParameter, ObservationEffect
+from hasel_sim.errors import SimulationError
+from hasel_sim.mechanics.stepper import Stepper
+from hasel_sim.mechanics.steps import StepPlan, plan_steps
+from hasel_sim.mechanics.system import DriveState
+from hasel_sim.model import Model
+from hasel_sim.observation import MarkerRows
+from hasel_sim.run import Run
+
+_NO_VOLTAGE = VoltageSchedule(np.zeros(1), np.zeros((1, 2)))
+
+
+class PreparedRun:
+    """One run with one model; `names` are the parameters by which it will be differentiated.
+
+    nodes: moved nodes [m] [nodes, 2] in place of the model's mesh. Raises SimulationError for a run without frames
+    after its start, ModelError for an unknown parameter.
+    """
+
+    def __init__(
+        self, model: Model, run: Run, names: tuple[str, ...] = (), nodes: np.ndarray | None = None
+    ) -> None:
+        self.model, self.run, self.names = model, run, names
+        self.parameters = [model.parameter(name) for name in names]
+        numerics = model.description.numerics
+        self.observed_by = sorted(
+            (e for e in model.effects if isinstance(e, ObservationEffect)), key=lambda effect: effect.id
+        )
+        values = model.effect_values()
+        ahead = max([0.0, *(e.look_ahead(values[e.id]) for e in self.observed_by)])
+        frames = run.time[run.time >= run.start - 1e-9]
+        if len(frames) == 0:
+            raise SimulationError(
+                f"run '{run.name}' has no frame after {run.start} s; expected initial_time_s within it"
+            )
+        self._skipped = len(run.time) - len(frames)
+        self.plan: StepPlan = plan_steps(
+            frames, numerics.steps_per_second, numerics.spectral_radius, run.start, frames[-1] + ahead
+        )
+        self.builder = Builder(model, nodes)
+        self.stepper = Stepper(self.builder.system(), numerics.tolerance_m)
+        markers = model.description.markers
+        self.rows = MarkerRows(
+            self.builder.mesh,
+            marker_points(model),
+            np.array([markers.head.fixed, markers.middle.fixed, markers.tail.fixed]),
+        )
+        self.schedule = run.schedule or _NO_VOLTAGE
+        drive_effects = [e for e in model.effects if isinstance(e, DriveEffect)]
+        self._chain = DriveChain(drive_effects, model.levels) if model.has_muscles else None
+
+    @property
+    def load_factor(self) -> float:
+        """Share of all loads under which the body is in equilibrium when it starts."""
+        return self.run.initial_load_factor if self.run.initial_state == "static_equilibrium" else 0.0
+
+    @property
+    def held_shape(self) -> np.ndarray | None:
+        """Nodal positions [m] [nodes, 2] in which the body is held when it starts, if it is."""
+        return self.run.initial_shape if self.run.initial_state == "held_shape" else None
+
+    @property
+    def start_drive(self) -> DriveState:
+        """No voltage and no contraction, at the start."""
+        return DriveState(np.zeros(2), np.zeros(2), self.run.start)
+
+    def drives(self, contraction: np.ndarray) -> list[DriveState]:
+        """The drive at the balance of every step, for contractions [steps, 2]."""
+        times = self.plan.balance_times
+        return [DriveState(*row) for row in zip(self.schedule.at(times), contraction, times, strict=True)]
+
+    def contraction(self, times: np.ndarray, values: dict[str, float] | None = None) -> np.ndarray:
+        """Contraction [1] [n, 2] at ascending times [s] [n], at the model's or other parameter values."""
+        if self._chain is None:
+            return np.zeros((len(times), 2))
+        values = values or self.model.values
+        every = np.concatenate([[min(self.run.start, times[0])], times])
+        return self._chain.contraction(self.schedule, every, values, self.model.effect_values(values))[1:]
+
+    def contraction_slopes(self, times: np.ndarray) -> np.ndarray:
+        """Derivative of the contraction by every named parameter, [steps, columns, 2]."""
+        out = np.zeros((len(times), len(self.names), 2))
+        for column, parameter in enumerate(self.parameters):
+            if not self._drives(parameter.name):
+                continue
+            more, less, width = difference_points(self.declared(parameter.name), parameter.value)
+            above = self.contraction(times, {**self.model.values, parameter.name: more})
+            below = self.contraction(times, {**self.model.values, parameter.name: less})
+            out[:, column] = (above - below) / width
+        return out
+
+    def _drives(self, name: str) -> bool:
+        identity = name.rpartition(".")[0]
+        return not identity or any(
+            isinstance(e, DriveEffect) and e.id == identity for e in self.model.effects
+        )
+
+    def declared(self, name: str) -> EffectParameter:
+        """What the effect, or the baseline, says about a parameter."""
+        identity, _, own = name.rpartition(".")
+        for effect in self.model.effects:
+            if effect.id == identity:
+                return next(p for p in effect.parameters if p.name == own)
+        parameter = self.model.parameter(name)
+        return EffectParameter(
+            name, name, parameter.unit, 0.0, parameter.lower, parameter.upper, parameter.value or 0.1
+        )
+
+    def at_frames(self, series: np.ndarray) -> np.ndarray:
+        """A series over the step boundaries, at the run's frames; NaN before the start."""
+        chosen = series[self.plan.frames]
+        missing = np.full((self._skipped, *chosen.shape[1:]), np.nan)
+        return np.concatenate([missing, chosen])
