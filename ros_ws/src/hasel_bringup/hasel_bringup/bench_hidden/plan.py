@@ -26,10 +26,10 @@ class BoxRun:
     def run(self, switch_on_frames: bool = False) -> Run:
         """Frames and drive; switch_on_frames moves each switch to the next frame, all that a CSV file can hold."""
         frames = np.arange(np.ceil(_PERIODS / self.frequency * FRAMES_PER_SECOND) + 1) / FRAMES_PER_SECOND
-        switches = np.arange(2 * _PERIODS) / (2 * self.frequency)
+        switches = np.arange(2 * _PERIODS + 1) / (2 * self.frequency)
         if switch_on_frames:
             switches = np.ceil(switches * FRAMES_PER_SECOND - 1e-9) / FRAMES_PER_SECOND
-        upper = np.arange(2 * _PERIODS) % 2 == 0
+        upper = np.arange(len(switches)) % 2 == 0
         voltage = np.where(np.stack([upper, ~upper], axis=1), self.voltage, 0.0)
         return Run(self.name, frames, VoltageSchedule(switches, voltage))
 

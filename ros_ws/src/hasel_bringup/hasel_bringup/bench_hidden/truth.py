@@ -37,7 +37,7 @@ NUMERICS = {
         TruthNumerics("converged", 1.3, 2, spectral_radius=0.9),
     )
 }
-"""What the fitted model leaves of noise-free runs in which nothing is hidden, as a share of the noise's rms: a fifth for
+"""What the fitted model leaves of noise-free runs with nothing hidden, as a share of the noise's rms: a fifth for
 `near`, two thirds for `coarse`, and 1.6 for `converged`, whose fin is softer because its corner is resolved."""
 
 
