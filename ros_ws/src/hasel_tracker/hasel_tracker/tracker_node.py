@@ -1,5 +1,6 @@
 """The ROS node: camera in, bending angle out; images stay in this process."""
 
+import signal
 import sys
 import time
 from datetime import datetime
@@ -13,7 +14,8 @@ from rcl_interfaces.msg import SetParametersResult
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.qos import QoSProfile, qos_profile_sensor_data
+from rclpy.qos import QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import CompressedImage, Image
 from std_srvs.srv import SetBool, Trigger
 
@@ -82,8 +84,7 @@ class TrackerNode(Node):
         read = None
         if source.startswith(TOPIC_PREFIX):
             topic = source.removeprefix(TOPIC_PREFIX)
-            kind = CompressedImage if topic.endswith("compressed") else Image
-            self.create_subscription(kind, topic, self._take_image, qos_profile_sensor_data)
+            self._waiting = self.create_timer(0.2, lambda: self._subscribe(topic))
         elif source.isdigit() or source.startswith("/dev/"):
             self._camera = PersistentCamera(self._open_camera)
             read = self._camera.read
@@ -96,6 +97,17 @@ class TrackerNode(Node):
             self._value("decode_threads"),
             read,
         )
+
+    def _subscribe(self, topic: str) -> None:
+        """Subscribe once the images are there, reliably if they are: best effort loses most large images."""
+        publishers = self.get_publishers_info_by_topic(topic)
+        if not publishers:
+            return
+        self._waiting.cancel()
+        reliable = all(each.qos_profile.reliability == ReliabilityPolicy.RELIABLE for each in publishers)
+        quality = ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT
+        kind = CompressedImage if topic.endswith("compressed") else Image
+        self.create_subscription(kind, topic, self._take_image, QoSProfile(depth=5, reliability=quality))
 
     def _open_camera(self) -> CameraSource:
         source, exposure = self._value("source"), self._value("exposure")
@@ -202,7 +214,9 @@ class TrackerNode(Node):
 
 def main() -> int:
     """Run the node until it is interrupted; returns the exit code."""
-    rclpy.init()
+    # ROS must stay up until the tracking thread has stopped, so the signals are ours.
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     node = None
     try:
         node = TrackerNode()

@@ -9,6 +9,7 @@ from hasel_tracker.calibration.camera_calibration import CameraCalibration
 from hasel_tracker.errors import TrackerError
 
 VIEWS_FOR_LENS = 4
+VIEWS_FOR_HIGHER_TERMS = 10
 
 
 @dataclass(frozen=True)
@@ -57,8 +58,12 @@ def calibrate_camera(
     matrix, distortion = np.eye(3), np.zeros(5)
     corners_m = board.corners_m()
     if len(views) >= VIEWS_FOR_LENS:
+        # Few views leave the higher terms of the lens undetermined, and they spoil the rim of the picture.
+        fixed = cv2.CALIB_FIX_K3
+        if len(views) < VIEWS_FOR_HIGHER_TERMS:
+            fixed |= cv2.CALIB_FIX_K2 | cv2.CALIB_ZERO_TANGENT_DIST
         _, matrix, distortion, _, _ = cv2.calibrateCamera(
-            [corners_m] * len(views), views, image_size_px, None, None, flags=cv2.CALIB_FIX_K3
+            [corners_m] * len(views), views, image_size_px, None, None, flags=fixed
         )
         distortion = distortion.ravel()[:5]
     lens = CameraCalibration(image_size_px, matrix, distortion, np.eye(3), 0.0)

@@ -102,7 +102,14 @@ def _motion(options: argparse.Namespace, shape: BodyShape) -> Motion:
 def _view(options: argparse.Namespace) -> CameraView:
     width, height = options.size
     tilt, roll = np.radians([options.tilt, options.roll])
-    return CameraView(width, height, 1000.0 * options.scale, 0.6, float(tilt), float(roll), options.lens)
+    return CameraView(
+        width,
+        height,
+        1000.0 * options.scale,
+        tilt_rad=float(tilt),
+        roll_rad=float(roll),
+        radial_distortion=options.lens,
+    )
 
 
 def _degradation(options: argparse.Namespace) -> Degradation:

@@ -76,6 +76,8 @@ def _track(options: argparse.Namespace) -> None:
     )
     run = _follow(source, tracker, options.annotate)
     print(f"{options.video}: {run}")
+    if source.damaged_frames:
+        print(f"warning: {source.damaged_frames} frames are damaged and were left out.", file=sys.stderr)
     print(f"Markers: {tracker.note}.")
     if not run.valid.any():
         raise TrackerError(

@@ -48,8 +48,8 @@ class VideoRecorder:
                     first = frame
                     writer = JpegWriter(self.path, self._rate, start_stamp_ns=frame.stamp_ns)
                 self._write(writer, frame, frame.time_s - first.time_s)
-        except (TrackerError, OSError) as error:
-            self.fault = f"The video {self.path} cannot be written ({error}); choose another folder."
+        except TrackerError as error:
+            self.fault = str(error)
         finally:
             if writer is not None:
                 writer.close()

@@ -8,6 +8,7 @@ from hasel_tracker.offline.tracked_run import TrackedRun
 REST_FRAMES = 6
 CLEAR_OF_NOISE = 6.0
 LEAST_MOVEMENT = 0.002
+MEDIAN_OF_SECOND_DIFFERENCES = 1.65  # of white noise with standard deviation one: 0.6745 · √6
 
 
 def first_movement_s(time_s: np.ndarray, sin_theta: np.ndarray) -> float:
@@ -24,7 +25,8 @@ def first_movement_s(time_s: np.ndarray, sin_theta: np.ndarray) -> float:
             f"find the start."
         )
     rest = np.median(sin_theta[:REST_FRAMES])
-    noise = 1.5 * np.median(np.abs(np.diff(sin_theta[:REST_FRAMES])))
+    # Second differences: a body that moves steadily from the start is not taken for noise.
+    noise = np.median(np.abs(np.diff(sin_theta[:REST_FRAMES], 2))) / MEDIAN_OF_SECOND_DIFFERENCES
     away = np.abs(sin_theta - rest) > max(CLEAR_OF_NOISE * noise, LEAST_MOVEMENT)
     lasting = away[:-1] & away[1:]
     if not lasting.any():

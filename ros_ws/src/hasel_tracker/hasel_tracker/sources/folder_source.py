@@ -16,6 +16,7 @@ class FolderSource:
     """All images of a folder, taken at a constant rate."""
 
     start_stamp_ns = None
+    damaged_frames = 0
 
     def __init__(self, path: Path, frame_rate_hz: float) -> None:
         self.path = Path(path)

@@ -5,6 +5,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import av
+from av.container import InputContainer
+from av.video.stream import VideoStream
 
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.sources.frame import Frame
@@ -30,24 +32,35 @@ class VideoSource:
             raise TrackerError(
                 f"{path} cannot be opened as a video ({_reason(error)}); expected a file FFmpeg can read."
             ) from error
+        self.damaged_frames = 0
         stamp = START_STAMP.search(comment)
         self.start_stamp_ns = int(stamp.group(1)) if stamp else None
 
     def __iter__(self) -> Iterator[Frame]:
+        """Yield all frames; those that cannot be decoded are left out and counted in `damaged_frames`."""
+        self.damaged_frames = 0
         with av.open(str(self.path)) as container:
             stream = container.streams.video[0]
             stream.thread_type = "AUTO"
             stream.codec_context.thread_count = self._threads
             first_s = None
+            for index, picture in enumerate(self._pictures(container, stream)):
+                seconds = picture.time if picture.time is not None else index / self.frame_rate_hz
+                first_s = seconds if first_s is None else first_s
+                yield self._frame(index, seconds - first_s, picture)
+
+    def _pictures(self, container: InputContainer, stream: VideoStream) -> Iterator[av.VideoFrame]:
+        packets = container.demux(stream)
+        while True:
             try:
-                for index, picture in enumerate(container.decode(stream)):
-                    seconds = picture.time if picture.time is not None else index / self.frame_rate_hz
-                    first_s = seconds if first_s is None else first_s
-                    yield self._frame(index, seconds - first_s, picture)
-            except av.FFmpegError as error:
-                raise TrackerError(
-                    f"{self.path} is damaged ({_reason(error)}); repair it with `ffmpeg -i` or record again."
-                ) from error
+                packet = next(packets, None)
+                if packet is None:
+                    return
+                yield from packet.decode()
+            except av.EOFError:
+                return
+            except av.FFmpegError:
+                self.damaged_frames += 1
 
     def _frame(self, index: int, time_s: float, picture: av.VideoFrame) -> Frame:
         stamp = None if self.start_stamp_ns is None else self.start_stamp_ns + round(time_s * 1e9)

@@ -25,7 +25,7 @@ RING_WIDTH_PX = 3
 MINIMUM_CONTRAST = 12.0
 MINIMUM_INSIDE_PX = 5
 REFINEMENTS = 2
-TEXTURED = 0.08
+TEXTURED = 0.16
 CHROMA_BLUR_PX = 1
 
 
@@ -80,7 +80,7 @@ def _measure(
     share, contrast = _marker_share(signal, inside, outer, surroundings, follows_light=signal_of is _luma)
     if contrast < MINIMUM_CONTRAST:
         return None
-    centre, area = _symmetric_centre(share, outer, surroundings)
+    centre, area = _centre_and_area(share, outer, surroundings)
     solidity = min(cv2.contourArea(outline) / max(cv2.contourArea(hull), 1.0), 1.0)
     return MarkerMeasurement(np.add(centre, (left, top)), area, contrast, surroundings.noise, solidity)
 
@@ -119,31 +119,67 @@ def _marker_share(
     return share, float(abs(contrast.mean()))
 
 
-def _symmetric_centre(
+def _centre_and_area(
     share: np.ndarray, outer: np.ndarray, surroundings: Surroundings
 ) -> tuple[np.ndarray, float]:
-    """Centre (2,) and area of the marker, from the directions that nothing else crosses."""
+    """Centre (2,) and area of the marker, from the directions that nothing else crosses, or all if too few."""
     rows, columns = np.nonzero(outer)
     weights = share[rows, columns]
     positions = np.column_stack([columns, rows]).astype(float)
     area = float(weights.sum())
     centre = weights @ positions / area
-    window = surroundings.symmetric_window()
-    if window is None:
+    if not surroundings.crossed.any():
         return centre, area
-    pull = _shift_response(window) * area / np.pi
+    window = surroundings.open_window(symmetric=True)
+    if window is not None:
+        return _symmetric_centre(weights, positions, centre, window)
+    window = surroundings.open_window(symmetric=False)
+    return (centre, area) if window is None else _disc_centre(weights, positions, centre, window)
+
+
+def _symmetric_centre(
+    weights: np.ndarray, positions: np.ndarray, centre: np.ndarray, window: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """The point about which the first moment within a symmetric window vanishes, and the area seen from there."""
+    zeroth, _, second = _window_moments(window)
     for _ in range(REFINEMENTS):
         offset = positions - centre
         seen = weights * window[sector_of(offset[:, 0], offset[:, 1])]
-        centre = centre + np.linalg.solve(pull, seen @ offset)
+        area = 2.0 * np.pi * float(seen.sum()) / zeroth
+        centre = centre + np.linalg.solve(second * area / np.pi, seen @ offset)
     return centre, area
 
 
-def _shift_response(window: np.ndarray) -> np.ndarray:
-    """How a unit disc's windowed first moment changes as it moves: ∮ w n nᵀ dφ, shape (2, 2)."""
-    angle = (np.arange(len(window)) + 0.5) / len(window) * 2.0 * np.pi
+def _disc_centre(
+    weights: np.ndarray, positions: np.ndarray, centre: np.ndarray, window: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """Centre and area of the disc with the area and first moment seen within a window of any shape.
+
+    A disc of radius R off by d has ∮ w (R² / 2 + R d·n) dφ and ∮ w (R³ / 3 + R² d·n) n dφ.
+    """
+    zeroth, first, second = _window_moments(window)
+    radius = np.sqrt(weights.sum() / np.pi)
+    for _ in range(2 * REFINEMENTS):
+        offset = positions - centre
+        seen = weights * window[sector_of(offset[:, 0], offset[:, 1])]
+        found = np.array([seen.sum(), *(seen @ offset)])
+        expected = np.array([0.5 * radius**2 * zeroth, *(radius**3 / 3.0 * first)])
+        change = np.empty((3, 3))
+        change[0] = [radius * zeroth, *(radius * first)]
+        change[1:, 0] = radius**2 * first
+        change[1:, 1:] = radius**2 * second
+        step = np.linalg.solve(change, found - expected)
+        radius, centre = radius + step[0], centre + step[1:]
+    return centre, float(np.pi * radius**2)
+
+
+def _window_moments(window: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+    """∮ w dφ, ∮ w n dφ (2,) and ∮ w n nᵀ dφ (2, 2) over the directions n."""
+    step = 2.0 * np.pi / len(window)
+    angle = (np.arange(len(window)) + 0.5) * step
     normal = np.stack([np.cos(angle), np.sin(angle)])
-    return (window * normal) @ normal.T * (2.0 * np.pi / len(window))
+    weighted = window * normal * step
+    return float(window.sum() * step), weighted.sum(axis=1), weighted @ normal.T
 
 
 @lru_cache(maxsize=32)

@@ -27,14 +27,14 @@ class Surroundings:
         across = (self.plane[0] + self.plane[1] * x).astype(np.float32)
         return across[None, :] + (self.plane[2] * y).astype(np.float32)[:, None]
 
-    def symmetric_window(self) -> np.ndarray | None:
-        """Smooth weight by fine sector, zero where something crosses here or opposite; None if nothing does.
+    def open_window(self, symmetric: bool) -> np.ndarray | None:
+        """Smooth weight by fine sector, zero where something crosses (or opposite, if `symmetric`).
 
-        Also None when too few directions are left to locate the marker both ways.
+        None when too few directions are left to locate the marker both ways.
         """
-        if not self.crossed.any():
-            return None
-        closed = self.crossed | np.roll(self.crossed, DIRECTIONS // 2)
+        closed = self.crossed
+        if symmetric:
+            closed = closed | np.roll(closed, DIRECTIONS // 2)
         closed = closed[_NEIGHBOURS].any(axis=1)
         if 1.0 - closed.mean() < MINIMUM_OPEN_SHARE:
             return None

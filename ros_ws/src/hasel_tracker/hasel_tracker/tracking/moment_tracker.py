@@ -11,6 +11,8 @@ from hasel_tracker.tracking.tracker_settings import TrackerSettings
 
 WIDER_REGION = 3
 AREA_MEMORY = 0.02
+AREA_MEMORY_IN_DOUBT = 0.005
+RADIUS_TOLERANCE_PX = 0.7
 CHORD_MEMORY = 0.02
 NOISE_AT_HALF_QUALITY = 0.25
 
@@ -131,8 +133,10 @@ class MomentTracker:
         self._positions = markers.positions
         self._last_seen[found] = markers.positions[found]
         self._time_s = time_s
-        for number in np.flatnonzero(found):
-            self._areas[number] += AREA_MEMORY * (measured[number].area - self._areas[number])
+        for number, measurement in enumerate(measured):
+            if measurement is not None:
+                memory = AREA_MEMORY if found[number] else AREA_MEMORY_IN_DOUBT
+                self._areas[number] += memory * (measurement.area - self._areas[number])
         if found.all():
             chords = np.linalg.norm(np.diff(markers.positions, axis=0), axis=1)
             self._chords = self._chords + CHORD_MEMORY * (chords - self._chords)
@@ -152,7 +156,8 @@ class MomentTracker:
     @staticmethod
     def _quality(measurement: MarkerMeasurement, area: float) -> float:
         """One for a full, clear marker; less for one that is cut, merged with something, or noisy."""
-        size = min(measurement.area / area, area / measurement.area)
+        wider_px = (np.sqrt(measurement.area) - np.sqrt(area)) / np.sqrt(np.pi)
+        size = np.exp(-((wider_px / RADIUS_TOLERANCE_PX) ** 2))
         noise = measurement.noise / max(measurement.contrast, 1e-9)
         clear = 1.0 / (1.0 + (noise / NOISE_AT_HALF_QUALITY) ** 2)
         return float(np.clip(size * measurement.solidity * clear, 0.0, 1.0))

@@ -41,9 +41,9 @@ def preview(image: np.ndarray, tracked: TrackedFrame, width_px: int) -> np.ndarr
 def _mark(
     drawn: np.ndarray, position: np.ndarray, number: int, quality: float, size: float, thickness: int
 ) -> None:
-    radius = round(24 * size * 2**PIXEL_FRACTION_BITS)
+    radius = round(max(24 * size, 9) * 2**PIXEL_FRACTION_BITS)
     cv2.circle(drawn, _fixed(position), radius, COLOURS[number], thickness, cv2.LINE_AA, PIXEL_FRACTION_BITS)
-    label = position + np.array([26.0, -26.0]) * size
+    label = position + np.array([1.0, -1.0]) * max(30.0 * size, 18.0)
     _text(drawn, f"{LETTERS[number]} {quality:.2f}", label, 0.9 * size)
 
 

@@ -6,11 +6,13 @@ from pathlib import Path
 import av
 import cv2
 import numpy as np
+from av.container import OutputContainer
 
 from hasel_tracker.errors import TrackerError
 
 TIME_BASE = Fraction(1, 90_000)
 JPEG_QUALITY = 90
+SUFFIXES = (".mp4", ".mov", ".mkv", ".avi")
 # A file in fragments is readable up to the last half second when its writer is killed.
 FRAGMENTED = {"movflags": "frag_keyframe+empty_moov+default_base_moof", "frag_duration": "500000"}
 
@@ -37,12 +39,12 @@ class H264Writer:
         seconds = self._count / float(self._rate) if time_s is None else time_s
         frame.pts, frame.time_base = round(seconds / TIME_BASE), TIME_BASE
         self._count += 1
-        self._container.mux(self._stream.encode(frame))
+        _mux(self._container, self._path, self._stream.encode(frame))
 
     def close(self) -> None:
         """Finish the file."""
         if self._stream is not None:
-            self._container.mux(self._stream.encode())
+            _mux(self._container, self._path, self._stream.encode())
         self._container.close()
 
 
@@ -55,6 +57,7 @@ class JpegWriter:
     def __init__(
         self, path: Path, frame_rate_hz: float, quality: int = JPEG_QUALITY, start_stamp_ns: int | None = None
     ) -> None:
+        self._path = path
         self._rate = Fraction(frame_rate_hz).limit_denominator(1000)
         self._quality = quality
         suffix = Path(path).suffix.lower()
@@ -86,18 +89,35 @@ class JpegWriter:
         packet.duration = round(1 / (self._rate * self._time_base))
         packet.is_keyframe = True
         self._count += 1
-        self._container.mux(packet)
+        _mux(self._container, self._path, packet)
 
     def close(self) -> None:
         """Finish the file."""
         self._container.close()
 
 
-def _open(path: Path, options: dict[str, str]) -> av.container.OutputContainer:
+def _open(path: Path, options: dict[str, str]) -> OutputContainer:
+    path = Path(path)
+    if not path.parent.is_dir():
+        raise TrackerError(
+            f"The video {path} cannot be written: there is no folder {path.parent}; make it first."
+        )
+    if path.suffix.lower() not in SUFFIXES:
+        raise TrackerError(f"The video {path} cannot be written; end its name in {', '.join(SUFFIXES)}.")
     try:
         return av.open(str(path), "w", options=options)
-    except (av.FFmpegError, OSError, ValueError) as error:
-        raise TrackerError(
-            f"The video {path} cannot be written ({str(error).splitlines()[0]}); "
-            "choose a writable place and a name ending in .mp4, .mkv or .avi."
-        ) from error
+    except (av.FFmpegError, OSError) as error:
+        raise _unwritable(path, error) from error
+
+
+def _mux(container: OutputContainer, path: Path, packets: av.Packet | list[av.Packet]) -> None:
+    try:
+        container.mux(packets)
+    except (av.FFmpegError, OSError) as error:
+        raise _unwritable(path, error) from error
+
+
+def _unwritable(path: Path, error: Exception) -> TrackerError:
+    return TrackerError(
+        f"The video {path} cannot be written ({error}); free some space or choose another place."
+    )

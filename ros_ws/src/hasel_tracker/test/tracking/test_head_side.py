@@ -19,7 +19,9 @@ def test_head_is_the_end_before_the_thicker_half(roll, bend_time_s):
     assert "thicker" in why
 
 
-@pytest.mark.parametrize(("side", "first"), [("left", True), ("right", False), ("top", False), ("bottom", True)])
+@pytest.mark.parametrize(
+    ("side", "first"), [("left", True), ("right", False), ("top", False), ("bottom", True)]
+)
 def test_side_as_set(side, first):
     """A side that is set decides whatever the picture shows."""
     row = np.array([[100.0, 300.0], [300.0, 200.0], [500.0, 100.0]])

@@ -66,7 +66,9 @@ def test_highlight_on_the_marker_does_not_pull():
     errors = []
     for position in POSITIONS:
         picture = disc(position, WATER)
-        cv2.circle(picture, (int(position[0]) + 4, int(position[1]) - 3), 2, (255.0, 255.0, 255.0), cv2.FILLED)
+        cv2.circle(
+            picture, (int(position[0]) + 4, int(position[1]) - 3), 2, (255.0, 255.0, 255.0), cv2.FILLED
+        )
         errors.append(measured(picture, position) - position)
     assert rms(errors) < 0.01
 

@@ -43,7 +43,7 @@ def test_lost_tail_is_found_by_its_distance():
 
 def test_order_survives_when_all_are_lost():
     """Three blobs near where the markers were last seen are not swapped."""
-    moved = BODY + [-40.0, 25.0]
+    moved = np.add(BODY, [-40.0, 25.0])
     blobs = [blob(*moved[index]) for index in (2, 0, 1)]
     found = assign_lost(blobs, np.full((3, 2), np.nan), BODY, CHORDS, AREAS)
     assert [found[number].centre.tolist() for number in range(3)] == moved.tolist()

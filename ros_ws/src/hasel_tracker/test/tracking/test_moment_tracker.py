@@ -1,6 +1,9 @@
 import cv2
 import numpy as np
 import pytest
+from hasel_tracker.render.degradation import Degradation
+from hasel_tracker.render.motion import BendingMotion
+from hasel_tracker.render.renderer import Renderer
 from hasel_tracker.tracking.bending_tracker import BendingTracker
 from hasel_tracker.tracking.colour_gate import ColourRange
 from hasel_tracker.tracking.moment_tracker import MomentTracker
@@ -10,12 +13,12 @@ WATER = (188, 196, 198)
 
 
 def test_follows_a_beat(frames):
-    """Through a whole beat the markers stay within 0.1 px of the truth, in the right order, with high quality."""
+    """Through a whole beat the markers stay within 0.15 px of the truth, in the right order, with high quality."""
     tracker = MomentTracker()
     for frame in frames:
         markers = tracker.update(frame.image, frame.time_s)
-        assert np.abs(markers.positions - frame.markers_px).max() < 0.1
-        assert markers.quality.min() > 0.8
+        assert np.abs(markers.positions - frame.markers_px).max() < 0.15
+        assert markers.quality.min() > 0.7
 
 
 def test_nothing_to_see_says_what_was_found():
@@ -49,6 +52,24 @@ def test_half_covered_marker_is_lost_rather_than_wrong(renderer):
     cv2.rectangle(picture, (int(x), int(y) - 20), (int(x) + 20, int(y) + 20), WATER, cv2.FILLED)
     markers = tracker.update(picture, 1 / 120)
     assert markers.found.tolist() == [True, True, False]
+
+
+@pytest.mark.parametrize(("length_px", "width_px"), [(40.0, 3.0), (15.0, 5.0)])
+def test_reflection_across_a_marker_is_refused_or_harmless(length_px, width_px):
+    """Whatever part of a marker a bright reflection covers, the marker is lost or off by less than a pixel."""
+    frame = Renderer(BendingMotion(amplitude_rad=0.0), degradation=Degradation(noise_levels=2.0)).frame(0.0)
+    tracker = MomentTracker()
+    tracker.update(frame.image, 0.0)
+    rows, columns = np.indices(frame.image.shape[:2])
+    lost = 0
+    for offset in range(-24, 25, 4):
+        x, y = frame.markers_px[2] + [4.0, offset]
+        streak = 200.0 * np.exp(-0.5 * (((rows - y) / width_px) ** 2 + ((columns - x) / length_px) ** 2))
+        picture = np.clip(frame.image + streak[..., None], 0, 255).astype(np.uint8)
+        markers = tracker.update(picture, 0.0)
+        lost += not markers.found[2]
+        assert not markers.found[2] or np.abs(markers.positions[2] - frame.markers_px[2]).max() < 1.0
+    assert 1 <= lost <= 9
 
 
 def test_dropped_frames_do_not_lose_a_fast_marker(frames):

@@ -1,0 +1,135 @@
+import time
+
+import cv2
+import numpy as np
+import pytest
+from hasel_tracker.errors import TrackerError
+from hasel_tracker.live.live_tracker import LiveTracker
+from hasel_tracker.live.playback import Playback
+from hasel_tracker.live.video_recorder import VideoRecorder
+from hasel_tracker.sources.frame import Frame
+from hasel_tracker.sources.video_source import VideoSource
+from hasel_tracker.tracking.bending_tracker import BendingTracker
+
+
+class SlowTracker(BendingTracker):
+    """Takes 20 ms a frame."""
+
+    def update(self, image, time_s):
+        time.sleep(0.02)
+        return super().update(image, time_s)
+
+
+def camera(frames, rate_hz: float, as_jpeg: bool = False):
+    """Pretend to be a camera: a frame every 1 / rate_hz, stamped; None at the end."""
+    left = iter(enumerate(frames))
+    start_ns = time.time_ns()
+
+    def read() -> Frame | None:
+        index, frame = next(left, (None, None))
+        if frame is None:
+            return None
+        due_ns = start_ns + round(index * 1e9 / rate_hz)
+        time.sleep(max((due_ns - time.time_ns()) * 1e-9, 0.0))
+        if as_jpeg:
+            code = cv2.imencode(".jpg", frame.image, [cv2.IMWRITE_JPEG_QUALITY, 95])[1].tobytes()
+            return Frame(index, index / rate_hz, jpeg=code, stamp_ns=time.time_ns())
+        return Frame(index, index / rate_hz, image=frame.image, stamp_ns=time.time_ns())
+
+    return read
+
+
+def run_to_the_end(live: LiveTracker) -> None:
+    """Start and wait until all frames are through."""
+    live.start()
+    end = time.monotonic() + 20.0
+    while live.running and time.monotonic() < end:
+        time.sleep(0.01)
+    live.stop()
+
+
+@pytest.mark.parametrize(("as_jpeg", "threads"), [(False, 1), (True, 3)])
+def test_every_frame_is_published_in_order(frames, as_jpeg, threads):
+    """All frames of a camera, decoded here or by several threads, give their angle in order with their stamp."""
+    published = []
+    read = camera(frames[:40], 60.0, as_jpeg)
+    live = LiveTracker(BendingTracker(), lambda f, t: published.append((f, t)), 60, threads, read)
+    run_to_the_end(live)
+    assert [frame.index for frame, _ in published] == list(range(40))
+    angles = [tracked.sin_theta for _, tracked in published]
+    assert angles == pytest.approx([frame.sin_theta for frame in frames[:40]], abs=2e-3)
+    health = live.statistics.take()
+    assert health.frames == 40
+    assert 0.0 < health.mean_latency_s < 0.5
+    assert live.queue.dropped == 0
+
+
+def test_slow_tracking_drops_the_oldest_and_counts(frames):
+    """When tracking takes longer than a frame, frames are dropped and counted, and the latency stays bounded."""
+    published = []
+    live = LiveTracker(
+        SlowTracker(), lambda frame, _: published.append(frame.index), 4, 1, camera(frames[:60], 200.0)
+    )
+    run_to_the_end(live)
+    assert live.queue.dropped == 60 - len(published)
+    assert 10 < live.queue.dropped < 58
+    assert published == sorted(published)
+    assert published[-1] == 59
+    assert live.statistics.take().worst_latency_s < 1.0
+
+
+@pytest.mark.parametrize("as_jpeg", [False, True])
+def test_video_is_recorded_on_request(frames, tmp_path, as_jpeg):
+    """A recorded video has the frames with their times and the stamp of the first, and tracks to the same angles."""
+    angles = {}
+    live = LiveTracker(
+        BendingTracker(),
+        lambda frame, tracked: angles.update({frame.stamp_ns: tracked.sin_theta}),
+        60,
+        2,
+        camera(frames[:40], 60.0, as_jpeg),
+    )
+    path = tmp_path / "live.mp4"
+    live.record(VideoRecorder(path, 60.0))
+    with pytest.raises(TrackerError, match="is being recorded already"):
+        live.record(VideoRecorder(tmp_path / "second.mp4", 60.0))
+    run_to_the_end(live)
+    source = VideoSource(path)
+    read = list(source)
+    assert len(read) == 40
+    assert source.start_stamp_ns == min(angles)
+    tracker = BendingTracker()
+    again = [tracker.update(frame.image, frame.time_s).sin_theta for frame in read]
+    assert again == pytest.approx([angles[stamp] for stamp in sorted(angles)], abs=2e-3)
+
+
+def test_recording_without_a_request_is_explained():
+    """Stopping a video that was never started says so."""
+    live = LiveTracker(BendingTracker(), lambda *_: None)
+    with pytest.raises(TrackerError, match="No video is being recorded"):
+        live.record_until_now()
+
+
+def test_broken_pictures_are_counted_and_passed_over(frames):
+    """A camera that sends a broken JPEG in between does not stop the tracking."""
+    good = cv2.imencode(".jpg", frames[0].image)[1].tobytes()
+    codes = iter([good, b"broken", good])
+    published = []
+
+    def read() -> Frame | None:
+        code = next(codes, None)
+        return None if code is None else Frame(0, time.monotonic(), jpeg=code, stamp_ns=time.time_ns())
+
+    live = LiveTracker(BendingTracker(), lambda frame, tracked: published.append(tracked.valid), read=read)
+    run_to_the_end(live)
+    assert published == [True, True]
+    assert live.broken_frames == 1
+    assert "not a readable JPEG" in live.fault
+
+
+def test_playback_keeps_the_time(frames):
+    """A recorded run is played at its own speed, each frame stamped when it is given."""
+    recorded = [Frame(k, k * 0.05, image=np.zeros((4, 4, 3), np.uint8)) for k in range(5)]
+    playback = Playback(recorded)
+    stamps = [frame.stamp_ns for frame in iter(playback.read, None)]
+    assert np.diff(stamps) * 1e-9 == pytest.approx([0.05] * 4, abs=0.03)

@@ -1,0 +1,98 @@
+import numpy as np
+import pytest
+from hasel_recording import Recording, read_recording, write_recording
+from hasel_tracker.errors import TrackerError
+from hasel_tracker.offline.drive import Drive, align_by_movement, align_by_stamp, read_drive
+from hasel_tracker.offline.run_output import write_run
+from hasel_tracker.offline.tracked_run import TrackedRun
+
+TIMES = np.arange(240) / 120.0
+START_NS = 1_700_000_000_000_000_000
+
+
+def run_of(start_s: float, stamp_ns: int | None = None) -> TrackedRun:
+    """A body that moves from `start_s` on, one marker lost in frame 100."""
+    sin_theta = 0.3 * np.sin(2.0 * np.pi * 2.0 * np.maximum(TIMES - start_s, 0.0))
+    sin_theta[100] = np.nan
+    markers = np.random.default_rng(1).uniform(0.0, 900.0, (240, 3, 2))
+    markers[100, 1] = np.nan
+    return TrackedRun(TIMES, sin_theta, np.arcsin(sin_theta), markers, np.full((240, 3), 0.9), stamp_ns)
+
+
+def box_drive(path, first_s: float) -> None:
+    """The drive of a run as a CSV recording: upper then lower muscle at 5 kV."""
+    times = np.array([0.0, first_s, first_s + 0.25, first_s + 0.5])
+    voltage = np.array([[0.0, 0.0], [5000.0, 0.0], [0.0, 5000.0], [5000.0, 0.0]])
+    write_recording(Recording("drive", times, np.zeros(4), voltage), path)
+
+
+@pytest.mark.parametrize("suffix", ["csv", "mcap"])
+def test_voltages_are_read_from_either_kind(tmp_path, suffix):
+    """CSV and MCAP recordings of the drive give the same voltages at the same times."""
+    box_drive(tmp_path / f"drive.{suffix}", 1.0)
+    drive = read_drive(tmp_path / f"drive.{suffix}")
+    assert drive.first_voltage_s == pytest.approx(1.0)
+    assert drive.at(np.array([-1.0, 0.99, 1.1, 1.3])).tolist() == [[0, 0], [0, 0], [5000, 0], [0, 5000]]
+
+
+@pytest.mark.parametrize("lag_s", [-0.6, 0.0, 0.35])
+def test_lag_is_found_from_the_first_movement(tmp_path, lag_s):
+    """A drive that started earlier or later than the video is moved to where it belongs, to a frame."""
+    box_drive(tmp_path / "drive.csv", 1.0)
+    alignment = align_by_movement(run_of(1.0 + lag_s), read_drive(tmp_path / "drive.csv"))
+    assert alignment.lag_s == pytest.approx(lag_s, abs=1.01 / 120.0)
+    assert f"{alignment.lag_s:+.4f}" in str(alignment)
+
+
+def test_stamps_decide_where_both_have_them():
+    """With stamps the lag is their difference, to the nanosecond, whatever moves."""
+    drive = Drive(np.array([0.0, 0.5]), np.zeros((2, 2)), START_NS + 250_000_000)
+    assert align_by_stamp(run_of(1.0, START_NS), drive).lag_s == pytest.approx(0.25)
+    with pytest.raises(TrackerError, match="does not overlap"):
+        align_by_stamp(run_of(1.0, START_NS + 10**12), drive)
+    with pytest.raises(TrackerError, match="The video has no stamps"):
+        align_by_stamp(run_of(1.0), drive)
+
+
+@pytest.mark.parametrize("suffix", ["csv", "mcap"])
+@pytest.mark.parametrize("stamp_ns", [None, START_NS])
+def test_merged_run_reads_back(tmp_path, suffix, stamp_ns):
+    """The written recording holds angle, markers and the voltages of their moment; lost frames stay without angle."""
+    box_drive(tmp_path / "drive.csv", 1.0)
+    run, drive = run_of(0.4, stamp_ns), read_drive(tmp_path / "drive.csv")
+    alignment = align_by_movement(run, drive)
+    path = tmp_path / f"run.{suffix}"
+    left_out = write_run(path, run, drive, alignment, {"model": "swimmer"})
+    recording = read_recording(path)
+    kept = np.arange(240) if suffix == "mcap" else np.flatnonzero(run.valid)
+    assert recording.time_s == pytest.approx(TIMES[kept], abs=1e-9)
+    assert np.array_equal(recording.sin_theta, run.sin_theta[kept], equal_nan=True)
+    assert np.array_equal(recording.markers, run.markers_px[kept], equal_nan=True)
+    switched = np.argmax(recording.voltage[:, 0] > 0.0)
+    assert recording.time_s[switched] == pytest.approx(0.4, abs=2.01 / 120.0)
+    assert recording.metadata["model"] == "swimmer"
+    assert recording.metadata["drive_merged"] == alignment.means
+    assert ("1 frames without an angle" in left_out) == (suffix == "csv")
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("time_s,voltage_upper_v\n0,1\n", "no column voltage_lower_v"),
+        ("time_s,voltage_upper_v,voltage_lower_v\n0,abc,0\n", "a row that is not numbers"),
+        ("time_s,voltage_upper_v,voltage_lower_v\n1,0,0\n0,0,0\n", "does not increase"),
+        ("time_s,voltage_upper_v,voltage_lower_v\n", "no rows"),
+    ],
+)
+def test_unusable_drives_are_explained(tmp_path, text, message):
+    """What is wrong with a drive's recording is said in one sentence."""
+    path = tmp_path / "drive.csv"
+    path.write_text(text)
+    with pytest.raises(TrackerError, match=message):
+        read_drive(path)
+
+
+def test_drive_without_voltage_cannot_be_aligned():
+    """A drive that was never switched on cannot be matched to a movement."""
+    with pytest.raises(TrackerError, match="0 V throughout"):
+        align_by_movement(run_of(0.5), Drive(np.array([0.0, 1.0]), np.zeros((2, 2))))

@@ -1,0 +1,95 @@
+import time
+
+import cv2
+import numpy as np
+import pytest
+from hasel_tracker.errors import TrackerError
+from hasel_tracker.sources.camera_source import CameraFormat, CameraSource
+
+
+class FakeCapture:
+    """Behaves as a V4L2 camera through OpenCV: 60 frames/s at most, raw JPEG if no conversion is wanted."""
+
+    def __init__(self, opened: bool = True, driver_age_s: float | None = 0.02) -> None:
+        self.settings: list[int] = []
+        self.values: dict[int, float] = {}
+        self.opened = opened
+        self.driver_age_s = driver_age_s
+        self.picture = np.full((48, 64, 3), 90, np.uint8)
+        self.left = 3
+
+    def isOpened(self) -> bool:
+        return self.opened
+
+    def set(self, name: int, value: float) -> bool:
+        self.settings.append(name)
+        self.values[name] = min(value, 60.0) if name == cv2.CAP_PROP_FPS else value
+        return True
+
+    def get(self, name: int) -> float:
+        if name == cv2.CAP_PROP_POS_MSEC:
+            return 0.0 if self.driver_age_s is None else 1e3 * (time.monotonic() - self.driver_age_s)
+        return float(self.values.get(name, 0.0))
+
+    def read(self) -> tuple[bool, np.ndarray | None]:
+        if self.left == 0:
+            return False, None
+        self.left -= 1
+        if self.values.get(cv2.CAP_PROP_CONVERT_RGB) == 0:
+            return True, cv2.imencode(".jpg", self.picture)[1].reshape(1, -1)
+        return True, self.picture
+
+    def release(self) -> None:
+        self.opened = False
+
+
+def test_pixel_format_is_asked_for_before_size_and_rate():
+    """The four-character code comes first, since it decides which sizes and rates the camera has."""
+    capture = FakeCapture()
+    CameraSource(0, CameraFormat(), capture=capture)
+    wanted = [cv2.CAP_PROP_FOURCC, cv2.CAP_PROP_FRAME_WIDTH, cv2.CAP_PROP_FRAME_HEIGHT, cv2.CAP_PROP_FPS]
+    assert [each for each in capture.settings if each in wanted] == wanted
+
+
+def test_what_the_camera_gives_is_read_back_and_complained_about():
+    """A camera that gives 60 instead of 120 frames/s is found out at once."""
+    camera = CameraSource(0, CameraFormat(1920, 1080, 120.0, "MJPG"), capture=FakeCapture())
+    assert camera.given == CameraFormat(1920, 1080, 60.0, "MJPG")
+    assert camera.complaint == (
+        "Asked the camera for 1920 × 1080 px MJPG at 120 frames/s, it gives 1920 × 1080 px MJPG at 60 frames/s."
+    )
+    assert CameraSource(0, CameraFormat(640, 480, 30.0), capture=FakeCapture()).complaint == ""
+
+
+def test_jpeg_is_passed_on_undecoded():
+    """An MJPEG camera's pictures stay JPEG until decoded elsewhere, and then are the picture."""
+    frame = CameraSource(0, CameraFormat(64, 48, 30.0, "MJPG"), capture=FakeCapture()).read()
+    assert frame.image is None
+    assert frame.decoded().image == pytest.approx(np.full((48, 64, 3), 90), abs=3)
+
+
+def test_decoded_cameras_give_images():
+    """Another pixel format arrives as an image."""
+    frame = CameraSource(0, CameraFormat(64, 48, 30.0, "YUYV"), capture=FakeCapture()).read()
+    assert frame.jpeg is None
+    assert frame.image.shape == (48, 64, 3)
+
+
+@pytest.mark.parametrize(("driver_age_s", "expected_s"), [(0.02, 0.02), (None, 0.0), (3600.0, 0.0)])
+def test_stamp_is_the_drivers_where_it_makes_sense(driver_age_s, expected_s):
+    """The stamp is the driver's moment of exposure; without one, or with nonsense, the time of arrival."""
+    frame = CameraSource(0, CameraFormat(), capture=FakeCapture(driver_age_s=driver_age_s)).read()
+    assert time.time() - frame.stamp_ns * 1e-9 == pytest.approx(expected_s, abs=0.015)
+
+
+def test_end_of_the_camera_gives_none():
+    """When the camera fails, read says so instead of repeating the last frame."""
+    camera = CameraSource(0, CameraFormat(), capture=FakeCapture())
+    frames = [camera.read() for _ in range(4)]
+    assert [frame and frame.index for frame in frames] == [0, 1, 2, None]
+
+
+def test_absent_camera_is_explained():
+    """A camera that cannot be opened gives one sentence with what to check."""
+    with pytest.raises(TrackerError, match="camera 7 cannot be opened; check that it is plugged in"):
+        CameraSource(7, capture=FakeCapture(opened=False))
