@@ -17,5 +17,9 @@ setup(
     maintainer_email="maintainers@example.org",
     description="Compare the model with measurements, fit it, and learn which physical effect it lacks.",
     license="Apache-2.0",
-    entry_points={"console_scripts": []},
+    entry_points={
+        "console_scripts": [
+            "sysid = hasel_sysid.sysid_node:main",
+        ]
+    },
 )

@@ -1,0 +1,60 @@
+"""Results of the identification as ROS messages."""
+
+import math
+from collections.abc import Mapping
+
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from hasel_interfaces.msg import Fit, NamedParameter, RunningError
+from hasel_sim.model import Model
+from hasel_sim.simulator_messages import to_time
+from std_msgs.msg import Header
+
+from hasel_sysid.fit import FitResult
+from hasel_sysid.live import running_error
+
+
+def error_message(stamp_ns: int, error: running_error.RunningError) -> RunningError:
+    """`/hasel/error` at a stamp [ns]."""
+    return RunningError(
+        header=Header(stamp=to_time(stamp_ns)),
+        difference=error.difference,
+        mean_absolute_error=error.mean_absolute,
+        count=error.count,
+    )
+
+
+def parameter_messages(model: Model, at_bound=(), undetermined=()) -> list[NamedParameter]:
+    """Every free parameter of a model."""
+    parameters = [model.parameters[name] for name in model.free]
+    return [
+        NamedParameter(
+            name=p.name,
+            value=p.value,
+            standard_error=math.nan if p.standard_error is None else p.standard_error,
+            unit=p.unit,
+            at_bound=p.name in at_bound,
+            determined=p.name not in undetermined,
+        )
+        for p in parameters
+    ]
+
+
+def fit_message(result: FitResult, model_file: str, stamp: Time) -> Fit:
+    """`/hasel/fit`; `model` is the file that was written, ready for the simulator's load_model."""
+    return Fit(
+        header=Header(stamp=stamp),
+        model=model_file,
+        effects=[effect.id for effect in result.model.effects],
+        parameters=parameter_messages(result.model, result.at_bound, result.undetermined),
+        mae_fit=result.mean_absolute_error,
+        mae_validation=math.nan,
+        messages=result.sentences,
+    )
+
+
+def diagnostics(sentence: str, values: Mapping[str, object], stamp: Time) -> DiagnosticArray:
+    """The node's entry in `/diagnostics`."""
+    status = DiagnosticStatus(level=DiagnosticStatus.OK, name="hasel_sysid: identification", message=sentence)
+    status.values = [KeyValue(key=key, value=str(value)) for key, value in values.items()]
+    return DiagnosticArray(header=Header(stamp=stamp), status=[status])

@@ -1,0 +1,163 @@
+"""`ros2 run hasel_sysid sysid`: how far the simulation is from the measurement, and the model that is nearer."""
+
+import sys
+import threading
+from pathlib import Path
+
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from hasel_interfaces.msg import BendingAngle, Fit, RunningError, SupplyState
+from hasel_interfaces.srv import FitModel
+from hasel_recording import RecordingError
+from hasel_recording.topics import MEASURED, SIMULATED, STATE
+from hasel_sim.errors import HaselSimError
+from hasel_sim.live.live_model import live_model
+from hasel_sim.model import save_model
+from hasel_sim.node_parameters import NodeParameter, declare, words
+from hasel_sim.simulator_messages import to_nanoseconds
+from hasel_sim.simulator_node import EVERY_MESSAGE
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.exceptions import InvalidParameterValueException
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from hasel_sysid.errors import SysidError
+from hasel_sysid.live.epochs import Epochs, StreamEpoch
+from hasel_sysid.live.fitting import chosen_recordings, fit_recordings
+from hasel_sysid.live.heard import Heard
+from hasel_sysid.live.pairing import Pair, Pairing
+from hasel_sysid.live.running_error import RunningErrors
+from hasel_sysid.sysid_messages import diagnostics, error_message, fit_message
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+PARAMETERS = (
+    NodeParameter("model", "swimmer", "model that is fitted: its name or file", changeable=True),
+    NodeParameter("effects", [""], "effects added to it: ids, or path/to/file.py:ClassName", changeable=True),
+    NodeParameter("output", ".", "folder into which fitted models are written", changeable=True),
+    NodeParameter("jobs", 0, "processes that simulate; 0: one per core", "1", 0, 256, changeable=True),
+    NodeParameter("gap", 0.1, "no interpolation between simulated angles further apart", "s", 0.001, 10.0),
+    NodeParameter("reset", 2.0, "a longer gap begins a new run", "s", 0.01, 3600.0),
+    NodeParameter("late", 0.5, "stamps that go back by more begin a new run", "s", 0.0, 60.0),
+)
+
+
+class SysidNode(Node):
+    """Thin: pairs and sums up what it hears, and hands it to the fit in a thread of the service's own."""
+
+    def __init__(self) -> None:
+        super().__init__("hasel_sysid")
+        declare(self, PARAMETERS)
+        gap, reset, late = (self._value(name) for name in ("gap", "reset", "late"))
+        epochs = Epochs()
+        self._epoch = {topic: StreamEpoch(epochs, late) for topic in (STATE, MEASURED, SIMULATED)}
+        self._pairing, self._errors, self._heard = Pairing(gap), RunningErrors(reset), Heard(reset)
+        self._pairs, self._latest, self._busy, self._doing = 0, None, threading.Lock(), ""
+        self._error = self.create_publisher(RunningError, "/hasel/error", EVERY_MESSAGE)
+        self._fit = self.create_publisher(Fit, "/hasel/fit", LATCHED)
+        self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
+        hearing, working = MutuallyExclusiveCallbackGroup(), ReentrantCallbackGroup()
+        self._inputs = {
+            topic: self.create_subscription(kind, topic, handler, EVERY_MESSAGE, callback_group=hearing)
+            for kind, topic, handler in (
+                (SupplyState, STATE, self._on_state),
+                (BendingAngle, MEASURED, self._on_measured),
+                (BendingAngle, SIMULATED, self._on_simulated),
+            )
+        }
+        self.create_timer(1.0, self._report, callback_group=hearing)
+        self.create_service(FitModel, "/hasel/fit", self._serve_fit, callback_group=working)
+
+    def _value(self, name: str):
+        return self.get_parameter(name).value
+
+    def _on_state(self, message: SupplyState) -> None:
+        stamp = to_nanoseconds(message.header.stamp)
+        self._heard.state(self._epoch[STATE].of(stamp), stamp, tuple(message.commanded_voltage))
+
+    def _on_measured(self, message: BendingAngle) -> None:
+        stamp = to_nanoseconds(message.header.stamp)
+        epoch = self._epoch[MEASURED].of(stamp)
+        sine = message.sin_theta if message.valid else float("nan")
+        self._heard.measured(epoch, stamp, sine)
+        self._publish(self._pairing.measured(epoch, stamp, sine))
+
+    def _on_simulated(self, message: BendingAngle) -> None:
+        stamp = to_nanoseconds(message.header.stamp)
+        self._publish(self._pairing.simulated(self._epoch[SIMULATED].of(stamp), stamp, message.sin_theta))
+
+    def _publish(self, pairs: list[Pair]) -> None:
+        for pair in pairs:
+            self._latest = self._errors.add(pair)
+            self._error.publish(error_message(pair.stamp_ns, self._latest))
+        self._pairs += len(pairs)
+
+    def _report(self) -> None:
+        latest = self._latest
+        sentence = self._doing or ("idle" if latest is None else f"mean |Δ sin θ| {latest.mean_absolute:.4f}")
+        values = {
+            f"publishers of {topic}": heard.get_publisher_count() for topic, heard in self._inputs.items()
+        }
+        values["pairs"] = self._pairs
+        self._diagnostics.publish(diagnostics(sentence, values, self.get_clock().now().to_msg()))
+
+    def _progress(self, sentence: str, share: float) -> None:
+        self._doing = f"{share:.0%}: {sentence}"
+        self.get_logger().info(self._doing)
+
+    def _serve_fit(self, request: FitModel.Request, response: FitModel.Response) -> FitModel.Response:
+        def fit() -> str:
+            model, _ = live_model(self._value("model"), words(self, "effects"))
+            recordings = self._recordings(request.recordings)
+            result = fit_recordings(model, recordings, request.method, self._value("jobs"), self._progress)
+            path = Path(self._value("output")) / f"{model.name}_fitted.yaml"
+            save_model(result.model, path)
+            response.fit = fit_message(result, str(path.resolve()), self.get_clock().now().to_msg())
+            self._fit.publish(response.fit)
+            return f"{result} Written to {path}; the simulator takes it by /hasel/load_model."
+
+        return self._serve(fit, response)
+
+    def _recordings(self, paths: list[str]):
+        return chosen_recordings(paths, [] if paths else self._heard.recordings())
+
+    def _serve(self, action, response):
+        """Answer with what `action` returns, one at a time; errors become sentences."""
+        if not self._busy.acquire(blocking=False):
+            response.success, response.message = False, f"busy ({self._doing}); ask again when that is done"
+            return response
+        try:
+            response.message, response.success = action(), True
+            self.get_logger().info(response.message)
+        except (SysidError, HaselSimError, RecordingError, OSError) as error:
+            response.message, response.success = str(error), False
+            self.get_logger().warning(response.message)
+        finally:
+            self._doing = ""
+            self._busy.release()
+        return response
+
+
+def main() -> int:
+    """Run the node until it is interrupted; returns the exit code."""
+    rclpy.init()
+    node = None
+    try:
+        node = SysidNode()
+        executor = MultiThreadedExecutor(num_threads=3)
+        executor.add_node(node)
+        executor.spin()
+    except (HaselSimError, InvalidParameterValueException) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        if node is not None:
+            node.destroy_node()
+        rclpy.try_shutdown()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,166 @@
+"""The identification as a node on real DDS, in this process."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+import rclpy
+from hasel_interfaces.msg import BendingAngle, Fit, RunningError, SupplyState
+from hasel_interfaces.srv import FitModel
+from hasel_recording import Recording
+from hasel_recording.topics import MEASURED, SIMULATED, STATE
+from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.model import load_model, save_model
+from hasel_sim.run import Run
+from hasel_sim.simulate import simulate
+from hasel_sim.simulator_messages import angle_message, to_nanoseconds, to_time
+from hasel_sim.simulator_node import EVERY_MESSAGE
+from hasel_sysid.sysid_node import LATCHED, SysidNode
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.parameter import Parameter
+
+TRUTH = {"amplitude_5500": 0.06, "slope": 0.8}
+
+
+@pytest.fixture
+def swimmer():
+    """The default swimmer at one voltage."""
+    return load_model("swimmer").with_levels(np.array([5500.0]))
+
+
+@pytest.fixture
+def recording(swimmer) -> Recording:
+    """What the model does with the true values, half a second long."""
+    time_s = np.arange(61) / 120
+    upper = (time_s * 4) % 1 < 0.5
+    voltage = 5500.0 * np.stack([upper, ~upper], axis=1)
+    run = Run("truth", time_s, VoltageSchedule(time_s, voltage))
+    return Recording("truth", time_s, simulate(swimmer.with_values(TRUTH), run).sin_theta, voltage)
+
+
+@pytest.fixture
+def talk(tmp_path, swimmer):
+    """The node, spun in a thread, and a second node that talks to it."""
+    rclpy.init()
+    start = swimmer.with_values({"amplitude_5500": 0.04, "slope": 0.5})
+    save_model(start, tmp_path / "start.yaml")
+    node, user = SysidNode(), rclpy.create_node("user")
+    node.set_parameters(
+        [
+            Parameter("model", value=str(tmp_path / "start.yaml")),
+            Parameter("output", value=str(tmp_path)),
+            Parameter("jobs", value=1),
+        ]
+    )
+    executor = MultiThreadedExecutor(num_threads=3)
+    executor.add_node(node)
+    thread = threading.Thread(target=executor.spin, daemon=True)
+    thread.start()
+    yield Talk(user)
+    executor.shutdown()
+    thread.join(timeout=10)
+    node.destroy_node()
+    user.destroy_node()
+    rclpy.try_shutdown()
+
+
+class Talk:
+    """Publishes the three topics and listens to what the node says."""
+
+    def __init__(self, user) -> None:
+        self.user, self.errors, self.fits = user, [], []
+        self.executor = SingleThreadedExecutor()
+        self.executor.add_node(user)
+        self.states = user.create_publisher(SupplyState, STATE, EVERY_MESSAGE)
+        self.measured = user.create_publisher(BendingAngle, MEASURED, EVERY_MESSAGE)
+        self.simulated = user.create_publisher(BendingAngle, SIMULATED, EVERY_MESSAGE)
+        user.create_subscription(RunningError, "/hasel/error", self.errors.append, EVERY_MESSAGE)
+        user.create_subscription(Fit, "/hasel/fit", self.fits.append, LATCHED)
+        publishers = (self.states, self.measured, self.simulated)
+        self.until(
+            lambda: (
+                all(p.get_subscription_count() for p in publishers)
+                and user.count_publishers("/hasel/error")
+                and user.count_publishers("/hasel/fit")
+            )
+        )
+
+    def until(self, condition, seconds: float = 60.0) -> None:
+        """Spin until something is true."""
+        end = time.monotonic() + seconds
+        while not condition():
+            assert time.monotonic() < end, "waited too long"
+            self.executor.spin_once(timeout_sec=0.05)
+
+    def say(self, recording: Recording, simulated: np.ndarray) -> None:
+        """Publish a recording and simulated angles at its frames."""
+        stamps = np.round(recording.time_s * 1e9).astype(int).tolist()
+        for stamp, voltage, measured, sine in zip(
+            stamps, recording.voltage.tolist(), recording.sin_theta.tolist(), simulated.tolist(), strict=True
+        ):
+            state = SupplyState(commanded_voltage=voltage)
+            state.header.stamp = to_time(stamp)
+            self.states.publish(state)
+            self.measured.publish(angle_message(stamp, measured, "camera"))
+            self.simulated.publish(angle_message(stamp, sine, "swimmer"))
+
+    def fit(self, **request):
+        """Ask for a fit; returns the future of its answer."""
+        self.client = self.user.create_client(FitModel, "/hasel/fit")
+        assert self.client.wait_for_service(timeout_sec=10.0)
+        return self.client.call_async(FitModel.Request(**request))
+
+
+def test_the_error_is_published_for_every_frame(talk, recording):
+    """With the run's mean difference taken out, at the frames' stamps."""
+    simulated = recording.sin_theta + 0.5 + 0.01 * np.sin(50 * recording.time_s)
+    talk.say(recording, simulated)
+    talk.until(lambda: len(talk.errors) == 61)
+    difference = simulated - recording.sin_theta
+    assert [e.difference for e in talk.errors] == pytest.approx(difference.tolist())
+    expected = np.abs(difference - difference.mean()).mean()
+    assert talk.errors[-1].mean_absolute_error == pytest.approx(expected)
+    assert [to_nanoseconds(e.header.stamp) for e in talk.errors][-1] == 500_000_000
+    assert talk.errors[-1].count == 61
+
+
+def test_what_was_heard_is_fitted_while_the_node_goes_on(talk, recording):
+    """The truth is found, published and written; meanwhile errors are still summed up and a second fit is refused."""
+    talk.say(recording, recording.sin_theta)
+    talk.until(lambda: len(talk.errors) == 61)
+    answer = talk.fit()
+    time.sleep(0.3)
+    second = talk.fit()
+    talk.say(recording, recording.sin_theta)
+    talk.until(lambda: len(talk.errors) == 122)
+    assert not answer.done(), "the fit was over too soon to tell whether the node responds"
+    talk.until(second.done)
+    assert (second.result().success, "busy" in second.result().message) == (False, True)
+    talk.until(lambda: answer.done() and talk.fits)
+    assert answer.result().success, answer.result().message
+    found = {p.name: p.value for p in talk.fits[0].parameters}
+    assert found == pytest.approx(TRUTH, rel=1e-3)
+    assert load_model(talk.fits[0].model).values == pytest.approx(found)
+    assert talk.fits[0].mae_fit < 1e-4
+
+
+def test_a_mistaken_request_is_answered_by_a_sentence(talk):
+    """Nothing heard, no such file, an unknown method."""
+    for request, words in (
+        ({}, "no run was heard"),
+        ({"recordings": ["nothing.csv"]}, "There is no file nothing.csv"),
+    ):
+        future = talk.fit(**request)
+        talk.until(future.done)
+        assert not future.result().success
+        assert words in future.result().message
+
+
+def test_an_unknown_method_is_answered_by_the_nearest_known(talk, recording):
+    """A slip of the pen costs no fit."""
+    talk.say(recording, recording.sin_theta)
+    talk.until(lambda: len(talk.errors) == 61)
+    future = talk.fit(method="least_square")
+    talk.until(future.done)
+    assert (future.result().success, "least_squares" in future.result().message) == (False, True)
