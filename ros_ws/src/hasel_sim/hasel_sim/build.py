@@ -1,5 +1,6 @@
 """From a model to a mechanical system, and to the derivative of its residual by each parameter."""
 
+from dataclasses import replace
 from functools import lru_cache
 from types import SimpleNamespace
 
@@ -10,7 +11,14 @@ from hasel_sim.errors import ModelError
 from hasel_sim.mechanics.branches import Branches
 from hasel_sim.mechanics.force_law import ForceLaw
 from hasel_sim.mechanics.inertia import Mass, element_masses
-from hasel_sim.mechanics.residual_slopes import ForceSlope, NoSlope, ResidualSlope, SolidSlope, StressSlope
+from hasel_sim.mechanics.residual_slopes import (
+    ForceSlope,
+    NoSlope,
+    ResidualSlope,
+    SolidSlope,
+    StressSlope,
+    SystemSlope,
+)
 from hasel_sim.mechanics.solid import Solid, lame_constants
 from hasel_sim.mechanics.stress_law import StressLaw
 from hasel_sim.mechanics.system import System
@@ -20,6 +28,9 @@ from hasel_sim.mesh.serendipity import reference_gradients
 from hasel_sim.mesh.sites import Sites, body_sites, point_sites, skin_sites
 from hasel_sim.model import Model
 from hasel_sim.model.description import RectangleBody, SwimmerBody
+
+_OUTLINE_STEP = 3e-5
+"""Step [1] of the central differences by an outline coefficient."""
 
 
 @lru_cache(maxsize=16)
@@ -95,8 +106,8 @@ class Builder:
 
     def __init__(self, model: Model, nodes: np.ndarray | None = None) -> None:
         self.model = model
-        self.mesh = model_mesh(model)
-        self.nodes = self.mesh.nodes if nodes is None else nodes
+        self.mesh = model_mesh(model) if nodes is None else replace(model_mesh(model), nodes=nodes)
+        self.nodes = self.mesh.nodes
         _, self._density = _material(model, self.mesh, self.nodes)
         self.mass = Mass(self.mesh, element_masses(self.mesh, self.nodes, self._density))
         self._values = model.effect_values()
@@ -157,6 +168,12 @@ class Builder:
             return StressSlope(self._stress_law(effect, above), self._stress_law(effect, below), width)
         solids = [self._solid({**self._values, identity: changed}) for changed in (above, below)]
         return SolidSlope(*solids, width)
+
+    def outline_slope(self, index: int) -> ResidualSlope:
+        """The derivative of the residual by one outline coefficient, which moves nodes, masses, skin and all."""
+        shift = _OUTLINE_STEP * self.mesh.outline_slope[index]
+        systems = [Builder(self.model, self.nodes + sign * shift).system() for sign in (1.0, -1.0)]
+        return SystemSlope(*systems, 2 * _OUTLINE_STEP)
 
 
 def difference_points(parameter: EffectParameter, value: float) -> tuple[float, float, float]:

@@ -39,6 +39,11 @@ class MarkerRows:
             np.einsum("mk,...mkd->...md", self._across, local),
         )
 
+    def add_pulled_back(self, where: np.ndarray, across: np.ndarray, out: np.ndarray) -> None:
+        """Add to out [nodes, 2] what weights of positions and lines [3, 2] mean for the nodes."""
+        share = self._shape[:, :, None] * where[:, None, :] + self._across[:, :, None] * across[:, None, :]
+        np.add.at(out, self._nodes, share)
+
 
 def sin_theta(markers: np.ndarray) -> np.ndarray:
     """Sine of the bending angle from markers [..., 3, 2] (head, middle, tail), positive towards the upper side."""

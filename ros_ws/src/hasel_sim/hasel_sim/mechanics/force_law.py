@@ -115,3 +115,21 @@ class ForceLaw:
             np.einsum("nij,cnj->cni", self._slopes[name], moved[name]()) for name in self.effect.depends_on
         )
         self.sites.scatter(-total, out)
+
+    def add_pulled_back(self, weights: np.ndarray, out: np.ndarray) -> None:
+        """Subtract the transposed derivatives times weights [nodes, 2] from out [3, nodes, 2].
+
+        The first axis of out: by position, velocity and acceleration.
+        """
+        s = self.sites
+        here = s.measure[:, None] * s.value(weights)
+        places = {
+            "position": (0, s.shape),
+            "velocity": (1, s.shape),
+            "acceleration": (2, s.shape),
+            "tangent": (0, s.slope),
+        }
+        for name in self.effect.depends_on:
+            row, interpolation = places[name]
+            pulled = np.einsum("nij,ni->nj", self._slopes[name], here)
+            np.subtract.at(out[row], s.nodes, interpolation[:, :, None] * pulled[:, None, :])

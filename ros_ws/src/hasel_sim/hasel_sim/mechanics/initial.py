@@ -3,8 +3,9 @@
 import numpy as np
 
 from hasel_sim.errors import SimulationError
+from hasel_sim.mechanics.banded import BandFactors
 from hasel_sim.mechanics.branches import green_stress_direction
-from hasel_sim.mechanics.residual_slopes import ForceSlope, ResidualSlope, SolidSlope
+from hasel_sim.mechanics.residual_slopes import ResidualSlope, SolidSlope
 from hasel_sim.mechanics.state import State, StateSlopes
 from hasel_sim.mechanics.statics import equilibrium, equilibrium_slope
 from hasel_sim.mechanics.system import DriveState, Linearisation, Memory, Motion, System
@@ -35,19 +36,31 @@ def initial_state(
         state.branch = np.zeros((len(branches), *system.solid.areas.shape, 3))
         state.green = system.solid.green_stress(system.solid.gradient(position))
     motion = Motion(position, still, still)
-    by_parameter = _residual_slopes(parameters, motion, drive, line, state)
-    scale = np.array([load_factor if isinstance(p, ForceSlope) else 1.0 for p in parameters])
-    right = system.held_to_zero(scale[:, None, None] * by_parameter)
+    right = _residual_slopes(parameters, motion, drive, line, state, load_factor)
     moved = equilibrium_slope(line, right) if held_shape is None else np.zeros_like(right)
     slopes = StateSlopes(moved, np.zeros_like(right), np.zeros_like(right))
     if len(branches):
         _branch_slopes(system, state, parameters, slopes)
 
-    inertia = line.matrix(0.0, 0.0, 1.0).factorise()
-    state.acceleration = -inertia.solve(system.residual(motion, drive, Memory())[None])[0]
-    full = line.along(slopes.position, slopes.velocity, slopes.acceleration) + by_parameter
-    slopes.acceleration = -inertia.solve(system.held_to_zero(full))
+    line = system.linearise(motion, drive, Memory())
+    state.acceleration = -line.matrix(0.0, 0.0, 1.0).factorise().solve(
+        system.residual(motion, drive, Memory())[None]
+    )[0]
+    if parameters:
+        motion, line, inertia = start_of_motion(system, state, drive)
+        change = line.along(slopes.position, slopes.velocity, slopes.acceleration)
+        change += _residual_slopes(parameters, motion, drive, line, state, 1.0)
+        slopes.acceleration = -inertia.solve(change)
     return state, slopes
+
+
+def start_of_motion(
+    system: System, state: State, drive: DriveState
+) -> tuple[Motion, Linearisation, BandFactors]:
+    """The motion with which a run starts, the derivatives there, and the factors of its inertia."""
+    motion = Motion(state.position, state.velocity, state.acceleration)
+    line = system.linearise(motion, drive, Memory())
+    return motion, line, line.matrix(0.0, 0.0, 1.0).factorise()
 
 
 def _held(system: System, drive: DriveState, shape: np.ndarray) -> tuple[np.ndarray, Linearisation]:
@@ -63,12 +76,17 @@ def _held(system: System, drive: DriveState, shape: np.ndarray) -> tuple[np.ndar
 
 
 def _residual_slopes(
-    parameters: list[ResidualSlope], motion: Motion, drive: DriveState, line: Linearisation, state: State
+    parameters: list[ResidualSlope],
+    motion: Motion,
+    drive: DriveState,
+    line: Linearisation,
+    state: State,
+    load_factor: float,
 ) -> np.ndarray:
     out = np.zeros((len(parameters), *motion.position.shape))
     for column, parameter in enumerate(parameters):
-        parameter.add(motion, drive, line, state, 0.0, out[column])
-    return out
+        parameter.add(motion, drive, line, state, 0.0, out[column], load_factor)
+    return line.system.held_to_zero(out)
 
 
 def _branch_slopes(

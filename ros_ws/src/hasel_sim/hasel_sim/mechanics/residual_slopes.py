@@ -15,15 +15,25 @@ class ResidualSlope(Protocol):
     """What the stepper asks of a parameter."""
 
     def add(
-        self, motion: Motion, drive: DriveState, line: Linearisation, state: State, at: float, out: np.ndarray
+        self,
+        motion: Motion,
+        drive: DriveState,
+        line: Linearisation,
+        state: State,
+        at: float,
+        out: np.ndarray,
+        load_factor: float = 1.0,
     ) -> None:
-        """Add the derivative of the residual to out [nodes, 2]; state is that of the step's start, at [s] into it."""
+        """Add the derivative of the residual, under a share of all loads, to out [nodes, 2].
+
+        state: that of the step's start; at: how far into the step forces balance [s]; 0 for statics.
+        """
 
 
 class NoSlope:
     """A parameter that the mechanics does not see (it acts through the contraction or the observation)."""
 
-    def add(self, motion, drive, line, state, at, out) -> None:
+    def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
         """Add nothing."""
 
 
@@ -33,11 +43,11 @@ class ForceSlope:
     def __init__(self, more: ForceLaw, less: ForceLaw, width: float) -> None:
         self._more, self._less, self._width = more, less, width
 
-    def add(self, motion, drive, line, state, at, out) -> None:
+    def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
         """Subtract the derivative of the force, which stands on the right-hand side."""
         arguments = motion.position, motion.velocity, motion.acceleration, drive, out
-        self._more.add_force(*arguments, -1 / self._width)
-        self._less.add_force(*arguments, 1 / self._width)
+        self._more.add_force(*arguments, -load_factor / self._width)
+        self._less.add_force(*arguments, load_factor / self._width)
 
 
 class StressSlope:
@@ -46,7 +56,7 @@ class StressSlope:
     def __init__(self, more: StressLaw, less: StressLaw, width: float) -> None:
         self._more, self._less, self._width = more, less, width
 
-    def add(self, motion, drive, line, state, at, out) -> None:
+    def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
         """Add the nodal forces of the stress's derivative."""
         P = np.zeros_like(line.F)
         change = self._more.stress(line.F, line.rate, drive) - self._less.stress(line.F, line.rate, drive)
@@ -61,26 +71,29 @@ class SolidSlope:
         self.more, self.less, self.width = more, less, width
         self._same_shape = np.array_equal(more.gradients, less.gradients)
 
-    def add(self, motion, drive, line, state, at, out) -> None:
+    def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
         """Add the derivative of the internal force."""
         for solid, sign in ((self.more, 1.0), (self.less, -1.0)):
             F = line.F if self._same_shape else solid.gradient(motion.position)
             rate = line.rate if self._same_shape else solid.gradient(motion.velocity)
-            relaxed = len(solid.branches) == 0 or at == 0.0
-            history = None if relaxed else solid.branches.history(state.branch, state.green, at)
-            P = solid.stress(F, rate, drive.contraction, history, at)
+            P = solid.stress(F, rate, drive.contraction, self._history(solid, state, at), at)
             solid.add_force((sign / self.width) * P, out)
 
+    @staticmethod
+    def _history(solid: Solid, state: State, at: float) -> np.ndarray | None:
+        relaxed = len(solid.branches) == 0 or at == 0.0
+        return None if relaxed else solid.branches.history(state.branch, state.green, at)
 
-class SystemSlope:
+
+class SystemSlope(SolidSlope):
     """A parameter that changes everything, such as the outline."""
 
     def __init__(self, more: System, less: System, width: float) -> None:
-        self._more, self._less, self._width = more, less, width
+        super().__init__(more.solid, less.solid, width)
+        self._systems = more, less
 
-    def add(self, motion, drive, line, state, at, out) -> None:
+    def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
         """Add the derivative of the whole residual."""
-        memory = Memory()
-        out += (
-            self._more.residual(motion, drive, memory) - self._less.residual(motion, drive, memory)
-        ) / self._width
+        for system, sign in zip(self._systems, (1.0, -1.0), strict=True):
+            memory = Memory(self._history(system.solid, state, at), at)
+            out += (sign / self.width) * system.residual(motion, drive, memory, load_factor)

@@ -3,6 +3,7 @@
 import numpy as np
 
 from hasel_sim.errors import SimulationError
+from hasel_sim.mechanics.banded import BandMatrix
 from hasel_sim.mechanics.system import DriveState, Linearisation, Memory, Motion, System
 
 _ANCHOR = 1e-3
@@ -25,7 +26,7 @@ def equilibrium(
         for _ in range(15):
             motion = Motion(trial, still, still)
             residual = system.residual(motion, drive, Memory(), load_factor * target)
-            line = system.linearise(motion, drive, Memory())
+            line = system.linearise(motion, drive, Memory(), load_factor * target)
             correction = -line.matrix(1.0, 0.0, anchor).factorise().solve(residual[None])[0]
             if not np.isfinite(correction).all() or np.abs(correction).max() > 0.5 * np.ptp(
                 system.nodes[:, 0]
@@ -42,7 +43,7 @@ def equilibrium(
                     f"no static equilibrium was found beyond {reached:.0%} of the loads; expected a body stiff enough "
                     "to carry them: check stiffness, gravity and initial_load_factor"
                 )
-    return position, system.linearise(Motion(position, still, still), drive, Memory())
+    return position, system.linearise(Motion(position, still, still), drive, Memory(), load_factor)
 
 
 def equilibrium_slope(line: Linearisation, residual_slope: np.ndarray) -> np.ndarray:
@@ -50,10 +51,22 @@ def equilibrium_slope(line: Linearisation, residual_slope: np.ndarray) -> np.nda
 
     Iterative refinement takes out what a free body's anchor does to it.
     """
-    anchor = _ANCHOR if line.system.held == 0 else 0.0
-    factors = line.matrix(1.0, 0.0, anchor).factorise()
-    still = np.zeros_like(residual_slope)
+    factors, still = _anchored(line).factorise(), np.zeros_like(residual_slope)
     change = -factors.solve(residual_slope)
     for _ in range(2):
         change -= factors.solve(line.along(change, still, still) + residual_slope)
     return change
+
+
+def equilibrium_multiplier(line: Linearisation, weights: np.ndarray) -> np.ndarray:
+    """What a change of the residual [N/m] does to a sum of the equilibrium's positions with weights [nodes, 2]."""
+    factors = _anchored(line).factorise()
+    multiplier = -factors.solve(weights[None], transposed=True)
+    for _ in range(2):
+        left = line.pulled_back(multiplier[0])[0] + weights
+        multiplier -= factors.solve(left[None], transposed=True)
+    return multiplier[0]
+
+
+def _anchored(line: Linearisation) -> BandMatrix:
+    return line.matrix(1.0, 0.0, _ANCHOR if line.system.held == 0 else 0.0)

@@ -90,15 +90,17 @@ class System:
         compiled.second_piola(F, P, out)
         return out
 
-    def linearise(self, motion: Motion, drive: DriveState, memory: Memory) -> "Linearisation":
-        """All derivatives of the residual by the motion, at this motion."""
+    def linearise(
+        self, motion: Motion, drive: DriveState, memory: Memory, load_factor: float = 1.0
+    ) -> "Linearisation":
+        """All derivatives of the residual by the motion, at this motion; valid until the next call."""
         F, rate = self.solid.gradient(motion.position), self.solid.gradient(motion.velocity)
         elastic, viscous = self.solid.moduli(F, rate, drive.contraction, memory.history, memory.step)
         for law in self.stresses:
             law.add_moduli(F, rate, drive, elastic, viscous)
         for law in self.forces:
             law.linearise(motion.position, motion.velocity, motion.acceleration, drive)
-        return Linearisation(self, elastic, viscous, F, rate)
+        return Linearisation(self, elastic, viscous, F, rate, load_factor)
 
     def held_to_zero(self, columns: np.ndarray) -> np.ndarray:
         """Set the held nodes of [columns, nodes, 2] to zero in place, and return it."""
@@ -110,9 +112,16 @@ class Linearisation:
     """Derivatives of a `System`'s residual at one motion: as a band matrix, and along given directions."""
 
     def __init__(
-        self, system: System, elastic: np.ndarray, viscous: np.ndarray, F: np.ndarray, rate: np.ndarray
+        self,
+        system: System,
+        elastic: np.ndarray,
+        viscous: np.ndarray,
+        F: np.ndarray,
+        rate: np.ndarray,
+        load_factor: float = 1.0,
     ) -> None:
         self.system, self.elastic, self.viscous, self.F, self.rate = system, elastic, viscous, F, rate
+        self._load_factor = load_factor
 
     def matrix(self, position: float, velocity: float, acceleration: float) -> BandMatrix:
         """position K + velocity C + acceleration M."""
@@ -121,15 +130,18 @@ class Linearisation:
         band.set_to(self.system.mass.matrix, acceleration)
         moduli = position * self.elastic + velocity * self.viscous
         compiled.scatter_moduli(moduli, s.elements, s.gradients, s.areas, band.entries, band.diagonal)
+        share = self._load_factor
         for law in self.system.forces:
-            law.add_matrix(position, velocity, acceleration, band.entries, band.diagonal)
+            law.add_matrix(
+                share * position, share * velocity, share * acceleration, band.entries, band.diagonal
+            )
         return band
 
     def with_initial_stress(self, found: np.ndarray, expected: np.ndarray) -> "Linearisation":
         """The same with the geometric stiffness of another second Piola stress, both [elements, points, 3].
 
         A guessed motion stretches thin parts a little, and the compression this brings would make the matrix
-        indefinite; the stress of the last balance is the better guess (mixed-point iteration: Magisano, Leonetti, Garcea 2017).
+        indefinite; the stress of the last balance is the better guess (Magisano, Leonetti, Garcea 2017).
         """
         compiled.exchange_initial_stress(self.elastic, found, expected)
         return self
@@ -147,8 +159,28 @@ class Linearisation:
         compiled.scatter_directions(
             self.elastic, self.viscous, none, s.elements, s.gradients, s.areas, shift, rate, out
         )
+        share = self._load_factor
         for law in self.system.forces:
-            law.add_directions(shift, rate, acceleration, out)
+            law.add_directions(share * shift, share * rate, share * acceleration, out)
+        return self.system.held_to_zero(out)
+
+    def pulled_back(self, weights: np.ndarray) -> np.ndarray:
+        """Transposed derivatives by position, velocity and acceleration times weights [nodes, 2], [3, nodes, 2]."""
+        s, nothing = self.system.solid, np.zeros_like(weights)
+        out = np.stack([nothing, nothing, self.system.mass.product(weights[None])[0]])
+        compiled.scatter_directions(
+            np.ascontiguousarray(self.elastic.swapaxes(-1, -2)),
+            np.ascontiguousarray(self.viscous.swapaxes(-1, -2)),
+            np.empty((0, *self.elastic.shape[:3])),
+            s.elements,
+            s.gradients,
+            s.areas,
+            np.stack([weights, nothing]),
+            np.stack([nothing, weights]),
+            out[:2],
+        )
+        for law in self.system.forces:
+            law.add_pulled_back(self._load_factor * weights, out)
         return self.system.held_to_zero(out)
 
     def by_contraction(self, drive: DriveState) -> np.ndarray:
