@@ -1,8 +1,10 @@
 """What the benchmark asks of `improve`."""
 
+from collections.abc import Sequence
 from concurrent.futures import Executor
 
-from hasel_sim.model import load_model
+from hasel_sim.model import Model, load_model
+from hasel_sysid.dataset import Experiment
 from hasel_sysid.improve import improve
 
 from hasel_bringup.bench_hidden.generate import Laboratory
@@ -10,5 +12,9 @@ from hasel_bringup.bench_hidden.generate import Laboratory
 
 def explain(laboratory: Laboratory, pool: Executor) -> dict:
     """The content of `improve --json` for these measurements, starting from the default swimmer."""
-    result = improve(load_model("swimmer"), laboratory.fitted, pool, validation=laboratory.unseen)
-    return result.as_dict()
+    return answer(load_model("swimmer"), laboratory.fitted, laboratory.unseen, pool)
+
+
+def answer(model: Model, fitted: Sequence[Experiment], unseen: Sequence[Experiment], pool: Executor) -> dict:
+    """The content of `improve --json` for these experiments, starting from a model."""
+    return improve(model, fitted, pool, validation=unseen).as_dict()

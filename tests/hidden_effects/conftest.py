@@ -1,0 +1,9 @@
+import pytest
+from hasel_sim.parallel import executor
+
+
+@pytest.fixture(scope="package")
+def pool():
+    """Two processes, as on the machine that the bars are stated for."""
+    with executor(2) as processes:
+        yield processes
