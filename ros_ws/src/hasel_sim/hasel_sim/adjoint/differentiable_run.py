@@ -1,0 +1,149 @@
+"""A run as differentiable functions of PyTorch: waveform -> contraction -> angle."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import torch
+
+from hasel_sim.adjoint.gradient import gradient
+from hasel_sim.adjoint.trajectory import follow
+from hasel_sim.build import body_mesh
+from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.errors import SimulationError
+from hasel_sim.model import Model
+from hasel_sim.prepared_run import PreparedRun
+from hasel_sim.run import Run
+
+
+class DifferentiableRun:
+    """sin theta of one run as a function of its activation series, of named parameters and of the outline.
+
+    All tensors are double precision on the CPU. `values` are those of `parameters`, in that order; `outline` are the
+    body's outline coefficients. What is left out stays as the model says.
+    """
+
+    def __init__(self, model: Model, run: Run, parameters: Sequence[str] = ()) -> None:
+        self.model, self.run, self.parameters = model, run, tuple(parameters)
+        prepared = PreparedRun(model, run, self.parameters)
+        self.balance_times = prepared.plan.balance_times
+        """Instants [s] at which the contraction is given, [steps]."""
+
+    def values(self) -> torch.Tensor:
+        """The model's own values of the parameters."""
+        return torch.tensor([self.model.values[name] for name in self.parameters], dtype=torch.float64)
+
+    def outline(self) -> torch.Tensor:
+        """The model's own outline coefficients; empty for a body without."""
+        return torch.tensor(
+            getattr(self.model.description.body, "outline_coefficients", ()), dtype=torch.float64
+        )
+
+    def contraction(self, values: torch.Tensor | None = None) -> torch.Tensor:
+        """Contraction [steps, 2] that the run's voltages cause."""
+        return _Contraction.apply(self, self.values() if values is None else values)
+
+    def contraction_from(
+        self, waveform: torch.Tensor, schedule: Callable[[np.ndarray], VoltageSchedule], step: float = 1e-6
+    ) -> torch.Tensor:
+        """Contraction [steps, 2] that a voltage waveform [n] causes, `schedule` turning its numbers into voltages.
+
+        The drive is differentiated by central differences with a step in the waveform's numbers.
+        """
+        return _Waveform.apply(self, waveform, schedule, step)
+
+    def angle(
+        self,
+        contraction: torch.Tensor | None = None,
+        values: torch.Tensor | None = None,
+        outline: torch.Tensor | None = None,
+    ) -> torch.Tensor:
+        """sin theta at the run's frames [n] (NaN before the start), differentiable by all three arguments.
+
+        Raises ModelError for an outline that crosses the spine, SimulationError for a motion that cannot be followed.
+        """
+        contraction = self.contraction(values) if contraction is None else contraction
+        values = self.values() if values is None else values
+        outline = self.outline() if outline is None else outline
+        return _Angle.apply(self, contraction, values, outline)
+
+    def _at(self, values: torch.Tensor) -> Model:
+        return self.model.with_values(dict(zip(self.parameters, values.tolist(), strict=True)))
+
+    def prepared(self, values: torch.Tensor, outline: torch.Tensor) -> PreparedRun:
+        """The run at these parameter values and outline coefficients."""
+        nodes = None
+        if not torch.equal(outline, self.outline()):
+            body = self.model.description.body
+            body = body.model_copy(update={"outline_coefficients": tuple(outline.tolist())})
+            nodes = body_mesh(body, self.model.description.numerics.mesh_density).nodes
+        return PreparedRun(self._at(values), self.run, self.parameters, nodes)
+
+    def voltages(self, values: torch.Tensor, schedule: VoltageSchedule | None = None) -> PreparedRun:
+        """The run with another voltage, for its drive alone."""
+        prepared = PreparedRun(self._at(values), self.run, self.parameters)
+        prepared.schedule = schedule or prepared.schedule
+        return prepared
+
+
+class _Contraction(torch.autograd.Function):
+    @staticmethod
+    def forward(ctx, run: DifferentiableRun, values: torch.Tensor) -> torch.Tensor:
+        ctx.run = run
+        ctx.save_for_backward(values)
+        return torch.from_numpy(run.voltages(values).contraction(run.balance_times))
+
+    @staticmethod
+    def backward(ctx, weights: torch.Tensor):
+        (values,) = ctx.saved_tensors
+        slopes = ctx.run.voltages(values).contraction_slopes(ctx.run.balance_times)
+        return None, torch.einsum("sm,spm->p", weights, torch.from_numpy(slopes))
+
+
+class _Waveform(torch.autograd.Function):
+    @staticmethod
+    def forward(ctx, run: DifferentiableRun, waveform: torch.Tensor, schedule, step: float) -> torch.Tensor:
+        ctx.run, ctx.schedule, ctx.step = run, schedule, step
+        ctx.save_for_backward(waveform)
+        return _Waveform._respond(run, schedule, waveform.detach().numpy())
+
+    @staticmethod
+    def _respond(run: DifferentiableRun, schedule, waveform: np.ndarray) -> torch.Tensor:
+        prepared = run.voltages(run.values(), schedule(waveform))
+        return torch.from_numpy(prepared.contraction(run.balance_times))
+
+    @staticmethod
+    def backward(ctx, weights: torch.Tensor):
+        (waveform,) = ctx.saved_tensors
+        out = torch.zeros_like(waveform)
+        for index in range(len(waveform)):
+            shift = np.zeros(len(waveform))
+            shift[index] = ctx.step
+            above, below = (
+                _Waveform._respond(ctx.run, ctx.schedule, waveform.detach().numpy() + sign * shift)
+                for sign in (1.0, -1.0)
+            )
+            out[index] = (weights * (above - below)).sum() / (2 * ctx.step)
+        return None, out, None, None
+
+
+class _Angle(torch.autograd.Function):
+    @staticmethod
+    def forward(ctx, run: DifferentiableRun, contraction, values, outline) -> torch.Tensor:
+        prepared = run.prepared(values.detach(), outline.detach())
+        expected = (len(prepared.plan.coefficients), 2)
+        if tuple(contraction.shape) != expected:
+            raise SimulationError(
+                f"the contraction has the shape {tuple(contraction.shape)}; expected {expected}, one row per time step: "
+                "give it at balance_times"
+            )
+        ctx.trajectory = follow(prepared, contraction.detach().numpy())
+        return torch.from_numpy(prepared.at_frames(ctx.trajectory.series))
+
+    @staticmethod
+    def backward(ctx, weights: torch.Tensor):
+        plan = ctx.trajectory.prepared.plan
+        at_boundaries = np.zeros(len(plan.boundaries))
+        np.add.at(at_boundaries, plan.frames, weights.detach().numpy()[-len(plan.frames) :])
+        found = gradient(ctx.trajectory, at_boundaries, ctx.needs_input_grad[3])
+        outline = torch.from_numpy(found.outline) if ctx.needs_input_grad[3] else None
+        return None, torch.from_numpy(found.contraction), torch.from_numpy(found.parameters), outline

@@ -1,0 +1,128 @@
+"""The way back: from weights after a step to weights before it, and from the first state to what it came from.
+
+A step solves R(x(a1), c, p) = 0 for the end-of-step acceleration a1. With A = dR/da1 and g the weights that reach a1,
+the multiplier mu = -A^-T g gives every derivative: mu . dR/dc by the contraction, mu . dR/dp by a parameter, and
+(dR/dx)^T mu by the state before (the discrete adjoint; e.g. Giles and Pierce, Flow, Turbulence and Combustion 65
+(2000) 393).
+"""
+
+import numpy as np
+
+from hasel_sim.adjoint.weights import StateWeights, green_pulled_back, history_pulled_back
+from hasel_sim.mechanics.generalised_alpha import StepCoefficients
+from hasel_sim.mechanics.initial import start_of_motion
+from hasel_sim.mechanics.residual_slopes import ResidualSlope, SolidSlope
+from hasel_sim.mechanics.state import State
+from hasel_sim.mechanics.statics import equilibrium_multiplier
+from hasel_sim.mechanics.stepper import Stepper, balance_motion
+from hasel_sim.mechanics.system import DriveState, Linearisation, Memory, Motion, System
+
+
+def reverse_step(
+    stepper: Stepper,
+    before: State,
+    after: State,
+    drive: DriveState,
+    c: StepCoefficients,
+    weights: StateWeights,
+    parameters: list[ResidualSlope],
+) -> tuple[StateWeights, np.ndarray, np.ndarray]:
+    """Weights of the state before, of the contraction [2] and of the parameters [n], from those of the state after."""
+    system, solid = stepper.system, stepper.system.solid
+    motion = balance_motion(before, c, after.acceleration)
+    line = system.linearise(motion, drive, stepper.memory(before, c.at))
+    position = weights.position
+    if weights.branch is not None:
+        left, gain = solid.branches.factors(c.step)
+        green = weights.green + np.tensordot(gain, weights.branch, 1)
+        position = position + green_pulled_back(solid, after.position, green)
+    reached = c.end_position * position + c.end_velocity * weights.velocity + weights.acceleration
+    multiplier = -stepper.factorise(line, c).solve(reached[None], transposed=True)[0]
+    by_position, by_velocity, by_acceleration = line.pulled_back(multiplier)
+    earlier = StateWeights(
+        position + by_position,
+        weights.velocity + c.step * position + c.position_v * by_position + by_velocity,
+        c.end_position_a * position
+        + c.end_velocity_a * weights.velocity
+        + c.position_a * by_position
+        + c.velocity_a * by_velocity
+        + c.acceleration_a * by_acceleration,
+    )
+    if weights.branch is not None:
+        history = history_pulled_back(solid, line.F, multiplier)
+        kept, gained = solid.branches.factors(c.at)
+        earlier.branch = left[:, None, None, None] * weights.branch + np.multiply.outer(kept, history)
+        earlier.green = -np.tensordot(gain, weights.branch, 1) - gained.sum() * history
+    contraction = np.einsum("mnd,nd->m", line.by_contraction(drive), multiplier)
+    by_parameter = _by_parameter(parameters, motion, drive, line, before, c.at, multiplier)
+    if weights.branch is not None:
+        for column, parameter in enumerate(parameters):
+            by_parameter[column] += _by_branch_parameter(parameter, before, after, c.step, weights)
+    return earlier, contraction, by_parameter
+
+
+def reverse_start(
+    system: System,
+    state: State,
+    drive: DriveState,
+    load_factor: float,
+    in_equilibrium: bool,
+    weights: StateWeights,
+    parameters: list[ResidualSlope],
+) -> np.ndarray:
+    """Weights of the parameters [n] from those of the first state, which is in static equilibrium or simply given."""
+    motion, line, inertia = start_of_motion(system, state, drive)
+    multiplier = -inertia.solve(weights.acceleration[None], transposed=True)[0]
+    out = _by_parameter(parameters, motion, drive, line, state, 0.0, multiplier)
+    position = weights.position + line.pulled_back(multiplier)[0]
+    if weights.green is not None:
+        position += green_pulled_back(system.solid, state.position, weights.green)
+        out += [_by_first_green(parameter, state, weights.green) for parameter in parameters]
+    if not in_equilibrium:
+        return out
+    still = np.zeros_like(position)
+    motion = Motion(state.position, still, still)
+    line = system.linearise(motion, drive, Memory(), load_factor)
+    multiplier = equilibrium_multiplier(line, system.held_to_zero(position[None])[0])
+    return out + _by_parameter(parameters, motion, drive, line, state, 0.0, multiplier, load_factor)
+
+
+def _by_parameter(
+    parameters: list[ResidualSlope],
+    motion: Motion,
+    drive: DriveState,
+    line: Linearisation,
+    state: State,
+    at: float,
+    multiplier: np.ndarray,
+    load_factor: float = 1.0,
+) -> np.ndarray:
+    out = np.zeros(len(parameters))
+    for column, parameter in enumerate(parameters):
+        slope = np.zeros_like(multiplier)
+        parameter.add(motion, drive, line, state, at, slope, load_factor)
+        out[column] = (slope * multiplier).sum()
+    return out
+
+
+def _by_branch_parameter(
+    parameter: ResidualSlope, before: State, after: State, step: float, weights: StateWeights
+) -> float:
+    total = 0.0
+    if isinstance(parameter, SolidSlope):
+        for solid, sign in ((parameter.more, 1.0), (parameter.less, -1.0)):
+            green = solid.green_stress(solid.gradient(after.position))
+            branch = solid.branches.advance(before.branch, before.green, green, step)
+            share = (weights.green * green).sum() + (weights.branch * branch).sum()
+            total += sign / parameter.width * share
+    return total
+
+
+def _by_first_green(parameter: ResidualSlope, state: State, weights: np.ndarray) -> float:
+    if not isinstance(parameter, SolidSlope):
+        return 0.0
+    more, less = (
+        (weights * solid.green_stress(solid.gradient(state.position))).sum()
+        for solid in (parameter.more, parameter.less)
+    )
+    return (more - less) / parameter.width

@@ -1,0 +1,142 @@
+"""Gradients by the adjoint against gradcheck, forward sensitivities and central differences."""
+
+import numpy as np
+import pytest
+import torch
+
+from hasel_sim.adjoint import DifferentiableRun
+from hasel_sim.errors import ModelError, SimulationError
+from hasel_sim.simulate import simulate
+
+EFFECTS = ("quadratic_drag", "soft_modulus", "viscoelastic_creep", "muscle_asymmetry", "marker_offset")
+
+
+def _weights(frames: int) -> torch.Tensor:
+    return torch.from_numpy(np.random.default_rng(3).normal(size=frames))
+
+
+def _model(swimmer, effects=(), **numerics):
+    model = swimmer.with_numerics(tolerance_m=1e-14, mesh_density=0.5, **numerics).with_effects(*effects)
+    typical = {f"{e.id}.{p.name}": p.typical for e in model.effects for p in e.parameters}
+    return model.with_values(typical)
+
+
+def _central_difference(function, at: torch.Tensor, index: int, step: float) -> float:
+    """Fourth-order difference of a scalar function by one entry."""
+
+    def value(factor):
+        moved = at.clone()
+        moved.view(-1)[index] += factor * step
+        return float(function(moved))
+
+    return (8 * (value(1) - value(-1)) - (value(2) - value(-2))) / (12 * step)
+
+
+def test_gradcheck_passes_on_a_small_body(swimmer, boxes):
+    """By the whole activation series, a parameter and the outline, on 44 elements and 10 steps."""
+    model = _model(swimmer, ["soft_modulus"], steps_per_second=120.0).with_numerics(mesh_density=0.25)
+    run = DifferentiableRun(model, boxes(duration=10 / 120), list(model.parameters)[-1:])
+    contraction = torch.full((10, 2), 0.02, dtype=torch.float64)
+    contraction[:, 1] = 0.005
+    inputs = [contraction, run.values(), run.outline()]
+    for tensor in inputs:
+        tensor.requires_grad_()
+    assert torch.autograd.gradcheck(run.angle, inputs, eps=1e-5, atol=1e-7, rtol=1e-5)
+
+
+def test_gradient_by_the_activation_series_agrees_with_differences(swimmer, boxes):
+    """To 1e-6, with drag, creep and an observation effect in the model."""
+    model = _model(swimmer, EFFECTS)
+    run = DifferentiableRun(model, boxes(duration=0.4))
+    contraction = run.contraction().detach().requires_grad_()
+    weights = _weights(len(run.run.time))
+    (run.angle(contraction) * weights).sum().backward()
+    largest = contraction.grad.abs().max()
+    for index in (0, 41, 90, 133):
+        expected = _central_difference(
+            lambda c: (run.angle(c) * weights).sum(), contraction.detach(), index, 1e-4
+        )
+        assert abs(contraction.grad.view(-1)[index] - expected) < 1e-6 * largest
+
+
+def test_gradient_by_every_parameter_agrees_with_the_forward_sensitivities(swimmer, boxes):
+    """Drive, force, material, branches and observation at once, to 1e-6 of each."""
+    model = _model(swimmer, EFFECTS)
+    run, names = boxes(duration=0.4), list(model.parameters)
+    differentiable = DifferentiableRun(model, run, names)
+    values = differentiable.values().requires_grad_()
+    weights = _weights(len(run.time))
+    (differentiable.angle(values=values) * weights).sum().backward()
+    forward = simulate(model, run, names)
+    expected = weights.numpy() @ forward.slopes
+    scale = np.abs(weights.numpy()[:, None] * forward.slopes).sum(axis=0)
+    assert np.abs(values.grad.numpy() - expected).max() > 0
+    assert np.all(np.abs(values.grad.numpy() - expected) <= 1e-6 * scale), dict(zip(names, scale, strict=True))
+
+
+def test_the_angle_is_that_of_simulate(swimmer, boxes):
+    """The same numbers, forward."""
+    run = boxes(duration=0.2)
+    found = DifferentiableRun(swimmer, run).angle().numpy()
+    assert found == pytest.approx(simulate(swimmer, run).sin_theta, abs=1e-12)
+
+
+@pytest.mark.parametrize("effects", [(), ("quadratic_drag", "viscoelastic_creep")])
+def test_gradient_by_the_outline_agrees_with_differences(effects, swimmer, boxes):
+    """To 1e-6; nodes, masses, skin, start and branches move with it."""
+    model = _model(swimmer, effects)
+    run = DifferentiableRun(model, boxes(duration=0.3))
+    outline = run.outline().requires_grad_()
+    weights = _weights(len(run.run.time))
+    (run.angle(outline=outline) * weights).sum().backward()
+    for index in range(len(outline)):
+        expected = _central_difference(
+            lambda o: (run.angle(outline=o) * weights).sum(), outline.detach(), index, 1e-3
+        )
+        assert float(outline.grad[index]) == pytest.approx(expected, rel=1e-6)
+
+
+def test_the_start_in_equilibrium_is_differentiated_too(rectangle, tip_force):
+    """A beam let go from a load: gradient by the load's size, against differences."""
+    from hasel_sim.run import Run
+
+    model = rectangle(
+        0.1, 0.02, gravity=3.0, effects=[tip_force], values={"tip_force.force": 0.5}, tolerance_m=1e-14
+    )
+    run = Run("", np.arange(20) / 120, initial_state="static_equilibrium", initial_load_factor=0.4)
+    differentiable = DifferentiableRun(model, run, ["tip_force.force"])
+    values = differentiable.values().requires_grad_()
+    differentiable.angle(values=values).sum().backward()
+    expected = _central_difference(
+        lambda v: differentiable.angle(values=v).sum(), values.detach(), 0, 1e-3
+    )
+    assert float(values.grad[0]) == pytest.approx(expected, rel=1e-6)
+    forward = simulate(model, run, ["tip_force.force"]).slopes.sum()
+    assert forward == pytest.approx(expected, rel=1e-6)
+
+
+def test_a_waveform_reaches_the_angle(swimmer, boxes):
+    """The gradient by a switching time, through drive and body, against differences."""
+    from hasel_sim.drive.voltage import VoltageSchedule
+
+    run = DifferentiableRun(_model(swimmer), boxes(duration=0.4))
+
+    def schedule(waveform):
+        return VoltageSchedule(np.array([0.0, waveform[0]]), np.array([[5500.0, 0.0], [0.0, 5500.0]]))
+
+    def loss(waveform):
+        return run.angle(run.contraction_from(waveform, schedule)).square().sum()
+
+    waveform = torch.tensor([0.1512], dtype=torch.float64, requires_grad=True)
+    loss(waveform).backward()
+    expected = _central_difference(loss, waveform.detach(), 0, 1e-5)
+    assert float(waveform.grad[0]) == pytest.approx(expected, rel=1e-5)
+
+
+def test_what_does_not_fit_is_refused(swimmer, boxes):
+    """A contraction of another length, an outline through the spine."""
+    run = DifferentiableRun(swimmer, boxes(duration=0.1))
+    with pytest.raises(SimulationError, match=r"expected \(24, 2\).*balance_times"):
+        run.angle(torch.zeros((3, 2), dtype=torch.float64))
+    with pytest.raises(ModelError, match="crosses the spine"):
+        run.angle(outline=torch.tensor([0.3, -1.0, 0.0, 0.0, 0.0, 0.0], dtype=torch.float64))
