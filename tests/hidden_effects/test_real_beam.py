@@ -37,9 +37,10 @@ def angular_frequency(experiment):
     after = experiment.run.time > experiment.run.start
     time, series = experiment.run.time[after], experiment.sin_theta[after]
     series = series - series[-len(series) // 4 :].mean()
-    early = time < time[0] + 1.5
-    crossings = np.flatnonzero(np.diff(np.sign(series[early])) != 0)
-    return np.pi / np.median(np.diff(time[early][crossings]))
+    before = np.flatnonzero((np.diff(np.sign(series)) != 0) & (time[1:] < time[0] + 1.5))
+    share = series[before] / (series[before] - series[before + 1])
+    crossings = time[before] + share * (time[before + 1] - time[before])
+    return np.pi / np.mean(np.diff(crossings))
 
 
 def loss_factor(stage, omega):
@@ -69,12 +70,12 @@ def test_one_swing_cannot_tell_the_damping_laws_apart(found):
 
 
 def test_stiffness_is_a_wrong_constant_or_creep(found):
-    """The beam swings as if it were 17 % less stiff than 264 kPa."""
+    """The beam swings as if it were about 18 % stiffer than the 264 kPa of its static test."""
     missing = set(found["verdict"]["missing"])
     assert missing & {"soft_modulus", "viscoelastic_creep"}
     if "soft_modulus" in missing:
         scale = found["stages"][-1]["parameters"]["soft_modulus.scale"]["value"]
-        assert scale == pytest.approx(0.83, abs=0.05)
+        assert scale == pytest.approx(1.18, abs=0.05)
 
 
 def test_error_falls_on_the_run_that_was_not_fitted(found):
