@@ -6,7 +6,7 @@ from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import load_model
 from hasel_sim.simulate import simulate
 
-RUN = BoxRun(5500.0, 3.5).run()
+RUN = BoxRun(3500.0, 2.0).run()
 
 
 def series(model):
@@ -19,8 +19,8 @@ def swimmer():
     """The default swimmer with an amplitude for the run's voltage."""
     return (
         load_model("swimmer")
-        .with_levels(np.array([5500.0]))
-        .with_values({"amplitude_5500": 0.06, "slope": 0.26})
+        .with_levels(np.array([3500.0]))
+        .with_values({"amplitude_3500": 0.027, "slope": 0.26})
     )
 
 
