@@ -14,14 +14,15 @@ from rcl_interfaces.msg import SetParametersResult
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.qos import QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from rclpy.qos import QoSProfile, qos_profile_sensor_data
 from rclpy.signals import SignalHandlerOptions
-from sensor_msgs.msg import CompressedImage, Image
+from sensor_msgs.msg import CompressedImage
 from std_srvs.srv import SetBool, Trigger
 
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
 from hasel_tracker.calibration.settings_file import settings_from
 from hasel_tracker.errors import TrackerError
+from hasel_tracker.image_topic import ImageTopic
 from hasel_tracker.live.health_report import judge
 from hasel_tracker.live.live_tracker import LiveTracker
 from hasel_tracker.live.persistent_camera import PersistentCamera
@@ -36,7 +37,6 @@ from hasel_tracker.node_messages import (
 from hasel_tracker.node_parameters import PARAMETERS, SEARCH_NAMES
 from hasel_tracker.sources.camera_source import CameraFormat, CameraSource
 from hasel_tracker.sources.frame import Frame
-from hasel_tracker.sources.image_message import image_of
 from hasel_tracker.sources.open_source import open_recorded
 from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
 from hasel_tracker.video.annotation import preview
@@ -61,7 +61,6 @@ class TrackerNode(Node):
         self._next_preview_s = 0.0
         self._reported_drops = 0
         self._last_note = ""
-        self._first_stamp_ns: int | None = None
         self._camera: PersistentCamera | None = None
         self._live = self._open(self._value("source"))
         self.add_on_set_parameters_callback(self._check_settings)
@@ -83,8 +82,7 @@ class TrackerNode(Node):
     def _open(self, source: str) -> LiveTracker:
         read = None
         if source.startswith(TOPIC_PREFIX):
-            topic = source.removeprefix(TOPIC_PREFIX)
-            self._waiting = self.create_timer(0.2, lambda: self._subscribe(topic))
+            self._topic = ImageTopic(self, source.removeprefix(TOPIC_PREFIX), lambda: self._live)
         elif source.isdigit() or source.startswith("/dev/"):
             self._camera = PersistentCamera(self._open_camera)
             read = self._camera.read
@@ -97,17 +95,6 @@ class TrackerNode(Node):
             self._value("decode_threads"),
             read,
         )
-
-    def _subscribe(self, topic: str) -> None:
-        """Subscribe once the images are there, reliably if they are: best effort loses most large images."""
-        publishers = self.get_publishers_info_by_topic(topic)
-        if not publishers:
-            return
-        self._waiting.cancel()
-        reliable = all(each.qos_profile.reliability == ReliabilityPolicy.RELIABLE for each in publishers)
-        quality = ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT
-        kind = CompressedImage if topic.endswith("compressed") else Image
-        self.create_subscription(kind, topic, self._take_image, QoSProfile(depth=5, reliability=quality))
 
     def _open_camera(self) -> CameraSource:
         source, exposure = self._value("source"), self._value("exposure")
@@ -129,18 +116,6 @@ class TrackerNode(Node):
             CameraCalibration.load(Path(calibration)) if calibration else None,
             self._value("mirrored"),
         )
-
-    def _take_image(self, message: Image | CompressedImage) -> None:
-        stamp_ns = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
-        stamp_ns = stamp_ns or time.time_ns()
-        self._first_stamp_ns = self._first_stamp_ns or stamp_ns
-        try:
-            image = image_of(message)
-        except TrackerError as error:
-            self._live.fault = str(error)
-            return
-        time_s = (stamp_ns - self._first_stamp_ns) * 1e-9
-        self._live.queue.put(Frame(0, time_s, image=image, stamp_ns=stamp_ns))
 
     def _publish(self, frame: Frame, tracked: TrackedFrame) -> None:
         frame_id = self._value("frame_id")

@@ -15,6 +15,7 @@ from hasel_tracker.tracking.tracker_settings import TrackerSettings
 SEED_RADIUS_PX = 3
 HUE_MARGIN = 8
 MARGIN_SHARE = 0.6
+REGION_RADII = 1.4
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,8 @@ def learn_colour(
     centres = _found_centres(image, start) if points_px is None else np.asarray(points_px, float)
     colour = _range_around(cv2.cvtColor(image, cv2.COLOR_BGR2HSV), centres)
     radius = _radius(colour.mask(image), centres)
-    settings = replace(start, colour=colour, marker_radius_px=round(radius, 1))
+    region = max(start.region_px, round(REGION_RADII * radius))
+    settings = replace(start, colour=colour, marker_radius_px=round(radius, 1), region_px=region)
     tracker = MomentTracker(settings)
     markers = tracker.update(image, 0.0)
     if not markers.found.all():

@@ -10,6 +10,7 @@ from hasel_tracker.tracking.marker_set import MarkerSet
 from hasel_tracker.tracking.tracker_settings import TrackerSettings
 
 WIDER_REGION = 3
+FORGET_AFTER_S = 1.0
 AREA_MEMORY = 0.02
 AREA_MEMORY_IN_DOUBT = 0.005
 RADIUS_TOLERANCE_PX = 0.7
@@ -29,10 +30,13 @@ class MomentTracker:
         self._areas = np.zeros(3)
         self._chords: np.ndarray | None = None
         self._time_s = np.nan
+        self._seen_s = np.nan
 
     def update(self, image: np.ndarray, time_s: float) -> MarkerSet:
         """Markers in an 8-bit BGR image taken at `time_s`; nothing is carried over from an earlier frame."""
-        if self._chords is None and not self._start(image):
+        # What comes back after a while may lie the other way round: head and tail are told apart anew.
+        forgotten = time_s - self._seen_s > FORGET_AFTER_S
+        if (self._chords is None or forgotten) and not self._start(image):
             return MarkerSet.lost()
         step_s = time_s - self._time_s if np.isfinite(self._time_s) else 0.0
         predicted = self._positions + self._velocities * step_s
@@ -133,6 +137,7 @@ class MomentTracker:
         self._positions = markers.positions
         self._last_seen[found] = markers.positions[found]
         self._time_s = time_s
+        self._seen_s = time_s if found.any() else self._seen_s
         for number, measurement in enumerate(measured):
             if measurement is not None:
                 memory = AREA_MEMORY if found[number] else AREA_MEMORY_IN_DOUBT

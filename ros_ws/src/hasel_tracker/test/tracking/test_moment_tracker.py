@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -70,6 +72,21 @@ def test_reflection_across_a_marker_is_refused_or_harmless(length_px, width_px):
         lost += not markers.found[2]
         assert not markers.found[2] or np.abs(markers.positions[2] - frame.markers_px[2]).max() < 1.0
     assert 1 <= lost <= 9
+
+
+@pytest.mark.parametrize(("away_s", "kept"), [(0.3, False), (1.5, True)])
+def test_swimmer_put_back_the_other_way_round(renderer, away_s, kept):
+    """Taken out for over a second and put back turned round, its head is found anew; a short gap keeps the order."""
+    turned = Renderer(renderer.motion, replace(renderer.view, roll_rad=np.pi)).frame(0.2)
+    tracker = MomentTracker()
+    before = renderer.frame(0.0)
+    tracker.update(before.image, 0.0)
+    for time_s in np.arange(0.05, away_s, 0.05):
+        assert not tracker.update(np.full_like(before.image, 190), time_s).found.any()
+    markers = tracker.update(turned.image, away_s)
+    assert markers.found.all()
+    head_is_head = np.abs(markers.positions[0] - turned.markers_px[0]).max() < 0.5
+    assert bool(head_is_head) is kept
 
 
 def test_dropped_frames_do_not_lose_a_fast_marker(frames):

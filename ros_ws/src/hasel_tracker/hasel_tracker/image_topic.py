@@ -1,0 +1,49 @@
+"""Frames from an image topic of another node."""
+
+import time
+from collections.abc import Callable
+
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import CompressedImage, Image
+
+from hasel_tracker.errors import TrackerError
+from hasel_tracker.live.live_tracker import LiveTracker
+from hasel_tracker.sources.frame import Frame
+from hasel_tracker.sources.image_message import image_of
+
+LOOK_PERIOD_S = 0.2
+
+
+class ImageTopic:
+    """Puts the images of `topic` into the queue of the live tracker, as soon as someone publishes them."""
+
+    def __init__(self, node: Node, topic: str, live: Callable[[], LiveTracker]) -> None:
+        self._node = node
+        self._topic = topic
+        self._live = live
+        self._first_stamp_ns: int | None = None
+        self._waiting = node.create_timer(LOOK_PERIOD_S, self._subscribe)
+
+    def _subscribe(self) -> None:
+        """Subscribe reliably if the images are sent so: best effort loses most large images."""
+        publishers = self._node.get_publishers_info_by_topic(self._topic)
+        if not publishers:
+            return
+        self._waiting.cancel()
+        reliable = all(each.qos_profile.reliability == ReliabilityPolicy.RELIABLE for each in publishers)
+        policy = ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT
+        kind = CompressedImage if self._topic.endswith("compressed") else Image
+        self._node.create_subscription(kind, self._topic, self._take, QoSProfile(depth=5, reliability=policy))
+
+    def _take(self, message: Image | CompressedImage) -> None:
+        stamp_ns = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
+        stamp_ns = stamp_ns or time.time_ns()
+        self._first_stamp_ns = self._first_stamp_ns or stamp_ns
+        try:
+            image = image_of(message)
+        except TrackerError as error:
+            self._live().fault = str(error)
+            return
+        time_s = (stamp_ns - self._first_stamp_ns) * 1e-9
+        self._live().queue.put(Frame(0, time_s, image=image, stamp_ns=stamp_ns))
