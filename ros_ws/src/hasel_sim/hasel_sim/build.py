@@ -29,7 +29,7 @@ from hasel_sim.mesh.sites import Sites, body_sites, point_sites, skin_sites
 from hasel_sim.model import Model
 from hasel_sim.model.description import RectangleBody, SwimmerBody
 
-_OUTLINE_STEP = 3e-5
+_OUTLINE_STEP = 3e-6
 """Step [1] of the central differences by an outline coefficient."""
 
 

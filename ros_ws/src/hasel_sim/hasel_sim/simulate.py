@@ -93,7 +93,9 @@ def slope_by_observation(prepared: PreparedRun, name: str, markers, lines) -> np
         return np.zeros(len(time))
     more, less, width = difference_points(prepared.declared(name), model.parameters[name].value)
     above, below = (
-        observe(time, markers, lines, prepared.observed_by, model.effect_values({**model.values, name: value}))
+        observe(
+            time, markers, lines, prepared.observed_by, model.effect_values({**model.values, name: value})
+        )
         for value in (more, less)
     )
     return (above - below) / width

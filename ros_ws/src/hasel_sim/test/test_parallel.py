@@ -46,8 +46,10 @@ def test_a_dask_scheduler_gives_the_same(swimmer, boxes):
     """A cluster on this machine."""
     from distributed import LocalCluster
 
-    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
-        with executor(scheduler=cluster.scheduler_address) as pool:
-            found = simulate_all(pool, swimmer, [boxes(duration=0.1)])
+    with (
+        LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster,
+        executor(scheduler=cluster.scheduler_address) as pool,
+    ):
+        found = simulate_all(pool, swimmer, [boxes(duration=0.1)])
     assert found[0].sin_theta == pytest.approx(simulate(swimmer, boxes(duration=0.1)).sin_theta, abs=1e-9)
     assert np.isfinite(found[0].sin_theta).all()

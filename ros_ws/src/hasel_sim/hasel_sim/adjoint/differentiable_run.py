@@ -133,7 +133,7 @@ class _Angle(torch.autograd.Function):
         expected = (len(prepared.plan.coefficients), 2)
         if tuple(contraction.shape) != expected:
             raise SimulationError(
-                f"the contraction has the shape {tuple(contraction.shape)}; expected {expected}, one row per time step: "
+                f"the contraction has the shape {tuple(contraction.shape)}; expected {expected}, one row per step: "
                 "give it at balance_times"
             )
         ctx.trajectory = follow(prepared, contraction.detach().numpy())

@@ -66,8 +66,8 @@ def start_of_motion(
 def _held(system: System, drive: DriveState, shape: np.ndarray) -> tuple[np.ndarray, Linearisation]:
     if shape.shape != system.nodes.shape:
         raise SimulationError(
-            f"the initial shape has the size {shape.shape}; expected {system.nodes.shape}, one position per node: take it "
-            "from a simulation with the same body and mesh density"
+            f"the initial shape has the size {shape.shape}; expected {system.nodes.shape}, one position per node: take "
+            "it from a simulation with the same body and mesh density"
         )
     position = shape.copy()
     position[: system.held] = system.nodes[: system.held]

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import torch
-
 from hasel_sim.adjoint import DifferentiableRun
 from hasel_sim.errors import ModelError, SimulationError
 from hasel_sim.simulate import simulate
@@ -71,7 +70,9 @@ def test_gradient_by_every_parameter_agrees_with_the_forward_sensitivities(swimm
     expected = weights.numpy() @ forward.slopes
     scale = np.abs(weights.numpy()[:, None] * forward.slopes).sum(axis=0)
     assert np.abs(values.grad.numpy() - expected).max() > 0
-    assert np.all(np.abs(values.grad.numpy() - expected) <= 1e-6 * scale), dict(zip(names, scale, strict=True))
+    assert np.all(np.abs(values.grad.numpy() - expected) <= 1e-6 * scale), dict(
+        zip(names, scale, strict=True)
+    )
 
 
 def test_the_angle_is_that_of_simulate(swimmer, boxes):
@@ -91,7 +92,7 @@ def test_gradient_by_the_outline_agrees_with_differences(effects, swimmer, boxes
     (run.angle(outline=outline) * weights).sum().backward()
     for index in range(len(outline)):
         expected = _central_difference(
-            lambda o: (run.angle(outline=o) * weights).sum(), outline.detach(), index, 1e-3
+            lambda o: (run.angle(outline=o) * weights).sum(), outline.detach(), index, 3e-4
         )
         assert float(outline.grad[index]) == pytest.approx(expected, rel=1e-6)
 
@@ -107,9 +108,7 @@ def test_the_start_in_equilibrium_is_differentiated_too(rectangle, tip_force):
     differentiable = DifferentiableRun(model, run, ["tip_force.force"])
     values = differentiable.values().requires_grad_()
     differentiable.angle(values=values).sum().backward()
-    expected = _central_difference(
-        lambda v: differentiable.angle(values=v).sum(), values.detach(), 0, 1e-3
-    )
+    expected = _central_difference(lambda v: differentiable.angle(values=v).sum(), values.detach(), 0, 1e-3)
     assert float(values.grad[0]) == pytest.approx(expected, rel=1e-6)
     forward = simulate(model, run, ["tip_force.force"]).slopes.sum()
     assert forward == pytest.approx(expected, rel=1e-6)

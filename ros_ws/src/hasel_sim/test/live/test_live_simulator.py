@@ -153,6 +153,18 @@ def test_a_gap_is_bridged_under_the_voltage_held(swimmer):
     assert np.abs(heard - whole(swimmer, stamps, voltage)[kept]).max() < 1e-6
 
 
+def test_an_unknown_voltage_leaves_the_last_in_force(swimmer):
+    """A supply that is not connected says NaN; the body moves on, and it is said."""
+    stamps, voltage = frames(0.5, 0.5)
+    unknown = voltage.copy()
+    unknown[20:30] = np.nan
+    simulator = LiveSimulator(swimmer)
+    answers = [simulator.receive(int(s), v) for s, v in zip(stamps, unknown, strict=True)]
+    assert sum("does not know" in answer.sentence for answer in answers) == 10
+    heard = [angle.sin_theta for answer in answers for angle in answer.angles]
+    assert heard == list(live(LiveSimulator(swimmer), stamps, voltage).values())
+
+
 def test_a_long_gap_starts_from_rest(swimmer):
     """After a jump in the stamps the angles are those of a fresh run."""
     stamps, voltage = frames(2.0, 0.3)

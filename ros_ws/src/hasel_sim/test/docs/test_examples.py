@@ -1,0 +1,47 @@
+"""The documented examples do what they say."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hasel_sim.mesh.bodies import half_height
+
+EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
+
+
+@pytest.fixture
+def example(monkeypatch):
+    """Loads an example as a module."""
+
+    def load(name: str):
+        specification = importlib.util.spec_from_file_location(name, EXAMPLES / f"{name}.py")
+        module = importlib.util.module_from_spec(specification)
+        monkeypatch.setitem(importlib.import_module("sys").modules, name, module)
+        specification.loader.exec_module(module)
+        return module
+
+    return load
+
+
+def test_the_best_waveform_alternates_and_swings_at_least_as_far_as_the_box(example):
+    """From pulses at the wrong time, twice the swing; the muscles end up half a period apart."""
+    best = example("optimise_waveform").optimise(3.5)
+    assert best.angle_after > 1.8 * best.angle_before
+    assert best.angle_after >= best.angle_box
+    upper, upper_for, lower, lower_for = best.switching
+    assert (lower + lower_for / 2) - (upper + upper_for / 2) == pytest.approx(0.5, abs=0.1)
+    assert "rises from" in str(best)
+
+
+def test_the_best_outline_bends_more_with_the_same_area(example):
+    """Ten per cent more, nowhere higher than before, nowhere thinner than allowed."""
+    module = example("optimise_outline")
+    best = module.optimise(iterations=8)
+    assert best.angle_after > 1.1 * best.angle_before
+    start = np.array([0.3, 5.13847447, -13.84583811, 19.51736782, -18.6011192, 7.61111502])
+    s = np.linspace(0, 1, 201)
+    before, after = half_height(start, 1.0, s), half_height(best.coefficients, 1.0, s)
+    assert np.trapezoid(after, s) == pytest.approx(np.trapezoid(before, s), rel=1e-3)
+    assert after.max() < before.max() + 0.01
+    assert after.min() > module.LOWEST - 0.01
