@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-
 from hasel_sim.effects.base import Effect, EffectParameter
 from hasel_sim.effects.registry import catalogue, find_effects
 from hasel_sim.errors import ModelError
@@ -43,11 +42,13 @@ def _fits(model: Model, effect: Effect) -> bool:
 
 
 def starts(effect: Effect) -> list[Start]:
-    """One start for every value of the effect's first nuisance (a relaxation time, a position), else one."""
+    """Two starts for an effect with a nuisance (a relaxation time, a position), a small and a large one; else one."""
     nuisance = next((p for p in effect.parameters if p.scan), None)
     if nuisance is None:
         return [_start(effect, {})]
-    return [_start(effect, {nuisance.name: value}) for value in nuisance.scan]
+    count = len(nuisance.scan)
+    chosen = {nuisance.scan[count // 4], nuisance.scan[(3 * count) // 4]}
+    return [_start(effect, {nuisance.name: value}) for value in sorted(chosen)]
 
 
 def _start(effect: Effect, fixed: dict[str, float]) -> Start:

@@ -3,19 +3,22 @@
 from collections.abc import Callable, Sequence
 
 from hasel_sim.effects.base import Effect
+
 from hasel_sysid.diagnosis.candidates import starts
 from hasel_sysid.diagnosis.trial import Trial, Trials
 
-_ROUNDS = (12, 6)
+_ROUNDS = (9, 5)
 """How many effects go on to the second and to the third round."""
 
 Progress = Callable[[str, float], None]
 
 
-def search(trials: Trials, effects: Sequence[Effect], progress: Progress | None = None) -> tuple[list[Trial], list[Trial]]:
+def search(
+    trials: Trials, effects: Sequence[Effect], progress: Progress | None = None
+) -> tuple[list[Trial], list[Trial]]:
     """The best trial of every effect, best first, and the first trial at every start.
 
-    The first round tries every start of every effect; later rounds take further steps with the effects that promise most.
+    The first round tries every start of every effect; later rounds take further steps with the most promising.
     """
     every = [start for effect in effects for start in starts(effect)]
     first: list[Trial] = []
@@ -23,7 +26,9 @@ def search(trials: Trials, effects: Sequence[Effect], progress: Progress | None 
     for begin in range(0, len(every), batch):
         first += trials.first(every[begin : begin + batch])
         if progress:
-            progress(f"tried {len(first)} of {len(every)} starts", min(1.0, (begin + batch) / len(every)) * 0.6)
+            progress(
+                f"tried {len(first)} of {len(every)} starts", min(1.0, (begin + batch) / len(every)) * 0.6
+            )
     best = _best_of_each(first)
     for number, keep in enumerate(_ROUNDS):
         best = sorted(trials.further(best[:keep]) + best[keep:], key=_promise)

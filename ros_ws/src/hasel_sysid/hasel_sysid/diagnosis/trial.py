@@ -1,13 +1,13 @@
 """Trying an effect: Gauss-Newton steps on drafts of the model, corrected for what a draft gets wrong."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import lsq_linear
-
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
+from scipy.optimize import lsq_linear
+
 from hasel_sysid.diagnosis.candidates import Start
 from hasel_sysid.draft import draft
 from hasel_sysid.problem import Evaluation, Problem
@@ -110,9 +110,7 @@ def _bounded_step(
 
 
 def _shortened(trial: Trial) -> Trial:
-    """Half the step, for a trial whose full step made things worse; what it predicts is what it has."""
+    """Half the step, for a trial whose full step made things worse, and half of what that promised."""
     values = trial.model.values
     half = {name: 0.5 * (values[name] + trial.step[name]) for name in trial.names}
-    return Trial(
-        trial.start, trial.model, trial.names, trial.residual, trial.jacobian, half, 0.5 * (trial.predicted + trial.sum_of_squares)
-    )
+    return replace(trial, step=half, predicted=0.5 * (trial.predicted + trial.sum_of_squares))

@@ -1,0 +1,103 @@
+"""Diagnosis: which effect, if any, explains what a fitted model leaves; no data but the fitted runs are used."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from hasel_sim.errors import SimulationError
+
+from hasel_sysid.diagnosis import judgement
+from hasel_sysid.diagnosis.candidates import candidate_effects
+from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
+from hasel_sysid.diagnosis.result import Diagnosis
+from hasel_sysid.diagnosis.search import search
+from hasel_sysid.diagnosis.signature import Signature, signature
+from hasel_sysid.diagnosis.significance import largest_drops_by_noise, p_value
+from hasel_sysid.diagnosis.suspects import numerical_suspects
+from hasel_sysid.diagnosis.trial import Trial, Trials
+from hasel_sysid.fit import FitResult, fit_least_squares
+from hasel_sysid.noise import NoiseModel, estimate_noise
+from hasel_sysid.problem import Problem
+
+_FINALISTS = 3
+_CLOSE = 0.05
+"""A trial within this share of the baseline's sum of squares of the best one is refitted in full."""
+
+Progress = Callable[[str, float], None]
+
+
+def diagnose(
+    problem: Problem, fit: FitResult, only: Sequence[str] | None = None, progress: Progress | None = None
+) -> Diagnosis:
+    """Rank every effect of the catalogue (or the named ones) as an explanation of what `fit` leaves.
+
+    Raises ModelError for an unknown effect.
+    """
+    effects = candidate_effects(fit.model, tuple(only) if only else None)
+    trials = Trials(problem, fit.evaluation)
+    best, first = search(trials, effects, progress)
+    finals = _finals(problem, fit, best, progress)
+    signatures = {t.start.effect.id: _signature(t, trials, fit) for t in reversed(first)}
+
+    noise = _noise(fit, finals)
+    base = fit.evaluation
+    by_noise = largest_drops_by_noise(
+        base.jacobian, [s.columns for s in signatures.values()], noise, base.runs
+    )
+    squares = {t.start.effect.id: min(t.predicted, t.sum_of_squares) for t in best}
+    squares.update({effect: final.evaluation.sum_of_squares for effect, final in finals.items()})
+    lowest = min([base.sum_of_squares, *(final.evaluation.sum_of_squares for final in finals.values())])
+    floor = judgement.expected_squares(base.jacobian, noise, base.runs)
+    columns = np.column_stack([base.jacobian, regressors(base, problem.experiments)])
+    learned = unexplained_by(columns, base.residual)
+    chance = p_value(base.sum_of_squares - lowest, by_noise)
+    context = judgement.Context(fit, finals, signatures, squares, noise, floor, chance)
+    probabilities, none = judgement.probabilities(context)
+    findings = [
+        replace(judgement.finding(context, effect), probability=probabilities.get(effect.id, 0.0))
+        for effect in effects
+    ]
+    findings.sort(key=lambda finding: (-finding.probability, squares.get(finding.effect, np.inf)))
+    return Diagnosis(
+        findings,
+        judgement.groups(context),
+        noise,
+        chance,
+        float(np.clip((base.sum_of_squares - lowest) / context.excess, 0, 1)),
+        float(np.clip((base.sum_of_squares - learned @ learned) / context.excess, 0, 1)),
+        none,
+        numerical_suspects(problem, fit, context.excess) if chance < judgement.SIGNIFICANT else {},
+    )
+
+
+def _finals(
+    problem: Problem, fit: FitResult, best: list[Trial], progress: Progress | None
+) -> dict[str, FitResult]:
+    """Full fits of the few most promising effects, on the model itself."""
+    finals: dict[str, FitResult] = {}
+    reach = best[0].predicted + _CLOSE * fit.evaluation.sum_of_squares if best else 0.0
+    for number, trial in enumerate([t for t in best if t.predicted <= reach][:_FINALISTS]):
+        effect = trial.start.effect
+        model = fit.model.with_effects(effect.source or effect.id).with_values(trial.step)
+        if progress:
+            progress(f"refitting with {effect.id}", 0.8 + 0.2 * number / _FINALISTS)
+        try:
+            finals[effect.id] = fit_least_squares(
+                problem, model, tolerance=1e-3, most_evaluations=8, drafts=False
+            )
+        except SimulationError:
+            continue
+    return finals
+
+
+def _signature(trial: Trial, trials: Trials, fit: FitResult) -> Signature:
+    return signature(trial, fit.evaluation.residual, trials.base.jacobian, trial.start.typical)
+
+
+def _noise(fit: FitResult, finals: dict[str, FitResult]) -> NoiseModel:
+    """Noise from what neither the best model nor a learned model of its residual explains."""
+    best = min([fit, *finals.values()], key=lambda result: result.evaluation.sum_of_squares)
+    evaluation = best.evaluation
+    columns = np.column_stack([evaluation.jacobian, regressors(evaluation, None)])
+    left = unexplained_by(columns, evaluation.residual)
+    return estimate_noise(left, evaluation.runs, columns, "what the best model and a learned residual leave")

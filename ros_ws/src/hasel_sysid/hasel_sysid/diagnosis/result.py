@@ -1,0 +1,93 @@
+"""What a diagnosis says: one finding per effect, the groups that look alike, and a verdict."""
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from hasel_sysid.fit.result import FitResult
+from hasel_sysid.noise import NoiseModel
+
+
+class Verdict(str, Enum):
+    """The five things that can be said of an effect."""
+
+    MISSING = "missing"
+    MISSING_IF_SIZE_MATTERS = "missing if its size matters"
+    ABSENT = "absent"
+    INCONCLUSIVE = "inconclusive"
+    CANNOT_BE_SEEN = "cannot be seen"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What is said of one effect.
+
+    expected: its values in SI units (name: value, standard error); error_removed: share of the error above the noise
+    that it explains, 0 to 1; swallowed: share of its signature that the fitted parameters imitate; visible_above: the
+    smallest size that these recordings would have shown, in the unit of its first parameter.
+    """
+
+    effect: str
+    verdict: Verdict
+    probability: float
+    error_removed: float
+    expected: dict[str, tuple[float, float]]
+    units: dict[str, str]
+    swallowed: float
+    visible_above: float
+    fit: FitResult | None = None
+
+    def __str__(self) -> str:
+        first = next(iter(self.expected), None)
+        unit = "" if first is None or self.units[first] == "1" else f" {self.units[first]}"
+        value = "" if first is None else f" of {self.expected[first][0]:.3g}{unit}"
+        if self.verdict is Verdict.MISSING:
+            return (
+                f"{self.effect} is missing (probability {self.probability:.0%}): a size{value} removes "
+                f"{self.error_removed:.0%} of the error above the noise."
+            )
+        if self.verdict is Verdict.MISSING_IF_SIZE_MATTERS:
+            share = f"{self.error_removed:.0%} of the error"
+            return f"{self.effect} may be there with a size{value}, but removes only {share}."
+        if self.verdict is Verdict.ABSENT:
+            return f"{self.effect} is absent: above {self.visible_above:.2g}{unit} it would have been seen."
+        if self.verdict is Verdict.INCONCLUSIVE:
+            limit = f"{self.visible_above:.2g}{unit}"
+            return f"{self.effect} is undecided: these recordings would show it only above {limit}."
+        return (
+            f"{self.effect} cannot be seen: the fitted parameters imitate {self.swallowed:.0%} of it, and what is left "
+            f"would show only above {self.visible_above:.2g}{unit}."
+        )
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """What is said of all of them.
+
+    findings: most probable first; groups: effects that these recordings cannot tell apart; p_value: chance that noise
+    alone makes the best effect look this good; explained: share of the error above the noise that it removes; ceiling:
+    share that a small learned model of the residual removes; suspects: share removed by finer numerics, by name.
+    """
+
+    findings: list[Finding]
+    groups: list[tuple[str, ...]]
+    noise: NoiseModel
+    p_value: float
+    explained: float
+    ceiling: float
+    probability_none: float
+    suspects: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def best(self) -> Finding | None:
+        """The most probable effect."""
+        return self.findings[0] if self.findings else None
+
+    def finding(self, effect: str) -> Finding:
+        """What is said of one effect."""
+        return next(finding for finding in self.findings if finding.effect == effect)
+
+    def __str__(self) -> str:
+        lines = [f"Noise floor {self.noise.mean_absolute:.4f} mean |Δ sin θ|: {self.noise}."]
+        lines += [str(finding) for finding in self.findings]
+        lines += [f"These recordings cannot tell apart: {', '.join(group)}." for group in self.groups]
+        return "\n".join(lines)

@@ -1,0 +1,41 @@
+"""Could noise alone look like this? Thresholds on the largest of all candidates' scores, under correlated noise."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hasel_sysid.noise import NoiseModel
+
+_DRAWS = 500
+
+
+def orthonormal(columns: np.ndarray) -> np.ndarray:
+    """An orthonormal basis of the span of columns [frames, n]."""
+    if columns.shape[1] == 0:
+        return columns
+    scale = np.linalg.norm(columns, axis=0)
+    left, strength, _ = np.linalg.svd(columns[:, scale > 0] / scale[scale > 0], full_matrices=False)
+    return left[:, strength > 1e-8 * strength[0]] if len(strength) else left
+
+
+def largest_drops_by_noise(
+    fitted: np.ndarray, candidates: Sequence[np.ndarray], noise: NoiseModel, runs: np.ndarray, seed: int = 0
+) -> np.ndarray:
+    """How much the best candidate lowers the sum of squares when there is only noise, for many draws of the noise.
+
+    fitted [frames, n]: derivatives of the fitted parameters; candidates: signatures [frames, 1 or more] of each effect,
+    linearised. Returns one largest drop per draw.
+    """
+    basis = orthonormal(fitted)
+    draws = noise.sample(runs, _DRAWS, np.random.default_rng(seed))
+    draws -= basis @ (basis.T @ draws)
+    largest = np.zeros(draws.shape[1])
+    for columns in candidates:
+        direction = orthonormal(columns - basis @ (basis.T @ columns))
+        largest = np.maximum(largest, ((direction.T @ draws) ** 2).sum(axis=0))
+    return largest
+
+
+def p_value(drop: float, by_noise: np.ndarray) -> float:
+    """Share of noise draws with at least this drop of the sum of squares (never exactly zero)."""
+    return float((1 + np.sum(by_noise >= drop)) / (1 + len(by_noise)))

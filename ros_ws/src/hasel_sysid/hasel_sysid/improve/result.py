@@ -1,0 +1,115 @@
+"""The stages of an improvement and its verdict."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+from hasel_sysid.diagnosis import Diagnosis
+from hasel_sysid.fit import FitResult
+
+
+class Status(str, Enum):
+    """How an improvement ended."""
+
+    NOTHING_MISSING = "nothing_missing"
+    EXPLAINED = "explained"
+    PARTLY_EXPLAINED = "partly_explained"
+    UNEXPLAINED = "unexplained"
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A model of the ladder: its effects beyond the first model's, its fit, and its error on unseen runs.
+
+    mae_validation: mean |Δ sin θ| on runs that were never fitted; None where none were given. diagnosis: of what this
+    stage leaves; None for a last stage that was not diagnosed.
+    """
+
+    effects: tuple[str, ...]
+    fit: FitResult
+    mae_validation: float | None
+    diagnosis: Diagnosis | None = None
+
+    @property
+    def mae_fit(self) -> float:
+        """Mean |Δ sin θ| on the fitted runs."""
+        return self.fit.mean_absolute_error
+
+    def __str__(self) -> str:
+        what = "baseline" if not self.effects else " + ".join(("baseline", *self.effects))
+        unseen = "" if self.mae_validation is None else f", {self.mae_validation:.5f} on unseen runs"
+        return f"{what}: mean |Δ sin θ| {self.mae_fit:.5f} on fitted runs{unseen}"
+
+
+@dataclass(frozen=True)
+class Improvement:
+    """stages: baseline first; missing: effects found missing; unexplained_fraction: of the baseline's error above the
+    noise, in squares; reason: why the improvement stopped, in a sentence.
+    """
+
+    stages: list[Stage]
+    status: Status
+    missing: tuple[str, ...]
+    unexplained_fraction: float
+    noise_floor: float
+    reason: str
+
+    @property
+    def model(self):
+        """The last accepted model."""
+        return self.stages[-1].fit.model
+
+    @property
+    def diagnosis(self) -> Diagnosis:
+        """The first diagnosis, on the baseline."""
+        return self.stages[0].diagnosis
+
+    def to_json(self) -> dict:
+        """The machine-readable form that `improve --json` writes."""
+        return {
+            "noise_floor": self.noise_floor,
+            "stages": [_stage(stage) for stage in self.stages],
+            "ranking": [
+                {
+                    "effect": finding.effect,
+                    "probability": finding.probability,
+                    "error_removed": finding.error_removed,
+                    "verdict": finding.verdict.value,
+                    "expected": {
+                        name: {"value": value, "std": _finite(error), "unit": finding.units[name]}
+                        for name, (value, error) in finding.expected.items()
+                    },
+                    "swallowed": finding.swallowed,
+                    "visible_above": _finite(finding.visible_above),
+                }
+                for finding in self.diagnosis.findings
+            ],
+            "indistinguishable": [list(group) for group in self.diagnosis.groups],
+            "suspects": self.diagnosis.suspects,
+            "verdict": {
+                "status": self.status.value,
+                "missing": list(self.missing),
+                "unexplained_fraction": self.unexplained_fraction,
+                "probability_none_of_these": self.diagnosis.probability_none,
+                "explainable_at_all": self.diagnosis.ceiling,
+                "reason": self.reason,
+            },
+        }
+
+    def __str__(self) -> str:
+        return "\n".join([*map(str, self.stages), self.reason])
+
+
+def _finite(number: float) -> float | None:
+    return number if number == number and abs(number) != float("inf") else None
+
+
+def _stage(stage: Stage) -> dict:
+    return {
+        "effects": list(stage.effects),
+        "parameters": {
+            name: {"value": p.value, "std": p.standard_error, "unit": p.unit}
+            for name, p in stage.fit.model.parameters.items()
+        },
+        "mae_fit": stage.mae_fit,
+        "mae_validation": stage.mae_validation,
+    }

@@ -1,0 +1,6 @@
+"""The next experiment that would best tell the remaining explanations apart."""
+
+from hasel_sysid.suggest.manoeuvre import Manoeuvre, manoeuvres
+from hasel_sysid.suggest.suggest import Suggestion, rivals, suggest
+
+__all__ = ["Manoeuvre", "Suggestion", "manoeuvres", "rivals", "suggest"]

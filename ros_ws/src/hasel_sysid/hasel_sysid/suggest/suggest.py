@@ -1,0 +1,91 @@
+"""Which experiment would make the remaining explanations differ most, in units of the noise."""
+
+from collections.abc import Callable
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from hasel_sim.errors import SimulationError
+from hasel_sim.model import Model
+from hasel_sim.simulate import simulate
+
+from hasel_sysid.diagnosis import Diagnosis
+from hasel_sysid.draft import draft
+from hasel_sysid.errors import SysidError
+from hasel_sysid.noise import NoiseModel
+from hasel_sysid.suggest.manoeuvre import Manoeuvre, manoeuvres
+
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True)
+class Suggestion:
+    """difference: rms difference between the two most similar of the remaining explanations, in units of the noise;
+    pairs: the same for every pair of them.
+    """
+
+    manoeuvre: Manoeuvre
+    difference: float
+    pairs: dict[tuple[str, str], float]
+
+    def __str__(self) -> str:
+        names = sorted({name for pair in self.pairs for name in pair})
+        return f"{self.manoeuvre}: {', '.join(names)} would differ by {self.difference:.1f} times the noise."
+
+
+def rivals(diagnosis: Diagnosis) -> dict[str, Model]:
+    """The refitted models of the explanations that are still in the running, at least two.
+
+    Raises SysidError when there are not two to tell apart.
+    """
+    fitted = {finding.effect: finding.fit.model for finding in diagnosis.findings if finding.fit is not None}
+    if len(fitted) < 2:
+        raise SysidError(
+            "fewer than two explanations are left, so there is nothing to tell apart; "
+            "name two with --effects to compare them all the same"
+        )
+    return fitted
+
+
+def suggest(
+    pool: Executor,
+    candidates: dict[str, Model],
+    noise: NoiseModel,
+    highest: float,
+    progress: Progress | None = None,
+) -> list[Suggestion]:
+    """Rank all safe experiments, best first.
+
+    candidates: fitted models by the effect that each adds; highest: largest voltage allowed [V]. An experiment is as good
+    as it is for the pair of explanations that it separates least.
+    """
+    levels = next(iter(candidates.values())).levels
+    library = manoeuvres(levels, highest)
+    if not library:
+        raise SysidError(
+            f"no experiment is possible: the highest voltage allowed is {highest:g} V and the lowest known one "
+            f"{levels[0]:g} V; raise --max-voltage"
+        )
+    futures = [
+        {name: pool.submit(simulate, draft(model), manoeuvre.run()) for name, model in candidates.items()}
+        for manoeuvre in library
+    ]
+    found = []
+    for number, (manoeuvre, pending) in enumerate(zip(library, futures, strict=True)):
+        try:
+            series = {name: future.result().sin_theta for name, future in pending.items()}
+        except SimulationError:
+            continue
+        found.append(_suggestion(manoeuvre, series, noise))
+        if progress:
+            progress(str(manoeuvre), (number + 1) / len(library))
+    return sorted(found, key=lambda suggestion: -suggestion.difference)
+
+
+def _suggestion(manoeuvre: Manoeuvre, series: dict[str, np.ndarray], noise: NoiseModel) -> Suggestion:
+    pairs = {}
+    for one, other in combinations(sorted(series), 2):
+        difference = series[one] - series[other]
+        pairs[(one, other)] = float(np.std(difference) / noise.standard_deviation)
+    return Suggestion(manoeuvre, min(pairs.values()), pairs)
