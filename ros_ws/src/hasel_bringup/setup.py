@@ -22,6 +22,7 @@ setup(
             "bench = hasel_bringup.bench:main",
             "bench_hidden = hasel_bringup.bench_hidden.command:main",
             "replay = hasel_bringup.replay.command:main",
+            "virtual_rig = hasel_bringup.virtual_rig.command:main",
         ]
     },
 )

@@ -78,7 +78,8 @@ class LiveSimulator:
     def receive(self, stamp_ns: int, voltage: np.ndarray) -> LiveAnswer:
         """Move on to a state message's stamp [ns]; its voltage [V] [2] holds from there on.
 
-        A message out of order changes nothing. When the motion cannot be followed, the next message starts from rest.
+        A message out of order changes nothing; a voltage that is not known (NaN) leaves the last one in force. When the
+        motion cannot be followed, the next message starts from rest.
         """
         verdict = self.order.judge(stamp_ns)
         if verdict.arrival == Arrival.HELD:
@@ -90,9 +91,13 @@ class LiveSimulator:
         except SimulationError as error:
             self.restart()
             return LiveAnswer(verdict.arrival, sentence=f"{error}; the next state message starts from rest")
-        self._drive.hold(self._time, np.asarray(voltage, dtype=float))
+        sentence = verdict.sentence
+        if np.all(np.isfinite(voltage)):
+            self._drive.hold(self._time, np.asarray(voltage, dtype=float))
+        else:
+            sentence = sentence or "the supply does not know its voltage: the last one is held"
         angles = tuple(LiveAngle(stamp, sine) for stamp, sine in self._angles.ready())
-        return LiveAnswer(verdict.arrival, angles, simulated, verdict.sentence)
+        return LiveAnswer(verdict.arrival, angles, simulated, sentence)
 
     def restart(self) -> None:
         """Let the next message start a run from rest."""

@@ -1,0 +1,62 @@
+"""The swimmer and its camera, simulated: hears the supply's state and publishes a measured angle."""
+
+import numpy as np
+from hasel_interfaces.msg import BendingAngle, SupplyState
+from hasel_recording.topics import MEASURED, STATE
+from hasel_sim.live.live_model import live_model
+from hasel_sim.live.live_simulator import LiveSimulator
+from hasel_sim.node_parameters import NodeParameter, declare, words
+from hasel_sim.simulator_messages import angle_message, to_nanoseconds
+from hasel_sim.simulator_node import EVERY_MESSAGE
+from rclpy.node import Node
+
+from hasel_bringup.virtual_rig.camera_noise import CameraNoise
+from hasel_bringup.virtual_rig.hidden import with_hidden
+
+PARAMETERS = (
+    NodeParameter("model", "swimmer", "model of the truth: its name or file"),
+    NodeParameter(
+        "hidden", [""], "what the truth has beyond the model, such as quadratic_drag.coefficient=0.25"
+    ),
+    NodeParameter("white_noise", 0.002, "noise of each frame by itself, rms of sin theta", "1", 0.0, 1.0),
+    NodeParameter(
+        "coloured_noise", 0.002, "noise shared by neighbouring frames, rms of sin theta", "1", 0.0, 1.0
+    ),
+    NodeParameter("correlation", 0.9, "of the coloured noise from frame to frame", "1", 0.0, 0.999),
+    NodeParameter("offset", 0.0, "what the camera reads on a straight body, as sin theta", "1", -1.0, 1.0),
+    NodeParameter("seed", 1, "of the noise", "1", 0, 2**31 - 1),
+    NodeParameter("frame_rate", 120.0, "most frames per second", "1/s", 1.0, 1000.0),
+)
+
+
+class VirtualBodyNode(Node):
+    """Publishes what a camera would see; nobody is told the hidden effects."""
+
+    def __init__(self) -> None:
+        super().__init__("hasel_virtual_body")
+        declare(self, PARAMETERS)
+        model, warning = live_model(self._value("model"))
+        if warning:
+            self.get_logger().warning(warning)
+        self._live = LiveSimulator(with_hidden(model, words(self, "hidden")))
+        noise = (self._value(name) for name in ("white_noise", "coloured_noise", "correlation", "seed"))
+        self._noise, self._offset = CameraNoise(*noise), self._value("offset")
+        self._spacing_ns = int(0.99e9 / self._value("frame_rate"))
+        self._last_ns = -(10**18)
+        self._angles = self.create_publisher(BendingAngle, MEASURED, EVERY_MESSAGE)
+        self.create_subscription(SupplyState, STATE, self._on_state, EVERY_MESSAGE)
+
+    def _value(self, name: str):
+        return self.get_parameter(name).value
+
+    def _on_state(self, state: SupplyState) -> None:
+        answer = self._live.receive(to_nanoseconds(state.header.stamp), np.array(state.commanded_voltage))
+        if answer.sentence:
+            self.get_logger().warning(answer.sentence)
+        for angle in answer.angles:
+            if 0 <= angle.stamp_ns - self._last_ns < self._spacing_ns:
+                continue
+            self._last_ns = angle.stamp_ns
+            seen = angle.sin_theta + self._offset + self._noise.next()
+            message = angle_message(angle.stamp_ns, float(np.clip(seen, -1.0, 1.0)), "camera")
+            self._angles.publish(message)
