@@ -3,20 +3,52 @@
 import numpy as np
 from numba import njit
 from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq
 
 
 def target_contraction(voltage: np.ndarray, levels: np.ndarray, amplitudes: np.ndarray) -> np.ndarray:
     """Contraction [1] aimed at for a voltage [V] of any shape, from the amplitudes at known levels [V].
 
-    Monotone between the levels (PCHIP; Fritsch and Carlson 1980), from 0 at 0 V; above the highest level it goes on
-    with the slope it has there.
+    Monotone between the levels (PCHIP; Fritsch and Carlson 1980); below the lowest, `_onset` of the lowest three, or a
+    straight line from 0 V where fewer are known; above the highest, on with the slope it has there.
     """
     if len(levels) == 0:
         return np.zeros_like(voltage, dtype=float)
-    curve = PchipInterpolator(np.concatenate([[0.0], levels]), np.concatenate([[0.0], amplitudes]))
     magnitude = np.abs(voltage)
-    beyond = np.maximum(magnitude - levels[-1], 0.0)
-    return curve(np.minimum(magnitude, levels[-1])) + beyond * float(curve(levels[-1], 1))
+    if len(levels) < 3:
+        levels, amplitudes = np.concatenate([[0.0], levels]), np.concatenate([[0.0], amplitudes])
+    curve = PchipInterpolator(levels, amplitudes)
+    inside = curve(np.clip(magnitude, levels[0], levels[-1]))
+    beyond = np.maximum(magnitude - levels[-1], 0.0) * float(curve(levels[-1], 1))
+    if levels[0] == 0.0:
+        return inside + beyond
+    threshold, exponent = _onset(levels[:3], amplitudes[:3])
+    share = np.clip((magnitude - threshold) / (levels[0] - threshold), 0.0, 1.0)
+    return inside * share**exponent + beyond
+
+
+def _onset(levels: np.ndarray, amplitudes: np.ndarray) -> tuple[float, float]:
+    """Threshold [V] and exponent of a = c (V - threshold)^exponent through three amplitudes.
+
+    A pouch zips only above a threshold voltage; a drive effect that lets the voltage sweep makes this visible. No
+    threshold where the amplitudes rise as V^exponent or more steeply; at most 0.8 of the lowest level.
+    """
+    growth = np.diff(np.log(np.maximum(amplitudes, 1e-9)))
+    if growth[0] <= 0.0:
+        return 0.0, 1.0
+
+    def excess(threshold: float) -> float:
+        spans = np.diff(np.log(levels - threshold))
+        return float(spans[0] * growth[1] - spans[1] * growth[0])
+
+    largest = 0.8 * levels[0]
+    if excess(0.0) >= 0.0:
+        threshold = 0.0
+    elif excess(largest) <= 0.0:
+        threshold = largest
+    else:
+        threshold = brentq(excess, 0.0, largest, xtol=1e-9, rtol=1e-14)
+    return threshold, float(growth[0] / np.diff(np.log(levels[:2] - threshold))[0])
 
 
 @njit(cache=True)
