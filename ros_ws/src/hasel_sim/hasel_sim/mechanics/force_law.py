@@ -28,7 +28,7 @@ class ForceLaw:
     ) -> None:
         self.effect, self.values, self.sites = effect, values, sites
         self._gravity = np.array(gravity)
-        self._reference = sites.value(reference)
+        self._reference, self._rest_tangent = sites.value(reference), sites.tangent(reference)
         self._slopes: dict[str, np.ndarray] = {}
 
     def _state(self, position, velocity, acceleration, drive) -> SiteState:
@@ -40,6 +40,7 @@ class ForceLaw:
             acceleration=self.sites.value(acceleration) if "acceleration" in depends else nothing,
             tangent=self.sites.tangent(position) if self.effect.sites == "skin" else nothing,
             reference=self._reference,
+            rest_tangent=self._rest_tangent,
             measure=self.sites.measure,
             voltage=drive.voltage,
             contraction=drive.contraction,
@@ -63,7 +64,7 @@ class ForceLaw:
         n, copies = len(self._reference), 4 * len(names)
         fields = {
             name: np.tile(getattr(state, name), (copies, 1))
-            for name in ("position", "velocity", "acceleration", "tangent", "reference")
+            for name in ("position", "velocity", "acceleration", "tangent", "reference", "rest_tangent")
         }
         for index, name in enumerate(names):
             for component in range(2):
