@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from hasel_sysid.diagnosis import Diagnosis
+from hasel_sysid.diagnosis import Diagnosis, Finding
 from hasel_sysid.fit import FitResult
 
 
@@ -42,7 +42,9 @@ class Stage:
 
 @dataclass(frozen=True)
 class Improvement:
-    """stages: baseline first; missing: effects found missing; unexplained_fraction: of the baseline's error above the
+    """All stages and what they come to.
+
+    stages: baseline first; missing: effects found missing; unexplained_fraction: of the baseline's error above the
     noise, in squares; reason: why the improvement stopped, in a sentence.
     """
 
@@ -66,25 +68,9 @@ class Improvement:
     def to_json(self) -> dict:
         """The machine-readable form that `improve --json` writes."""
         return {
+            **diagnosis_json(self.diagnosis),
             "noise_floor": self.noise_floor,
             "stages": [_stage(stage) for stage in self.stages],
-            "ranking": [
-                {
-                    "effect": finding.effect,
-                    "probability": finding.probability,
-                    "error_removed": finding.error_removed,
-                    "verdict": finding.verdict.value,
-                    "expected": {
-                        name: {"value": value, "std": _finite(error), "unit": finding.units[name]}
-                        for name, (value, error) in finding.expected.items()
-                    },
-                    "swallowed": finding.swallowed,
-                    "visible_above": _finite(finding.visible_above),
-                }
-                for finding in self.diagnosis.findings
-            ],
-            "indistinguishable": [list(group) for group in self.diagnosis.groups],
-            "suspects": self.diagnosis.suspects,
             "verdict": {
                 "status": self.status.value,
                 "missing": list(self.missing),
@@ -97,6 +83,31 @@ class Improvement:
 
     def __str__(self) -> str:
         return "\n".join([*map(str, self.stages), self.reason])
+
+
+def diagnosis_json(diagnosis: Diagnosis) -> dict:
+    """The machine-readable form of a diagnosis."""
+    return {
+        "noise_floor": diagnosis.noise.mean_absolute,
+        "ranking": [_ranked(finding) for finding in diagnosis.findings],
+        "indistinguishable": [list(group) for group in diagnosis.groups],
+        "suspects": diagnosis.suspects,
+    }
+
+
+def _ranked(finding: Finding) -> dict:
+    return {
+        "effect": finding.effect,
+        "probability": finding.probability,
+        "error_removed": finding.error_removed,
+        "verdict": finding.verdict.value,
+        "expected": {
+            name: {"value": value, "std": _finite(error), "unit": finding.units[name]}
+            for name, (value, error) in finding.expected.items()
+        },
+        "swallowed": finding.swallowed,
+        "visible_above": _finite(finding.visible_above),
+    }
 
 
 def _finite(number: float) -> float | None:

@@ -57,8 +57,8 @@ def suggest(
 ) -> list[Suggestion]:
     """Rank all safe experiments, best first.
 
-    candidates: fitted models by the effect that each adds; highest: largest voltage allowed [V]. An experiment is as good
-    as it is for the pair of explanations that it separates least.
+    candidates: fitted models by the effect that each adds; highest: largest voltage allowed [V]. An experiment is as
+    good as it is for the pair of explanations that it separates least.
     """
     levels = next(iter(candidates.values())).levels
     library = manoeuvres(levels, highest)

@@ -1,0 +1,113 @@
+"""`improve RECORDING…`: fit, diagnose, add, refit, and write what was found at every stage."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from pathlib import Path
+
+from hasel_sim.model import Model, save_model
+from hasel_sim.parallel import executor, simulate_all
+
+from hasel_sysid.command_line.json_file import write_json
+from hasel_sysid.command_line.ledger import Ledger
+from hasel_sysid.command_line.options import (
+    add_effects,
+    add_model,
+    add_recordings,
+    add_results,
+    add_workers,
+    chosen_model,
+    load_all,
+)
+from hasel_sysid.command_line.progress import part, progress_bar
+from hasel_sysid.command_line.running import run_command
+from hasel_sysid.command_line.shown import show
+from hasel_sysid.compare import Comparison, compare
+from hasel_sysid.compare.compare import comparison_of
+from hasel_sysid.dataset import Experiment, prepared
+from hasel_sysid.improve import Improvement, Stage, improve
+from hasel_sysid.problem import Problem
+from hasel_sysid.report.from_diagnosis import improvement_content
+from hasel_sysid.report.pictures import stages_picture, waterfall_picture
+from hasel_sysid.report.write import write_report
+
+MODEL_FILE = "improved_model.yaml"
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command's options."""
+    options = argparse.ArgumentParser(
+        prog="improve",
+        description="Add missing effects until what is left is noise or nothing known explains it.",
+    )
+    add_recordings(options)
+    add_model(options)
+    add_effects(options)
+    add_results(options)
+    add_workers(options)
+    return options
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    options = parser().parse_args(arguments)
+    return run_command(lambda: _improve(options))
+
+
+def _improve(options: argparse.Namespace) -> None:
+    experiments, unseen = load_all(options)
+    label, model = chosen_model(options.model, [*experiments, *unseen])
+    model = prepared(model, experiments)
+    ledger = Ledger(options.output)
+    try:
+        with executor(options.jobs, options.scheduler) as pool, progress_bar("improve") as progress:
+            start = compare(model, experiments, pool, unseen, label, part(progress, "start: ", 0.0, 0.03))
+            found = improve(
+                Problem(experiments, pool),
+                model,
+                Problem(unseen, pool) if unseen else None,
+                options.effects,
+                progress=part(progress, "", 0.03, 0.97),
+                on_stage=ledger.add,
+            )
+            stages = [_comparison(stage, experiments, unseen, pool, label) for stage in found.stages]
+    except KeyboardInterrupt:
+        if not ledger.stages:
+            raise
+        print(f"stopped; the {len(ledger.stages)} stages so far are in {ledger.path}", file=sys.stderr)
+        return
+    _finish(options, found, start, stages)
+
+
+def _comparison(
+    stage: Stage, experiments: Sequence[Experiment], unseen: Sequence[Experiment], pool: Executor, label: str
+) -> Comparison:
+    """A stage's comparison; its fitted runs have been simulated already."""
+    model: Model = stage.fit.model
+    simulations = [*stage.fit.evaluation.simulations, *simulate_all(pool, model, [e.run for e in unseen])]
+    name = " + ".join([f"{label}, fitted", *stage.effects])
+    return comparison_of(model, experiments, simulations, unseen, name)
+
+
+def _finish(
+    options: argparse.Namespace, found: Improvement, start: Comparison, stages: Sequence[Comparison]
+) -> None:
+    folder: Path = options.output
+    folder.mkdir(parents=True, exist_ok=True)
+    show([stages[0]])
+    print(found.diagnosis)
+    print(found)
+    save_model(found.model, folder / MODEL_FILE)
+    content = improvement_content(found, stages, start)
+    report = write_report(content, folder)
+    waterfall_picture(content.stages, content.noise_floor, folder / "waterfall.png")
+    stages_picture(content.stages, content.noise_floor, folder / "error_by_stage.png")
+    if options.json:
+        details = {"where_it_fails": stages[0].where.sentences(), "start": start.to_json()}
+        write_json({**found.to_json(), **details}, options.json)
+    print(f"Wrote {folder / MODEL_FILE} and {report}.")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,99 @@
+"""`suggest RECORDING…`: the next experiment that would best tell the remaining explanations apart."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from hasel_sim.parallel import executor
+from ruamel.yaml import YAML
+
+from hasel_sysid.command_line.json_file import write_json
+from hasel_sysid.command_line.options import (
+    add_effects,
+    add_model,
+    add_recordings,
+    add_results,
+    add_workers,
+    chosen_model,
+    load_all,
+)
+from hasel_sysid.command_line.progress import progress_bar
+from hasel_sysid.command_line.running import run_command
+from hasel_sysid.dataset import prepared
+from hasel_sysid.diagnosis import diagnose
+from hasel_sysid.fit import fit_least_squares
+from hasel_sysid.problem import Problem
+from hasel_sysid.suggest import Suggestion, rivals, suggest
+
+GOAL_FILE = "suggested_run.yaml"
+_SHOWN = 5
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command's options."""
+    options = argparse.ArgumentParser(
+        prog="suggest",
+        description="Propose the next run: the one in which the remaining explanations differ most.",
+    )
+    add_recordings(options)
+    add_model(options)
+    add_effects(options)
+    add_results(options)
+    add_workers(options)
+    options.add_argument(
+        "--max-voltage",
+        metavar="V",
+        type=float,
+        default=5500.0,
+        help="highest safe voltage (default: %(default)g)",
+    )
+    return options
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    options = parser().parse_args(arguments)
+    return run_command(lambda: _suggest(options))
+
+
+def _suggest(options: argparse.Namespace) -> None:
+    experiments, _ = load_all(options)
+    _, model = chosen_model(options.model, experiments)
+    model = prepared(model, experiments)
+    with executor(options.jobs, options.scheduler) as pool, progress_bar("suggest") as progress:
+        problem = Problem(experiments, pool)
+        fit = fit_least_squares(problem, model, lambda text, share: progress(text, 0.15 * share))
+        found = diagnose(
+            problem, fit, options.effects, lambda text, share: progress(text, 0.15 + 0.6 * share)
+        )
+        ranked = suggest(
+            pool,
+            rivals(found),
+            found.noise,
+            options.max_voltage,
+            lambda text, share: progress(text, 0.75 + 0.25 * share),
+        )
+    for suggestion in ranked[:_SHOWN]:
+        print(suggestion)
+    _write(ranked[0], options)
+
+
+def _write(best: Suggestion, options: argparse.Namespace) -> None:
+    if options.json:
+        pairs = [{"effects": list(pair), "difference": size} for pair, size in best.pairs.items()]
+        write_json(
+            {"run": best.manoeuvre.goal(), "difference": best.difference, "pairs": pairs}, options.json
+        )
+    if best.manoeuvre.load_factor is not None:
+        return
+    options.output.mkdir(parents=True, exist_ok=True)
+    path = options.output / GOAL_FILE
+    yaml = YAML(typ="safe")
+    yaml.default_flow_style = False
+    with path.open("w") as file:
+        yaml.dump(best.manoeuvre.goal(), file)
+    print(f"Wrote {path}, a goal for the RunExperiment action.")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

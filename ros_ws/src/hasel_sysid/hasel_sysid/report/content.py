@@ -1,0 +1,100 @@
+"""What a report can hold; every section is left out when it is empty."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from hasel_sysid.compare.comparison import Comparison
+
+
+@dataclass(frozen=True)
+class KeyNumber:
+    """A number on top of the report: value as it shall be read, label under it, note in small print."""
+
+    value: str
+    label: str
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class RunOverlay:
+    """One run: time [s] [n], measured sin theta [n], simulated sin theta [n] by what the model is called."""
+
+    name: str
+    time: np.ndarray
+    measured: np.ndarray
+    simulated: dict[str, np.ndarray]
+    unseen: bool = False
+    voltage: float = 0.0
+    frequency: float = 0.0
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Mean |Δ sin θ| of one stage on fitted and on unseen runs (None without such runs), and what was changed."""
+
+    label: str
+    error: float | None
+    error_unseen: float | None = None
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class ParameterRow:
+    """A parameter in its SI unit; remark: an alarm such as "at its upper bound", empty when all is well."""
+
+    name: str
+    value: float
+    standard_error: float | None
+    unit: str
+    remark: str = ""
+
+
+@dataclass(frozen=True)
+class RankedRow:
+    """One effect of the ranking; shares and probability from 0 to 1; expected: its values; NaN where not known."""
+
+    effect: str
+    verdict: str
+    probability: float
+    error_removed: float
+    expected: Sequence[ParameterRow] = ()
+    swallowed: float = float("nan")
+    physics: str = ""
+    sentence: str = ""
+
+
+@dataclass(frozen=True)
+class NextRun:
+    """A proposed experiment: what to do, and how far the remaining candidates differ in it, in units of the noise."""
+
+    sentence: str
+    difference_in_noise: float | None = None
+    separates: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class ReportContent:
+    """All that one report shows.
+
+    title, subtitle: of the page; verdict: the one sentence; good: whether that sentence is good news (None: neither);
+    runs: measured against simulated; comparisons: error table and where the models fail, the first one in detail;
+    stages with noise_floor [sin theta]: the error waterfall; ranking and groups: what is missing; remains: sentences.
+    """
+
+    title: str
+    subtitle: str = ""
+    verdict: str = ""
+    good: bool | None = None
+    key_numbers: Sequence[KeyNumber] = ()
+    runs: Sequence[RunOverlay] = ()
+    comparisons: Sequence[Comparison] = ()
+    stages: Sequence[Stage] = ()
+    noise_floor: float | None = None
+    ranking: Sequence[RankedRow] = ()
+    groups: Sequence[Sequence[str]] = ()
+    parameters: Sequence[ParameterRow] = ()
+    remains: Sequence[str] = ()
+    next_runs: Sequence[NextRun] = ()
+    messages: Sequence[str] = field(default_factory=tuple)

@@ -1,0 +1,1 @@
+"""The report's figures, one per file, each a function from content to a plotly figure."""

@@ -1,0 +1,60 @@
+"""The error falling, stage by stage, down to the noise."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import plotly.graph_objects as go
+from plotly.subplots import make_subplots
+
+from hasel_sysid.report.content import Stage
+from hasel_sysid.report.figures.style import DROP, FITTED, NOISE, RISE, UNSEEN, styled
+
+
+def waterfall_figure(stages: Sequence[Stage], noise_floor: float | None) -> go.Figure:
+    """One waterfall for the fitted runs and, where there are any, one for the unseen runs beside it."""
+    groups = [("fitted runs", [s.error for s in stages], FITTED)]
+    if any(stage.error_unseen is not None for stage in stages):
+        groups.append(("unseen runs", [s.error_unseen for s in stages], UNSEEN))
+    floor = "" if noise_floor is None else f"; dashed: noise floor {noise_floor:.4f}"
+    figure = make_subplots(
+        rows=1,
+        cols=len(groups),
+        subplot_titles=[name + floor for name, _, _ in groups],
+        shared_yaxes=True,
+        horizontal_spacing=0.05,
+    )
+    for column, (name, errors, colour) in enumerate(groups, start=1):
+        known = [
+            (stage.label, error) for stage, error in zip(stages, errors, strict=True) if error is not None
+        ]
+        _add_waterfall(figure, name, known, colour, column)
+        if noise_floor is not None:
+            line = {"color": NOISE, "dash": "dash", "width": 1.5}
+            figure.add_hline(y=noise_floor, line=line, row=1, col=column)
+    figure.update_yaxes(title_text="mean |Δ sin θ|", rangemode="tozero", col=1)
+    styled(figure, 400)
+    return figure.update_layout(showlegend=False)
+
+
+def _add_waterfall(
+    figure: go.Figure, name: str, known: Sequence[tuple[str, float]], colour: str, column: int
+) -> None:
+    """Bars for the first error, every change and what is left, each with its number above it."""
+    errors = [error for _, error in known]
+    changes = list(np.diff(errors))
+    bars = go.Waterfall(
+        name=name,
+        x=[*(label for label, _ in known), "left over"],
+        y=[errors[0], *changes, errors[-1]],
+        measure=["absolute", *["relative"] * len(changes), "total"],
+        decreasing={"marker": {"color": DROP}},
+        increasing={"marker": {"color": RISE}},
+        totals={"marker": {"color": colour}},
+        connector={"line": {"color": "#c3c9cf", "width": 1}},
+    )
+    figure.add_trace(bars, row=1, col=column)
+    tops = [errors[0], *np.maximum(errors[:-1], errors[1:]), errors[-1]]
+    texts = [f"{errors[0]:.4f}", *(f"{change:+.4f}" for change in changes), f"<b>{errors[-1]:.4f}</b>"]
+    for place, (top, text) in enumerate(zip(tops, texts, strict=True)):
+        text = text.replace("-", "−")
+        figure.add_annotation(x=place, y=top, text=text, showarrow=False, yshift=10, row=1, col=column)

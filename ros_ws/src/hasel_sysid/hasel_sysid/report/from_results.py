@@ -1,0 +1,97 @@
+"""The report's content from a comparison or a fit."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from hasel_sim.model import Model
+
+from hasel_sysid.compare.comparison import Comparison
+from hasel_sysid.fit.result import FitResult
+from hasel_sysid.report.content import KeyNumber, ParameterRow, ReportContent, RunOverlay
+
+_RMS_TO_MEAN = 0.798
+"""Mean magnitude of Gaussian noise of unit standard deviation."""
+
+
+def overlays(comparisons: Sequence[Comparison]) -> tuple[RunOverlay, ...]:
+    """Measured angle of every run with what each model says, each run's offset taken out of the measurement."""
+    shown = []
+    for index, run in enumerate(comparisons[0].runs):
+        series = run.series
+        simulated = {
+            c.label: c.runs[index].series.simulated + c.runs[index].series.offset - series.offset
+            for c in comparisons
+            if len(c.runs[index].series.time) == len(series.time)
+        }
+        shown.append(
+            RunOverlay(
+                run.name,
+                series.time,
+                series.measured - series.offset,
+                simulated,
+                run.unseen,
+                series.voltage,
+                series.frequency,
+            )
+        )
+    return tuple(shown)
+
+
+def parameter_rows(model: Model, remarks: dict[str, str] | None = None) -> tuple[ParameterRow, ...]:
+    """Every parameter of a model; remarks by name."""
+    return tuple(
+        ParameterRow(p.name, p.value, p.standard_error, p.unit, (remarks or {}).get(p.name, ""))
+        for p in model.parameters.values()
+    )
+
+
+def comparison_content(comparisons: Sequence[Comparison]) -> ReportContent:
+    """Report of one or several models against the same recordings; the first one in detail."""
+    first = comparisons[0]
+    labels = ", ".join(c.label for c in comparisons)
+    frames = sum(len(run.series.time) for run in first.runs)
+    return ReportContent(
+        title=f"{labels} against {len(first.runs)} recordings",
+        subtitle=f"{frames} frames; errors are mean |Δ sin θ| with each run's offset taken out",
+        verdict=first.where.sentences()[0],
+        good=not first.where.failures and not any(run.analysis.failures for run in first.runs),
+        key_numbers=key_numbers(first),
+        runs=overlays(comparisons),
+        comparisons=tuple(comparisons),
+        parameters=parameter_rows(first.model),
+    )
+
+
+def key_numbers(comparison: Comparison) -> tuple[KeyNumber, ...]:
+    """Error on fitted and unseen runs, and the noise."""
+    numbers = []
+    if comparison.mean_absolute_error is not None:
+        fitted = sum(not run.unseen for run in comparison.runs)
+        numbers.append(KeyNumber(f"{comparison.mean_absolute_error:.4f}", "mean |Δ sin θ|", f"{fitted} runs"))
+    if comparison.mean_absolute_error_unseen is not None:
+        unseen = sum(run.unseen for run in comparison.runs)
+        numbers.append(
+            KeyNumber(
+                f"{comparison.mean_absolute_error_unseen:.4f}",
+                "on unseen runs",
+                f"{unseen} runs, never fitted",
+            )
+        )
+    noise = _RMS_TO_MEAN * comparison.where.noise
+    numbers.append(KeyNumber(f"{noise:.4f}", "noise floor", "from the fastest part of the measured angle"))
+    return tuple(numbers)
+
+
+def fit_content(result: FitResult, comparison: Comparison) -> ReportContent:
+    """Report of a fit: the comparison, with parameters, their uncertainty and alarms."""
+    remarks = dict.fromkeys(result.at_bound, "on its bound")
+    remarks |= dict.fromkeys(result.undetermined, "not determined by these recordings")
+    content = comparison_content([comparison])
+    return replace(
+        content,
+        title=f"{comparison.label}: {len(comparison.runs)} recordings",
+        verdict=str(comparison),
+        good=None,
+        parameters=parameter_rows(result.model, remarks),
+        messages=tuple(result.sentences),
+    )

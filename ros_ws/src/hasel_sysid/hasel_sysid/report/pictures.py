@@ -1,0 +1,128 @@
+"""The error by stage as PNG pictures, for a README or slides."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")  # no display is needed to write a file
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+
+from hasel_sysid.report.content import RunOverlay, Stage
+from hasel_sysid.report.figures.style import DROP, FITTED, MEASURED, MODELS, NOISE, RISE, UNSEEN
+
+_DOTS_PER_INCH = 150
+
+
+def waterfall_picture(stages: Sequence[Stage], noise_floor: float | None, path: Path) -> Path:
+    """Draw the error waterfall on fitted and, where there are any, on unseen runs."""
+    groups = [("fitted runs", [s.error for s in stages], FITTED)]
+    if any(stage.error_unseen is not None for stage in stages):
+        groups.append(("unseen runs", [s.error_unseen for s in stages], UNSEEN))
+    figure, axes = plt.subplots(1, len(groups), figsize=(4.6 * len(groups), 3.4), sharey=True, squeeze=False)
+    for axis, (name, errors, colour) in zip(axes[0], groups, strict=True):
+        known = [
+            (stage.label, error) for stage, error in zip(stages, errors, strict=True) if error is not None
+        ]
+        _waterfall(axis, known, colour)
+        _noise(axis, noise_floor)
+        axis.set_title(name, fontsize=11)
+    axes[0][0].set_ylabel("mean |Δ sin θ|")
+    return _save(figure, path)
+
+
+def stages_picture(stages: Sequence[Stage], noise_floor: float | None, path: Path) -> Path:
+    """Draw the error of every stage as bars, fitted beside unseen runs."""
+    figure, axis = plt.subplots(figsize=(1.6 + 1.5 * len(stages), 3.2))
+    place = np.arange(len(stages))
+    for shift, name, errors, colour in (
+        (-0.2, "fitted runs", [s.error for s in stages], FITTED),
+        (0.2, "unseen runs", [s.error_unseen for s in stages], UNSEEN),
+    ):
+        if all(error is None for error in errors):
+            continue
+        heights = [np.nan if error is None else error for error in errors]
+        bars = axis.bar(place + shift, heights, 0.38, color=colour, label=name)
+        axis.bar_label(bars, [f"{h:.4f}" for h in heights], padding=2, fontsize=8)
+    _noise(axis, noise_floor)
+    axis.set_xticks(place, [stage.label for stage in stages])
+    axis.set_ylabel("mean |Δ sin θ|")
+    axis.legend(frameon=False)
+    _bare(axis)
+    return _save(figure, path)
+
+
+def overlay_picture(runs: Sequence[RunOverlay], path: Path) -> Path:
+    """Draw measured against simulated angle of some runs, side by side."""
+    figure, axes = plt.subplots(1, len(runs), figsize=(3.6 * len(runs), 2.8), sharey=True, squeeze=False)
+    for axis, run in zip(axes[0], runs, strict=True):
+        axis.plot(run.time, run.measured, ".", color=MEASURED, markersize=2.5, label="measured")
+        for number, (label, simulated) in enumerate(run.simulated.items()):
+            axis.plot(run.time, simulated, color=MODELS[number % len(MODELS)], linewidth=1.3, label=label)
+        axis.set_title(run.name + (" (unseen)" if run.unseen else ""), fontsize=10)
+        axis.set_xlabel("time [s]")
+        _bare(axis)
+    axes[0][0].set_ylabel("sin θ")
+    figure.legend(*axes[0][0].get_legend_handles_labels(), frameon=False, ncols=4, loc="outside lower center")
+    return _save(figure, path)
+
+
+def _waterfall(axis: Axes, known: Sequence[tuple[str, float]], colour: str) -> None:
+    labels, errors = [label for label, _ in known], [error for _, error in known]
+    axis.bar(0, errors[0], 0.75, color=colour)
+    axis.annotate(
+        f"{errors[0]:.4f}", (0, errors[0]), (0, 3), textcoords="offset points", ha="center", fontsize=8
+    )
+    for place, (before, after) in enumerate(zip(errors, errors[1:], strict=False), start=1):
+        falls = after <= before
+        axis.bar(place, before - after, 0.75, bottom=after, color=DROP if falls else RISE)
+        axis.plot([place - 1.375 + 0.75, place + 0.375], [before, before], color="#c3c9cf", linewidth=0.8)
+        text = f"{after - before:+.4f}".replace("-", "−")
+        axis.annotate(
+            text, (place, max(before, after)), (0, 3), textcoords="offset points", ha="center", fontsize=8
+        )
+    end = len(errors)
+    axis.bar(end, errors[-1], 0.75, color=colour)
+    axis.annotate(
+        f"{errors[-1]:.4f}",
+        (end, errors[-1]),
+        (0, 3),
+        textcoords="offset points",
+        ha="center",
+        fontsize=8,
+        weight="bold",
+    )
+    axis.set_xticks(range(end + 1), [*labels, "left over"], rotation=20, ha="right")
+    axis.set_ylim(0, 1.12 * max(errors))
+    _bare(axis)
+
+
+def _noise(axis: Axes, noise_floor: float | None) -> None:
+    if noise_floor is not None:
+        axis.axhline(noise_floor, color=NOISE, linestyle="--", linewidth=1)
+        axis.annotate(
+            f"noise floor {noise_floor:.4f}",
+            (1.0, noise_floor),
+            (0, 14),
+            xycoords=("axes fraction", "data"),
+            textcoords="offset points",
+            ha="right",
+            fontsize=8,
+            color=NOISE,
+        )
+
+
+def _bare(axis: Axes) -> None:
+    axis.spines[["top", "right"]].set_visible(False)
+    axis.tick_params(labelsize=8)
+
+
+def _save(figure: plt.Figure, path: Path) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.set_layout_engine("constrained")
+    figure.savefig(path, dpi=_DOTS_PER_INCH)
+    plt.close(figure)
+    return path
