@@ -35,8 +35,13 @@ def main() -> int:
     rclpy.init()
     node = None
     try:
-        with threadpool_limits(1), contextlib.nullcontext() if arguments.body_only else VirtualSupply():
+        with (
+            threadpool_limits(1),
+            contextlib.nullcontext() if arguments.body_only else VirtualSupply() as supply,
+        ):
             node = VirtualBodyNode()
+            if supply is not None:
+                node.create_timer(1.0, supply.check)
             rclpy.spin(node)
     except (HaselSimError, BringupError, InvalidParameterValueException) as error:
         print(f"error: {error}", file=sys.stderr)

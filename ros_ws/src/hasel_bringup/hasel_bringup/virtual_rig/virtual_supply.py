@@ -39,6 +39,13 @@ class VirtualSupply:
                 process.wait()
         self._folder.cleanup()
 
+    def check(self) -> None:
+        """Raise BringupError when one of the two has ended."""
+        if any(process.poll() is not None for process in self._processes):
+            raise BringupError(
+                "the driver or its virtual board has ended; see its message above, or run without them: --body-only"
+            )
+
     @staticmethod
     def _start(module: str, *arguments: str) -> subprocess.Popen:
         return subprocess.Popen(
