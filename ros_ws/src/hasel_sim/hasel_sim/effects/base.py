@@ -59,6 +59,16 @@ class Effect:
     """Effects with the same non-empty word here do the same thing and are refused side by side."""
     source: ClassVar[str | None] = None
     """`path/to/file.py:ClassName` for a user's own effect."""
+    text: ClassVar[str] = ""
+    """The file of a user's own effect, from which other processes rebuild it."""
+
+    def __reduce__(self) -> tuple:
+        if self.source is None:
+            return type(self), ()
+        from hasel_sim.effects.own import rebuild_own_effect
+
+        path, _, kind = self.source.rpartition(":")
+        return rebuild_own_effect, (path, kind, self.text)
 
     def null(self) -> dict[str, float]:
         """Parameter values at which the effect does nothing."""

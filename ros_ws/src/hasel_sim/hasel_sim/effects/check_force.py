@@ -1,0 +1,72 @@
+"""Checks of a force effect: known sites, null, response, locality, and that it says what it depends on."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+
+from hasel_sim.effects.base import ForceEffect, SiteState
+from hasel_sim.effects.check_tools import called, expect, same
+
+_SITES = ("body", "skin", "points")
+_QUANTITIES = ("position", "velocity", "acceleration", "tangent")
+
+
+def check_force(effect: ForceEffect, null: SimpleNamespace, typical: SimpleNamespace) -> None:
+    """Refuse a force effect that breaks a rule, with a ModelError."""
+    expect(
+        effect.sites in _SITES, effect, f"acts at sites '{effect.sites}'", f"use one of {', '.join(_SITES)}"
+    )
+    unknown = [name for name in effect.depends_on if name not in _QUANTITIES]
+    expect(
+        not unknown, effect, f"depends on {unknown}", f"name some of {', '.join(_QUANTITIES)} in depends_on"
+    )
+    at = _example(effect)
+    if effect.sites == "points":
+        markers = np.array([[0.005, 0.0], [0.094, 0.0], [0.19, 0.0]])
+        count = len(np.atleast_2d(np.asarray(effect.points(markers, typical), dtype=float)))
+        called(effect, "points", (count, 2), markers, typical)
+    shape = at.position.shape
+    off, on = called(effect, "force", shape, at, null), called(effect, "force", shape, at, typical)
+    expect(not np.any(off), effect, "exerts a force at its null values", "make force return zeros there")
+    expect(np.any(on), effect, "exerts no force at its typical values", "make force use its parameters")
+    few = called(effect, "force", (2, 2), _rows(at, 2), typical)
+    expect(
+        same(few, on[:2]),
+        effect,
+        "exerts a force at one place that depends on others",
+        "compute every row of the force from the same row of positions, velocities and so on only",
+    )
+    rng = np.random.default_rng(2)
+    for name in set(_QUANTITIES) - set(effect.depends_on):
+        moved = replace(at, **{name: getattr(at, name) + 0.1 * rng.standard_normal(shape)})
+        expect(
+            same(called(effect, "force", shape, moved, typical), on),
+            effect,
+            f"uses the {name} without saying so",
+            f'add "{name}" to depends_on',
+        )
+
+
+def _example(effect: ForceEffect) -> SiteState:
+    rng, n = np.random.default_rng(1), 7
+    reference = np.stack([np.linspace(0.01, 0.18, n), 0.005 * (-1.0) ** np.arange(n)], axis=1)
+    along = np.stack([np.ones(n), np.zeros(n)], axis=1) * (effect.sites == "skin")
+    return SiteState(
+        position=reference + 0.01 * rng.standard_normal((n, 2)),
+        velocity=0.2 * rng.standard_normal((n, 2)),
+        acceleration=2.0 * rng.standard_normal((n, 2)),
+        tangent=along + 0.1 * rng.standard_normal((n, 2)),
+        reference=reference,
+        rest_tangent=along,
+        measure=np.full(n, 0.01),
+        voltage=np.array([5000.0, -3000.0]),
+        contraction=np.array([0.05, 0.02]),
+        time=0.3,
+        gravity=np.array([0.0, -9.81]),
+    )
+
+
+def _rows(at: SiteState, count: int) -> SiteState:
+    names = (*_QUANTITIES, "reference", "rest_tangent", "measure")
+    return replace(at, **{name: getattr(at, name)[:count] for name in names})

@@ -1,0 +1,63 @@
+"""A user's own effect, read from a Python file outside the package and checked before it is used."""
+
+import sys
+from functools import lru_cache
+from hashlib import sha256
+from pathlib import Path
+from types import ModuleType
+
+from hasel_sim.effects.base import DriveEffect, Effect, ForceEffect, MaterialEffect, ObservationEffect
+from hasel_sim.effects.checks import check_effect
+from hasel_sim.errors import ModelError, nearest_name
+
+_PLACES = (DriveEffect, ForceEffect, MaterialEffect, ObservationEffect)
+
+
+def load_own_effect(path: Path, kind: str) -> Effect:
+    """The effect of class `kind` in a Python file, with the class's name as its id.
+
+    Raises ModelError when the file or class is missing, or when the effect fails a check; the message says what to
+    change.
+    """
+    if not path.is_file():
+        raise ModelError(
+            f"there is no file '{path}'; expected path/to/file.py:ClassName of an effect of your own: correct the path"
+        )
+    effect = rebuild_own_effect(str(path), kind, path.read_text())
+    check_effect(effect)
+    return effect
+
+
+@lru_cache(maxsize=64)
+def rebuild_own_effect(path: str, kind: str, text: str) -> Effect:
+    """The effect of class `kind` in a file's text; other processes and computers rebuild it from this."""
+    module = _module(path, text)
+    own = {name: value for name, value in vars(module).items() if _is_own_class(value, module)}
+    if kind not in own:
+        raise ModelError(
+            f"'{path}' has no class '{kind}'; {nearest_name(kind, own)}: correct the name after ':'"
+        )
+    found = own[kind]
+    if not issubclass(found, _PLACES):
+        names = ", ".join(place.__name__ for place in _PLACES)
+        raise ModelError(f"class '{kind}' in '{path}' is no effect; expected a subclass of one of {names}")
+    found.id, found.source, found.text = kind, f"{path}:{kind}", text
+    return found()
+
+
+def _is_own_class(value: object, module: ModuleType) -> bool:
+    return isinstance(value, type) and value.__module__ == module.__name__
+
+
+def _module(path: str, text: str) -> ModuleType:
+    module = ModuleType(f"own_effect_{sha256(f'{path}:{text}'.encode()).hexdigest()[:16]}")
+    module.__file__ = path
+    sys.modules[module.__name__] = module
+    try:
+        exec(compile(text, path, "exec"), vars(module))
+    except Exception as error:
+        line = f" in line {error.lineno}" if isinstance(error, SyntaxError) else ""
+        raise ModelError(
+            f"'{path}' cannot be run{line} ({type(error).__name__}: {error}); expected a Python file: correct it"
+        ) from error
+    return module
