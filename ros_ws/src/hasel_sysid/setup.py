@@ -5,7 +5,8 @@ PACKAGE = "hasel_sysid"
 setup(
     name=PACKAGE,
     version="0.1.0",
-    packages=find_packages(exclude=["test"]),
+    packages=find_packages(exclude=["test", "test.*"]),
+    package_data={PACKAGE: ["report/templates/*"]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml"]),
@@ -20,6 +21,13 @@ setup(
     entry_points={
         "console_scripts": [
             "sysid = hasel_sysid.sysid_node:main",
+            "compare = hasel_sysid.command_line.compare:main",
+            "fit = hasel_sysid.command_line.fit:main",
+            "diagnose = hasel_sysid.command_line.diagnose:main",
+            "improve = hasel_sysid.command_line.improve:main",
+            "add = hasel_sysid.command_line.effects:add_main",
+            "remove = hasel_sysid.command_line.effects:remove_main",
+            "convert = hasel_sysid.command_line.convert:main",
         ]
     },
 )

@@ -12,6 +12,7 @@ from hasel_sysid.where_it_fails.run_series import RunSeries
 
 _SHARE_OF_NOISE = 0.75
 _STANDS_OUT = 1.5
+_MOST_SINGLE = 6
 
 
 @dataclass(frozen=True)
@@ -33,15 +34,12 @@ class WhereItFails:
         return float(np.median([run.noise for run in self.runs])) if self.runs else 0.0
 
     def sentences(self) -> list[str]:
-        """What a researcher would say, most important first."""
-        said = [str(failure) for failure in self.failures]
+        """What a researcher would say, most important first; single runs only where the runs have nothing in common."""
+        single = [failure for run in self.runs for failure in run.failures]
+        said = [str(f) for f in self.failures or sorted(single, key=lambda f: -f.size)[:_MOST_SINGLE]]
         worst = self._worst_phase()
         said += [] if worst is None else [worst]
-        return said or self._about_single_runs()
-
-    def _about_single_runs(self) -> list[str]:
-        single = [str(failure) for run in self.runs for failure in run.failures]
-        return single or ["No systematic difference stands out from the noise."]
+        return said or ["No systematic difference stands out from the noise."]
 
     def _worst_phase(self) -> str | None:
         if len(self.profile) == 0 or np.nanmax(self.profile) < _STANDS_OUT * np.nanmean(self.profile):

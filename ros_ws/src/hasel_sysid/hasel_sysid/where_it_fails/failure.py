@@ -19,9 +19,13 @@ class Failure:
         """Rms of sin theta that it accounts for."""
         return self.component.size
 
+    @property
+    def predicate(self) -> str:
+        """The sentence without its subject: "lags 35 ms after every switch, more at 3.5 Hz"."""
+        return words(self.component) + (f", {self.remark}" if self.remark else "")
+
     def __str__(self) -> str:
-        remark = f", {self.remark}" if self.remark else ""
-        return f"{self.where}: {words(self.component)}{remark} (rms {self.size:.2g} of sin θ)."
+        return f"{self.where}: {self.predicate} (rms {self.size:.2g} of sin θ)."
 
     def to_json(self) -> dict:
         """Plain numbers and words."""

@@ -1,0 +1,1 @@
+"""The commands of this package; each module's `main` is one executable."""

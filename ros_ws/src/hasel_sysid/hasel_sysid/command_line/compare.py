@@ -1,0 +1,69 @@
+"""`compare RECORDING…`: how far and where a model is off, with a report."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from hasel_sim.parallel import executor
+
+from hasel_sysid.command_line.json_file import write_json
+from hasel_sysid.command_line.options import (
+    add_model,
+    add_recordings,
+    add_results,
+    add_workers,
+    chosen_model,
+    load_all,
+)
+from hasel_sysid.command_line.progress import progress_bar
+from hasel_sysid.command_line.running import run_command
+from hasel_sysid.command_line.shown import show
+from hasel_sysid.compare import Comparison, compare
+from hasel_sysid.report.from_results import comparison_content
+from hasel_sysid.report.write import write_report
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command's options."""
+    options = argparse.ArgumentParser(prog="compare", description="Compare a model with recordings.")
+    add_recordings(options)
+    add_model(options, several=True)
+    add_results(options)
+    add_workers(options)
+    return options
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    options = parser().parse_args(arguments)
+    return run_command(lambda: _compare(options))
+
+
+def _compare(options: argparse.Namespace) -> None:
+    experiments, unseen = load_all(options)
+    names = options.model or [None]
+    models = [chosen_model(name, [*experiments, *unseen]) for name in names]
+    comparisons: list[Comparison] = []
+    try:
+        with executor(options.jobs, options.scheduler) as pool, progress_bar("compare") as progress:
+            for done, (label, model) in enumerate(models):
+
+                def step(text: str, share: float, done: int = done) -> None:
+                    progress(text, (done + share) / len(models))
+
+                comparisons.append(compare(model, experiments, pool, unseen, label, step))
+    except KeyboardInterrupt:
+        if not comparisons:
+            raise
+        print(f"stopped after {len(comparisons)} of {len(models)} models", file=sys.stderr)
+    show(comparisons)
+    if options.json:
+        first = comparisons[0].to_json()
+        several = {"models": [c.to_json() for c in comparisons]} if len(comparisons) > 1 else {}
+        write_json({**first, **several}, options.json)
+    report = write_report(comparison_content(comparisons), options.output)
+    print(f"Wrote {report}.")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

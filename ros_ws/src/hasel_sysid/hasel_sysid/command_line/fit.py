@@ -1,0 +1,122 @@
+"""`fit RECORDING…`: identify a model's free parameters and write the fitted model."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from hasel_sim.model import Model, save_model
+from hasel_sim.parallel import executor
+
+from hasel_sysid.command_line.best_so_far import BestSoFar
+from hasel_sysid.command_line.json_file import write_json
+from hasel_sysid.command_line.options import (
+    add_model,
+    add_recordings,
+    add_results,
+    add_workers,
+    chosen_model,
+    load_all,
+)
+from hasel_sysid.command_line.progress import part, progress_bar
+from hasel_sysid.command_line.running import run_command
+from hasel_sysid.command_line.shown import show
+from hasel_sysid.compare import Comparison, compare
+from hasel_sysid.dataset import prepared
+from hasel_sysid.errors import SysidError
+from hasel_sysid.fit import METHODS, FitResult
+from hasel_sysid.report.from_results import fit_content
+from hasel_sysid.report.write import write_report
+
+MODEL_FILE = "fitted_model.yaml"
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command's options."""
+    options = argparse.ArgumentParser(
+        prog="fit", description="Identify a model's parameters from recordings."
+    )
+    add_recordings(options)
+    add_model(options)
+    add_results(options)
+    add_workers(options)
+    options.add_argument(
+        "--method",
+        choices=sorted(METHODS),
+        default="least_squares",
+        help="least_squares, or the seed paper's Adam (default: %(default)s)",
+    )
+    return options
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    options = parser().parse_args(arguments)
+    return run_command(lambda: _fit(options))
+
+
+def _fit(options: argparse.Namespace) -> None:
+    experiments, unseen = load_all(options)
+    label, model = chosen_model(options.model, [*experiments, *unseen])
+    model = prepared(model, experiments)
+    if not model.free:
+        raise SysidError(
+            f"model '{label}' has no free parameter; expected at least one: add an effect with `add`, "
+            "or set free: true in the model file"
+        )
+    problem = None
+    try:
+        with executor(options.jobs, options.scheduler) as pool, progress_bar("fit") as progress:
+            problem = BestSoFar(experiments, pool)
+            result = METHODS[options.method](problem, model, part(progress, "", 0.0, 0.95))
+            comparison = compare(
+                result.model, experiments, pool, unseen, f"{label}, fitted", part(progress, "", 0.95, 1.0)
+            )
+    except KeyboardInterrupt:
+        if problem is None or problem.best is None:
+            raise
+        path = _save(model.with_values(problem.best.model.values), options.output)
+        print(f"stopped; wrote the best model so far, without uncertainties, to {path}", file=sys.stderr)
+        return
+    _finish(options, result, comparison)
+
+
+def _finish(options: argparse.Namespace, result: FitResult, comparison: Comparison) -> None:
+    path = _save(result.model, options.output)
+    show([comparison])
+    print(result)
+    if options.json:
+        write_json({**comparison.to_json(), **_fit_json(result)}, options.json)
+    report = write_report(fit_content(result, comparison), options.output)
+    print(f"Wrote {path} and {report}.")
+
+
+def _fit_json(result: FitResult) -> dict:
+    names = result.evaluation.names
+    parameters = {
+        name: {
+            "value": result.model.parameters[name].value,
+            "std": result.model.parameters[name].standard_error,
+            "unit": result.model.parameters[name].unit,
+            "at_bound": name in result.at_bound,
+            "determined": name not in result.undetermined,
+        }
+        for name in names
+    }
+    return {
+        "method": result.method,
+        "parameters": parameters,
+        "mae_fit": result.mean_absolute_error,
+        "messages": result.sentences,
+    }
+
+
+def _save(model: Model, folder: Path) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / MODEL_FILE
+    save_model(model, path)
+    return path
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,96 @@
+"""Simulate every run and collect what is different."""
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import Executor, as_completed
+
+from hasel_sim.model import Model
+from hasel_sim.parallel import submit_all
+from hasel_sim.run import Simulation
+
+from hasel_sysid.compare.comparison import Comparison
+from hasel_sysid.compare.run_comparison import RunComparison
+from hasel_sysid.data_gate import check_against_model, check_recording
+from hasel_sysid.dataset import Experiment, prepared
+from hasel_sysid.errors import SysidError
+from hasel_sysid.where_it_fails.analyse import where_it_fails
+from hasel_sysid.where_it_fails.run_series import RunSeries, run_series
+
+Progress = Callable[[str, float], None]
+"""Called with a line of text and the share done, 0 to 1."""
+
+
+def compare(
+    model: Model,
+    experiments: Sequence[Experiment],
+    pool: Executor,
+    unseen: Sequence[Experiment] = (),
+    label: str | None = None,
+    progress: Progress | None = None,
+) -> Comparison:
+    """Simulate all experiments and the unseen ones with one model.
+
+    A model without amplitudes gets its start values; one that has some keeps them, so that unseen voltages are
+    interpolated. label: what to call the model (default: its name).
+    Raises SysidError for runs the body cannot have, SimulationError when the motion cannot be followed.
+    """
+    every = [*experiments, *unseen]
+    if not every:
+        raise SysidError("no recording was given; expected at least one: name .csv or .mcap files")
+    model = with_amplitudes(model, every)
+    simulations = _simulate(model, every, pool, progress)
+    return comparison_of(model, experiments, simulations, unseen, label)
+
+
+def with_amplitudes(model: Model, experiments: Sequence[Experiment]) -> Model:
+    """The model itself when it has amplitudes, else with one for every voltage of the experiments."""
+    started = prepared(model, experiments)
+    return model if len(model.levels) else started
+
+
+def comparison_of(
+    model: Model,
+    experiments: Sequence[Experiment],
+    simulations: Sequence[Simulation],
+    unseen: Sequence[Experiment] = (),
+    label: str | None = None,
+) -> Comparison:
+    """Compare what has been simulated already; the simulations of the unseen experiments come last."""
+    every = [*experiments, *unseen]
+    series = [series_of(e, s) for e, s in zip(every, simulations, strict=True)]
+    where = where_it_fails(series)
+    seen = len(experiments)
+    runs = tuple(
+        RunComparison(s, n >= seen, a) for n, (s, a) in enumerate(zip(series, where.runs, strict=True))
+    )
+    set_up = []
+    for experiment, simulation in zip(every, simulations, strict=True):
+        recording = experiment.recording
+        set_up += check_recording(recording)
+        set_up += check_against_model(recording, simulation.sin_theta, simulation.markers)
+    return Comparison(label or model.name, model, runs, where, tuple(set_up))
+
+
+def series_of(experiment: Experiment, simulation: Simulation) -> RunSeries:
+    """Measured and simulated angle of one run. Raises SysidError when they have no frame in common."""
+    schedule = experiment.run.schedule
+    drive = None if schedule is None else (schedule.time, schedule.voltage)
+    series = run_series(
+        experiment.name, experiment.run.time, experiment.sin_theta, simulation.sin_theta, drive
+    )
+    if len(series.time) == 0:
+        raise SysidError(
+            f"{experiment.name} has no frame with both a measured and a simulated angle; "
+            "check its time column and initial_time_s"
+        )
+    return series
+
+
+def _simulate(
+    model: Model, experiments: Sequence[Experiment], pool: Executor, progress: Progress | None
+) -> list[Simulation]:
+    futures = submit_all(pool, model, [experiment.run for experiment in experiments])
+    for done, future in enumerate(as_completed(futures), start=1):
+        if progress:
+            name = experiments[futures.index(future)].name
+            progress(f"simulated {name}", done / len(futures))
+    return [future.result() for future in futures]

@@ -1,0 +1,78 @@
+"""A model against all recordings."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from hasel_sim.model import Model
+
+from hasel_sysid.compare.run_comparison import RunComparison
+from hasel_sysid.data_gate import Finding
+from hasel_sysid.where_it_fails.analyse import WhereItFails
+from hasel_sysid.where_it_fails.by_condition import ConditionError, error_by_frequency, error_by_voltage
+
+
+def _error(runs: Sequence[RunComparison]) -> float | None:
+    """Mean |Δ sin θ| over all frames of these runs; None without runs."""
+    if not runs:
+        return None
+    return float(np.abs(np.concatenate([run.series.residual for run in runs])).mean())
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """label: what the model is called beside others; set_up: faults of the recordings, found before the physics."""
+
+    label: str
+    model: Model
+    runs: tuple[RunComparison, ...]
+    where: WhereItFails
+    set_up: tuple[Finding, ...] = ()
+
+    @property
+    def mean_absolute_error(self) -> float | None:
+        """Mean |Δ sin θ| over all frames of the runs that are not called unseen; None without any."""
+        return _error([run for run in self.runs if not run.unseen])
+
+    @property
+    def mean_absolute_error_unseen(self) -> float | None:
+        """The same over the unseen runs."""
+        return _error([run for run in self.runs if run.unseen])
+
+    @property
+    def by_voltage(self) -> tuple[ConditionError, ...]:
+        """Error for every voltage."""
+        return error_by_voltage([run.series for run in self.runs])
+
+    @property
+    def by_frequency(self) -> tuple[ConditionError, ...]:
+        """Error for every frequency."""
+        return error_by_frequency([run.series for run in self.runs])
+
+    def to_json(self) -> dict:
+        """Everything but the series, as plain numbers and words."""
+        return {
+            "model": self.label,
+            "effects": [effect.id for effect in self.model.effects],
+            "mae_fit": self.mean_absolute_error,
+            "mae_validation": self.mean_absolute_error_unseen,
+            "runs": [run.to_json() for run in self.runs],
+            "by_voltage": [_row(row, "voltage") for row in self.by_voltage],
+            "by_frequency": [_row(row, "frequency") for row in self.by_frequency],
+            "where_it_fails": self.where.sentences(),
+            "failures": [failure.to_json() for failure in self.where.failures],
+            "data_gate": [finding.to_json() for finding in self.set_up],
+        }
+
+    def __str__(self) -> str:
+        parts = []
+        for name, error in (
+            ("mean |Δ sin θ|", self.mean_absolute_error),
+            ("on unseen runs", self.mean_absolute_error_unseen),
+        ):
+            parts += [] if error is None else [f"{name} = {error:.5f}"]
+        return f"{self.label}: {', '.join(parts)}."
+
+
+def _row(row: ConditionError, key: str) -> dict:
+    return {key: row.condition, "runs": row.runs, "mae": row.mean_absolute_error}
