@@ -25,6 +25,7 @@ setup(
             "fit = hasel_sysid.command_line.fit:main",
             "diagnose = hasel_sysid.command_line.diagnose:main",
             "improve = hasel_sysid.command_line.improve:main",
+            "suggest = hasel_sysid.command_line.suggest:main",
             "add = hasel_sysid.command_line.effects:add_main",
             "remove = hasel_sysid.command_line.effects:remove_main",
             "convert = hasel_sysid.command_line.convert:main",

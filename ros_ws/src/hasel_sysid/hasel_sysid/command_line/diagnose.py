@@ -21,10 +21,11 @@ from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import show
 from hasel_sysid.compare import compare
 from hasel_sysid.dataset import prepared
-from hasel_sysid.diagnosis import Diagnosis, diagnose
-from hasel_sysid.fit import FitResult, fit_least_squares
+from hasel_sysid.diagnosis import diagnose
+from hasel_sysid.fit import fit_least_squares
+from hasel_sysid.improve.result import diagnosis_json
 from hasel_sysid.problem import Problem
-from hasel_sysid.report.from_diagnosis import diagnosis_content, ranked_rows
+from hasel_sysid.report.from_diagnosis import diagnosis_content
 from hasel_sysid.report.write import write_report
 
 
@@ -58,34 +59,8 @@ def _diagnose(options: argparse.Namespace) -> None:
     show([comparison])
     print(found)
     if options.json:
-        write_json({**comparison.to_json(), **diagnosis_json(found, fit)}, options.json)
+        write_json({**comparison.to_json(), **diagnosis_json(found)}, options.json)
     print(f"Wrote {write_report(diagnosis_content(found, comparison), options.output)}.")
-
-
-def diagnosis_json(found: Diagnosis, fit: FitResult) -> dict:
-    """The diagnosis as plain numbers and words."""
-    return {
-        "noise_floor": found.noise.mean_absolute,
-        "mae_fit": fit.mean_absolute_error,
-        "p_value": found.p_value,
-        "ranking": [
-            {
-                "effect": row.effect,
-                "probability": row.probability,
-                "error_removed": row.error_removed,
-                "verdict": row.verdict,
-                "swallowed": row.swallowed,
-                "expected": {
-                    p.name: {"value": p.value, "std": p.standard_error, "unit": p.unit} for p in row.expected
-                },
-                "sentence": row.sentence,
-            }
-            for row in ranked_rows(found)
-        ],
-        "indistinguishable": [list(group) for group in found.groups],
-        "probability_none_of_these": found.probability_none,
-        "suspects": found.suspects,
-    }
 
 
 if __name__ == "__main__":

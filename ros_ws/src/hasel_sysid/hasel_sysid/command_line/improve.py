@@ -10,7 +10,6 @@ from hasel_sim.model import Model, save_model
 from hasel_sim.parallel import executor, simulate_all
 
 from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.ledger import Ledger
 from hasel_sysid.command_line.options import (
     add_effects,
     add_model,
@@ -27,8 +26,9 @@ from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.compare.compare import comparison_of
 from hasel_sysid.dataset import Experiment, prepared
 from hasel_sysid.improve import Improvement, Stage, improve
+from hasel_sysid.improve.ledger import Ledger
 from hasel_sysid.problem import Problem
-from hasel_sysid.report.from_diagnosis import improvement_content
+from hasel_sysid.report.from_improvement import improvement_content
 from hasel_sysid.report.pictures import stages_picture, waterfall_picture
 from hasel_sysid.report.write import write_report
 
@@ -59,7 +59,13 @@ def _improve(options: argparse.Namespace) -> None:
     experiments, unseen = load_all(options)
     label, model = chosen_model(options.model, [*experiments, *unseen])
     model = prepared(model, experiments)
-    ledger = Ledger(options.output)
+    options.output.mkdir(parents=True, exist_ok=True)
+    ledger, written = Ledger(options.output), []
+
+    def keep(stage: Stage) -> None:
+        ledger.add(stage)
+        written.append(stage)
+
     try:
         with executor(options.jobs, options.scheduler) as pool, progress_bar("improve") as progress:
             start = compare(model, experiments, pool, unseen, label, part(progress, "start: ", 0.0, 0.03))
@@ -69,13 +75,13 @@ def _improve(options: argparse.Namespace) -> None:
                 Problem(unseen, pool) if unseen else None,
                 options.effects,
                 progress=part(progress, "", 0.03, 0.97),
-                on_stage=ledger.add,
+                on_stage=keep,
             )
             stages = [_comparison(stage, experiments, unseen, pool, label) for stage in found.stages]
     except KeyboardInterrupt:
-        if not ledger.stages:
+        if not written:
             raise
-        print(f"stopped; the {len(ledger.stages)} stages so far are in {ledger.path}", file=sys.stderr)
+        print(f"stopped; stages so far ({len(written)}) are in {ledger.path}", file=sys.stderr)
         return
     _finish(options, found, start, stages)
 
@@ -94,7 +100,6 @@ def _finish(
     options: argparse.Namespace, found: Improvement, start: Comparison, stages: Sequence[Comparison]
 ) -> None:
     folder: Path = options.output
-    folder.mkdir(parents=True, exist_ok=True)
     show([stages[0]])
     print(found.diagnosis)
     print(found)

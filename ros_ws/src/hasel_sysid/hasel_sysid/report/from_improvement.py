@@ -1,75 +1,55 @@
-"""The report's content from an improvement: the error falling, what was missing, what remains."""
+"""The report's content from an improvement: the error falling, what was missing, what to measure next."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 
-from hasel_sim.effects.registry import find_effects
-from hasel_sim.errors import ModelError
-
 from hasel_sysid.compare.comparison import Comparison
-from hasel_sysid.diagnosis import Diagnosis, Finding
-from hasel_sysid.improve import Improvement, Status
-from hasel_sysid.report.content import KeyNumber, NextRun, ParameterRow, RankedRow, ReportContent, Stage
+from hasel_sysid.improve.result import Improvement, Status
+from hasel_sysid.report.content import KeyNumber, NextRun, ReportContent, Stage
+from hasel_sysid.report.from_diagnosis import ranked_rows, what_remains
 from hasel_sysid.report.from_results import comparison_content, parameter_rows
 from hasel_sysid.suggest import Suggestion
 
 _SHOWN_SUGGESTIONS = 3
+_NEWS = {
+    Status.NOTHING_MISSING: True,
+    Status.EXPLAINED: True,
+    Status.PARTLY_EXPLAINED: None,
+    Status.UNEXPLAINED: False,
+}
 
 
 def improvement_content(
-    improvement: Improvement, comparisons: Sequence[Comparison], suggestions: Sequence[Suggestion] = ()
+    improvement: Improvement,
+    comparisons: Sequence[Comparison],
+    start: Comparison | None = None,
+    suggestions: Sequence[Suggestion] = (),
 ) -> ReportContent:
-    """Report of an improvement; comparisons: the first and the last model against all runs, in this order."""
+    """Report of an improvement.
+
+    comparisons: of every stage, the fitted baseline first; start: of the baseline before it was fitted.
+    """
+    content = comparison_content(comparisons)
     last = improvement.stages[-1]
-    remarks = dict.fromkeys(last.fit.at_bound, "on its bound")
     return replace(
-        comparison_content(comparisons),
+        content,
         title=_title(improvement),
         verdict=improvement.reason,
-        good=improvement.status in (Status.NOTHING_MISSING, Status.EXPLAINED),
-        key_numbers=_key_numbers(improvement),
-        stages=tuple(_stage(stage) for stage in improvement.stages),
+        good=_NEWS[improvement.status],
+        key_numbers=_key_numbers(improvement, comparisons),
+        stages=_stages(comparisons, start),
         noise_floor=improvement.noise_floor,
-        ranking=ranking_rows(improvement.diagnosis),
-        groups=tuple(improvement.diagnosis.groups),
-        parameters=parameter_rows(last.fit.model, remarks),
+        ranking=ranked_rows(improvement.diagnosis),
+        groups=improvement.diagnosis.groups,
+        parameters=parameter_rows(last.fit.model, dict.fromkeys(last.fit.at_bound, "on its bound")),
         remains=_remains(improvement),
-        next_runs=tuple(
-            NextRun(str(s), s.difference, tuple(sorted({name for pair in s.pairs for name in pair})))
-            for s in suggestions[:_SHOWN_SUGGESTIONS]
-        ),
         messages=tuple(last.fit.sentences),
-    )
-
-
-def ranking_rows(diagnosis: Diagnosis) -> tuple[RankedRow, ...]:
-    """One row per effect, most probable first."""
-    return tuple(_row(finding) for finding in diagnosis.findings)
-
-
-def _row(finding: Finding) -> RankedRow:
-    expected = tuple(
-        ParameterRow(name, value, error, finding.units[name])
-        for name, (value, error) in finding.expected.items()
-    )
-    try:
-        physics = find_effects((finding.effect,))[0].physics
-    except ModelError:
-        physics = "an effect of your own"
-    return RankedRow(
-        finding.effect,
-        finding.verdict.value,
-        finding.probability,
-        finding.error_removed,
-        expected,
-        finding.swallowed,
-        physics,
-        str(finding),
+        next_runs=tuple(_next_run(suggestion) for suggestion in suggestions[:_SHOWN_SUGGESTIONS]),
     )
 
 
 def _title(improvement: Improvement) -> str:
-    names = ", ".join(improvement.missing)
+    names = " and ".join(improvement.missing)
     return {
         Status.NOTHING_MISSING: "Nothing is missing from the model",
         Status.EXPLAINED: f"Missing: {names}",
@@ -78,30 +58,58 @@ def _title(improvement: Improvement) -> str:
     }[improvement.status]
 
 
-def _stage(stage) -> Stage:
-    label = "fitted baseline" if not stage.effects else f"+ {stage.effects[-1]}"
-    return Stage(label, stage.mae_fit, stage.mae_validation)
-
-
-def _key_numbers(improvement: Improvement) -> tuple[KeyNumber, ...]:
-    first, last = improvement.stages[0], improvement.stages[-1]
-    numbers = [KeyNumber(f"{last.mae_fit:.4f}", "mean |Δ sin θ|, fitted runs", f"from {first.mae_fit:.4f}")]
-    if last.mae_validation is not None:
-        numbers.append(
-            KeyNumber(f"{last.mae_validation:.4f}", "on unseen runs", f"from {first.mae_validation:.4f}")
-        )
+def _key_numbers(improvement: Improvement, comparisons: Sequence[Comparison]) -> tuple[KeyNumber, ...]:
+    first, last = comparisons[0], comparisons[-1]
+    numbers = []
+    for label, before, after in (
+        ("mean |Δ sin θ|, fitted runs", first.mean_absolute_error, last.mean_absolute_error),
+        ("on unseen runs", first.mean_absolute_error_unseen, last.mean_absolute_error_unseen),
+    ):
+        if before is not None and after is not None:
+            note = f"from {before:.4f} of the fitted baseline" if len(comparisons) > 1 else "fitted baseline"
+            numbers.append(KeyNumber(f"{after:.4f}", label, note))
     numbers.append(
         KeyNumber(f"{improvement.noise_floor:.4f}", "noise floor", "what a perfect model would leave")
     )
-    numbers.append(KeyNumber(f"{improvement.unexplained_fraction:.0%}", "of the squared error unexplained"))
+    explained = f"{1 - improvement.unexplained_fraction:.0%}"
+    numbers.append(KeyNumber(explained, "explained", "of the squared error above the noise"))
     return tuple(numbers)
 
 
+def _stages(comparisons: Sequence[Comparison], start: Comparison | None) -> tuple[Stage, ...]:
+    stages = []
+    if start is not None:
+        stages.append(
+            Stage("start", start.mean_absolute_error, start.mean_absolute_error_unseen, "before the fit")
+        )
+    known: set[str] = set()
+    for comparison in comparisons:
+        added = [effect.id for effect in comparison.model.effects if effect.id not in known]
+        label = "fit" if not stages or comparison is comparisons[0] else "+ " + ", ".join(added)
+        values = [f"{effect}: {_values(comparison, effect)}" for effect in added]
+        stages.append(
+            Stage(
+                label,
+                comparison.mean_absolute_error,
+                comparison.mean_absolute_error_unseen,
+                "; ".join(values),
+            )
+        )
+        known |= set(added)
+    return tuple(stages)
+
+
+def _values(comparison: Comparison, effect: str) -> str:
+    found = [p for name, p in comparison.model.parameters.items() if name.startswith(f"{effect}.")]
+    return ", ".join(str(p).removeprefix(f"{effect}.") for p in found)
+
+
 def _remains(improvement: Improvement) -> tuple[str, ...]:
-    sentences = [
-        f"{improvement.unexplained_fraction:.0%} of the baseline's squared error above the noise is left; a small "
-        f"learned model of the baseline's residual would remove {improvement.diagnosis.ceiling:.0%}."
-    ]
-    for name, share in improvement.diagnosis.suspects.items():
-        sentences.append(f"A finer {name.replace('_', ' ')} would remove {share:.0%} of it.")
-    return tuple(sentences)
+    last = improvement.stages[-1].diagnosis
+    left = f"{improvement.unexplained_fraction:.0%} of the baseline's squared error above the noise is left."
+    return (left, *(() if last is None else what_remains(last)))
+
+
+def _next_run(suggestion: Suggestion) -> NextRun:
+    names = sorted({name for pair in suggestion.pairs for name in pair})
+    return NextRun(f"{suggestion.manoeuvre}.".capitalize(), suggestion.difference, names)
