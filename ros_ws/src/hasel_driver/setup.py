@@ -8,7 +8,7 @@ setup(
     packages=find_packages(exclude=["test"]),
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
-        (f"share/{PACKAGE}", ["package.xml"]),
+        (f"share/{PACKAGE}", ["package.xml", "README.md"]),
     ],
     install_requires=["setuptools"],
     extras_require={"test": ["pytest"]},
@@ -19,6 +19,7 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
+            "bench = hasel_driver.bench:main",
             "driver_node = hasel_driver.driver_node:main",
             "stored_charge = hasel_driver.stored_charge:main",
             "virtual_shvps = hasel_driver.virtual_shvps:main",

@@ -1,35 +1,33 @@
 """`ros2 run hasel_driver driver_node`: lifecycle node on top of the supply's thread."""
 
+import sys
 import time
 from concurrent.futures import Future
 from functools import partial
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
-from hasel_interfaces.msg import Actuation, SupplyState
+from hasel_interfaces.msg import SupplyState
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
 from hasel_driver.backends import make_supply
 from hasel_driver.errors import DriverError, RefusedError
 from hasel_driver.experiment_server import ExperimentServer
 from hasel_driver.faults import Fault, FaultCode
+from hasel_driver.limits import Voltages
 from hasel_driver.messages import to_diagnostics, to_supply_state
 from hasel_driver.mode import Mode
 from hasel_driver.node_parameters import declare, values
 from hasel_driver.supervisor import Status, Supervisor
 from hasel_driver.supply_thread import SupplyThread
+from hasel_driver.urgent_inputs import ALIVE_PERIOD_S, UrgentInputs
 
 PROOF_TIMEOUT_S = 0.4
-LATCHED = QoSProfile(
-    depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
-)
-NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
+THREAD_SWITCH_S = 0.0005  # Python's 5 ms would let the executor hold up the supply's thread
 
 
 class DriverNode(LifecycleNode):
@@ -42,23 +40,16 @@ class DriverNode(LifecycleNode):
         self._lifecycle_active = False
         self._stop_asserted = False
         self._configured_s = 0.0
-        quick, slow = MutuallyExclusiveCallbackGroup(), ReentrantCallbackGroup()
+        slow = ReentrantCallbackGroup()
         self._state = self.create_publisher(SupplyState, "/hasel/state", 50)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
-        self.create_subscription(Actuation, "/hasel/command", self._on_command, NEWEST, callback_group=quick)
-        self.create_subscription(
-            Bool,
-            "/hasel/emergency_stop",
-            self._on_stop_topic,
-            LATCHED,
-            callback_group=MutuallyExclusiveCallbackGroup(),
-        )
         for name in ("arm", "disarm", "emergency_stop", "clear_fault"):
             handler = partial(self._serve, getattr(self, f"_{name}"))
             self.create_service(Trigger, f"/hasel/{name}", handler, callback_group=slow)
-        self.create_timer(0.05, self._on_heartbeat, callback_group=quick)
+        self.create_timer(ALIVE_PERIOD_S, self._on_heartbeat, callback_group=MutuallyExclusiveCallbackGroup())
         self.create_timer(1.0, self._on_diagnostics, callback_group=slow)
         self.experiments = ExperimentServer(self, lambda: self._thread, slow)
+        self._inputs = UrgentInputs(self._on_command, self._on_stop_topic, self._on_inputs_alive)
 
     # Lifecycle
 
@@ -72,10 +63,10 @@ class DriverNode(LifecycleNode):
         except DriverError as error:
             self.get_logger().error(str(error))
             return TransitionCallbackReturn.FAILURE
-        if self._stop_asserted:
-            supervisor.fail(Fault(FaultCode.EMERGENCY_STOP, "the topic said so before this driver started"))
         self._thread = SupplyThread(supervisor, supply, self._publish, self.experiments.step)
         self._thread.start()
+        if self._stop_asserted:
+            self.fail(Fault(FaultCode.EMERGENCY_STOP, "by topic, before the port was opened"))
         self._configured_s = time.monotonic()
         self.experiments.watch_topics(chosen["recorded_topics"])
         self.get_logger().info(f"{supervisor.name} on {chosen['port']}, disarmed.")
@@ -118,22 +109,26 @@ class DriverNode(LifecycleNode):
         if thread is not None:
             thread.stop()
 
+    def leave(self) -> None:
+        """Stop listening."""
+        self._inputs.close()
+
     # Topics
 
-    def _on_command(self, command: Actuation) -> None:
+    def _on_command(self, voltage_v: Voltages, age_s: float) -> None:
         thread = self._thread
-        if thread is None or not self._lifecycle_active:
-            return
-        stamp = command.header.stamp
-        sent_s = stamp.sec + stamp.nanosec * 1e-9
-        age_s = time.time() - sent_s if sent_s else 0.0
-        voltage = (float(command.voltage[0]), float(command.voltage[1]))
-        thread.call(lambda: thread.supervisor.command(voltage, age_s))
+        if thread is not None and self._lifecycle_active:
+            thread.call(lambda: thread.supervisor.command(voltage_v, age_s))
 
-    def _on_stop_topic(self, message: Bool) -> None:
-        self._stop_asserted = message.data
-        if message.data:
+    def _on_stop_topic(self, asserted: bool) -> None:
+        self._stop_asserted = asserted
+        if asserted:
             self.fail(Fault(FaultCode.EMERGENCY_STOP, "by topic"))
+
+    def _on_inputs_alive(self) -> None:
+        thread = self._thread
+        if thread is not None:
+            thread.host_is_alive("inputs")
 
     def _publish(self, status: Status) -> None:
         message = to_supply_state(status)
@@ -144,7 +139,7 @@ class DriverNode(LifecycleNode):
         thread = self._thread
         if thread is None:
             return
-        thread.host_is_alive()
+        thread.host_is_alive("services")
         masters = self.count_publishers("/hasel/command")
         if masters > 1 and thread.supervisor.armed:
             self.fail(Fault(FaultCode.TWO_MASTERS, f"{masters} publishers of /hasel/command"))
@@ -219,7 +214,9 @@ class DriverNode(LifecycleNode):
         thread = self._require_thread()
         if self._stop_asserted:
             raise RefusedError("The emergency stop topic still says true: publish false first.")
-        _result(thread.call(thread.supervisor.clear_fault))
+        supervisor = thread.supervisor
+        _result(thread.expect(lambda: supervisor.status().grounded is not False, PROOF_TIMEOUT_S))
+        _result(thread.call(supervisor.clear_fault))
         return "Cleared: STANDBY, disarmed."
 
     def fail(self, fault: Fault) -> None:
@@ -266,6 +263,7 @@ def _result(future: Future):
 
 def main() -> None:
     """Spin until shut down; the supply is disarmed on the way out."""
+    sys.setswitchinterval(THREAD_SWITCH_S)
     rclpy.init()
     node = DriverNode()
     executor = MultiThreadedExecutor(num_threads=4)
@@ -282,6 +280,7 @@ def main() -> None:
         pass
     finally:
         node.close()
+        node.leave()
         rclpy.try_shutdown()
 
 

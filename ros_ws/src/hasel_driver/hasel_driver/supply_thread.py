@@ -46,7 +46,7 @@ class SupplyThread(threading.Thread):
         self._wake_reader, self._wake_writer = os.pipe()
         os.set_blocking(self._wake_reader, False)
         os.set_blocking(self._wake_writer, False)
-        self._host_alive_s = time.monotonic()
+        self._host_alive_s: dict[str, float] = {}
         self._stopping = False
         self._status_s = 0.0
 
@@ -64,9 +64,9 @@ class SupplyThread(threading.Thread):
         self.call(lambda: self._expectations.append(_Expectation(condition, deadline_s, future)))
         return future
 
-    def host_is_alive(self) -> None:
-        """To be called by whoever sends commands; while armed, silence of 300 ms is a fault."""
-        self._host_alive_s = time.monotonic()
+    def host_is_alive(self, part: str) -> None:
+        """To be called by each part of the node; while armed, 300 ms without one of them is a fault."""
+        self._host_alive_s[part] = time.monotonic()
 
     def stop(self) -> None:
         """Disarm, close the port and end."""
@@ -99,14 +99,19 @@ class SupplyThread(threading.Thread):
         self._run_requests()
         fresh = self.supervisor.service()
         now_s = time.monotonic()
-        stalled_s = now_s - self._host_alive_s
-        if self.supervisor.armed and stalled_s > HOST_STALL_S:
-            self.supervisor.fail(Fault(FaultCode.HOST_STALLED, f"no sign of life for {stalled_s:.2f} s"))
+        if self.supervisor.armed:
+            self._watch_host(now_s)
         self._on_step()
         self._check_expectations(now_s)
         if fresh or now_s - self._status_s > STATUS_PERIOD_S:
             self._status_s = now_s
             self._on_status(self.supervisor.status())
+
+    def _watch_host(self, now_s: float) -> None:
+        for part, alive_s in list(self._host_alive_s.items()):
+            if now_s - alive_s > HOST_STALL_S:
+                detail = f"no sign of life from its {part} for {now_s - alive_s:.2f} s"
+                self.supervisor.fail(Fault(FaultCode.HOST_STALLED, detail))
 
     def _run_requests(self) -> None:
         while not self._requests.empty():

@@ -7,6 +7,7 @@ the output goes live and dead (host's monotonic clock [s]) and answers the quest
 import argparse
 import os
 import random
+import re
 import select
 import sys
 import time
@@ -19,6 +20,7 @@ from hasel_driver.virtual_muscle import VirtualMuscle
 
 LIVE_V = 50.0  # extra-low-voltage bound used in the tests' question "is the output dead?"
 MOST_CATCH_UP_MS = 100
+_SET_VOLTAGE = re.compile(rb"SET VOLTAGE (-?\d+)")
 INPUTS = {
     "silence": "send nothing to the host until `recover`",
     "deaf": "hear nothing from the host until `recover`",
@@ -32,6 +34,7 @@ INPUTS = {
     "unplug": "pull the cable",
     "replug": "put it back, under a new path (printed, and linked)",
     "recover": "undo the above but reset and unplug",
+    "trace": "print `wire`, the time and the upper voltage of each SET VOLTAGE from now on",
     "output": "print true voltages [V], ground contacts and highest magnitudes so far [V]",
     "quit": "end",
     "help": "print this list",
@@ -45,7 +48,7 @@ class VirtualSupply:
         self.board, self.port, self._tell = board, port, tell
         self._faults: set[str] = set()
         self._host_present = False
-        self._live = False
+        self._live = self._tracing = False
         self._peaks = [0.0, 0.0]
         self._ticked_s = time.monotonic()
         self.running = True
@@ -80,6 +83,10 @@ class VirtualSupply:
         if len(data) > 3 and "noise" in self._faults:
             self._faults.remove("noise")
             data = data[:-3] + bytes([data[-3] ^ 1]) + data[-2:]
+        if self._tracing:
+            now_s = time.monotonic()
+            for voltage in _SET_VOLTAGE.findall(data):
+                self._tell(f"wire {now_s:.6f} {voltage.decode()}")
         if not self._faults & {"deaf", "stuck"}:
             self.board.receive(data)
 
@@ -125,6 +132,9 @@ class VirtualSupply:
         self.port.unplug()
         self.port.plug()
         self._tell(f"port {self.port.path}")
+
+    def _inject_trace(self) -> None:
+        self._tracing = True
 
     def _inject_output(self) -> None:
         upper, lower = (muscle.voltage_v for muscle in self.board.muscles)

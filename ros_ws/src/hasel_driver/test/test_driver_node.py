@@ -72,6 +72,7 @@ def test_deactivating_disarms_and_activating_does_not_arm(driver, shared_rig, ro
     ros.transition(CONFIGURE)
     ros.await_mode(STANDBY)
     assert not shared_rig.live
+    ros.transition(ACTIVATE)
 
 
 def test_illegal_transitions(driver, shared_rig, ros):
@@ -80,12 +81,12 @@ def test_illegal_transitions(driver, shared_rig, ros):
         driver.arm()
         ros.drive(lambda: shared_rig.live)
         at_s = time.monotonic()
-        ros.transition(CONFIGURE, answered=False)
+        ros.illegal_transition(CONFIGURE)
         assert shared_rig.await_live(False) - at_s < GROUNDED_WITHIN_S
-        state = ros.await_mode(FAULT)
-        assert (state.fault_code, "reports its output grounded" in state.fault_text) == (110, True)
+        assert ros.await_mode(FAULT).fault_code == FaultCode.ILLEGAL_TRANSITION
+        ros.wait(lambda: "reports its output grounded" in ros.state.fault_text)
         assert ros.trigger("clear_fault").success
-    ros.transition(CLEANUP, answered=False)
+    ros.illegal_transition(CLEANUP)
     ros.await_mode(STANDBY)
     assert driver.process.poll() is None
     assert "Illegal lifecycle transition" in "".join(driver.log)

@@ -12,7 +12,7 @@ from hasel_driver.faults import Fault, FaultCode
 from hasel_driver.mode import Mode
 
 GROUNDED_WITHIN_S = 0.5
-REPEATS = 4
+REPEATS = 3
 
 
 def second_master(bench):

@@ -29,7 +29,7 @@ class Bench:
 
     def _step(self) -> None:
         if self.host_alive:
-            self.thread.host_is_alive()
+            self.thread.host_is_alive("test")
 
     def call(self, method: Callable[..., Any], *arguments: Any) -> Any:
         """Call a method of the supervisor in its thread."""

@@ -18,6 +18,7 @@ class Rig:
         )
         self._answers: queue.Queue[list[str]] = queue.Queue()
         self._ports: queue.Queue[str] = queue.Queue()
+        self.wire: list[tuple[float, int]] = []  # (monotonic time [s], upper voltage [V]) after `trace`
         self.changes: list[tuple[float, bool]] = []  # (monotonic time [s], live)
         threading.Thread(target=self._listen, daemon=True).start()
         self.port = self._ports.get(timeout=10)
@@ -27,6 +28,8 @@ class Rig:
             words = line.split()
             if words[:1] in (["live"], ["dead"]):
                 self.changes.append((float(words[1]), words[0] == "live"))
+            elif words[:1] == ["wire"]:
+                self.wire.append((float(words[1]), int(words[2])))
             elif words[:1] == ["port"]:
                 self._ports.put(words[1])
             elif words[:1] in (["output"], ["contacts"]):

@@ -37,7 +37,8 @@ class RosClient:
         self._clients: dict[str, Any] = {}
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self.node)
-        threading.Thread(target=self._spin, daemon=True).start()
+        self._thread = threading.Thread(target=self._spin, daemon=True)
+        self._thread.start()
 
     def _spin(self) -> None:
         with suppress(ExternalShutdownException):
@@ -45,6 +46,9 @@ class RosClient:
 
     def close(self) -> None:
         """Leave the graph."""
+        self._executor.shutdown()
+        self._thread.join(timeout=5.0)
+        self.node.destroy_node()
         rclpy.try_shutdown()
 
     def request(self, kind: type, name: str, request: Any) -> Any:

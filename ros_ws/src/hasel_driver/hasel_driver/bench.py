@@ -1,0 +1,102 @@
+"""`ros2 run hasel_driver bench`: how fast a command reaches the wire, and how fast a dead node is grounded."""
+
+import argparse
+import sys
+import time
+from collections.abc import Sequence
+
+import numpy as np
+
+from hasel_driver import protocol
+from hasel_driver.testing.driver_process import DriverProcess
+from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Rig
+from hasel_driver.testing.ros_client import RosClient
+
+BAUD = 115_200
+LATENCY_BAR_S = 0.005
+GROUNDED_BAR_S = 0.5
+PACE_HZ = 100.0
+FLAT_OUT_S = 3.0
+
+
+def latencies(client: RosClient, rig: Rig, count: int) -> np.ndarray:
+    """Time from publishing a command to its first byte on the wire [s], shape [≤ count]."""
+    published_s: dict[int, float] = {}
+    rig.wire.clear()
+    next_s = time.monotonic()
+    for number in range(1, count + 1):
+        next_s += 1 / PACE_HZ
+        time.sleep(max(0.0, next_s - time.monotonic()))
+        published_s[number] = time.monotonic()
+        client.command((float(number), 0.0))
+    time.sleep(0.1)
+    return np.array([time_s - published_s[number] for time_s, number in rig.wire if number in published_s])
+
+
+def command_rate(client: RosClient, rig: Rig, duration_s: float) -> float:
+    """Commands on the wire [1/s] while they are published as fast as can be."""
+    rig.wire.clear()
+    begin_s, number = time.monotonic(), 0
+    while time.monotonic() - begin_s < duration_s:
+        number = number % 5000 + 1
+        client.command((float(number), 0.0))
+        time.sleep(0.0005)
+    return len(rig.wire) / (time.monotonic() - begin_s)
+
+
+def grounding_times(client: RosClient, rig: Rig, count: int) -> list[float]:
+    """Time from SIGKILL of the live node to a dead output [s]."""
+    times_s = []
+    for _ in range(count):
+        driver = DriverProcess(client, rig.port)
+        driver.arm()
+        client.drive(lambda: rig.live)
+        killed_s = time.monotonic()
+        driver.process.kill()
+        times_s.append(rig.await_live(False) - killed_s)
+        driver.close()
+    return times_s
+
+
+def report(name: str, values_s: Sequence[float], bar_s: float, percentile: float) -> str:
+    """One line: median, high percentile or maximum, and the bar."""
+    high_s = float(np.percentile(values_s, percentile))
+    label = "maximum" if percentile == 100 else f"{percentile:g}th percentile"
+    verdict = "met" if high_s <= bar_s else "MISSED"
+    return (
+        f"{name}: median {1e3 * float(np.median(values_s)):.2f} ms, {label} {1e3 * high_s:.2f} ms"
+        f" (bar {1e3 * bar_s:g} ms: {verdict}; n = {len(values_s)})"
+    )
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(prog="bench", description=__doc__.splitlines()[0])
+    parser.add_argument("--commands", type=int, default=1000, help="commands for the latency")
+    parser.add_argument("--kills", type=int, default=5, help="nodes to be killed")
+    arguments = parser.parse_args()
+    client, rig = RosClient(), Rig(VIRTUAL_SUPPLY)
+    try:
+        driver = DriverProcess(client, rig.port)
+        driver.arm()
+        rig.say("trace")
+        measured_s = latencies(client, rig, arguments.commands)
+        rate_hz = command_rate(client, rig, FLAT_OUT_S)
+        driver.close()
+        print(report("driver, command to wire", measured_s, LATENCY_BAR_S, 99))
+        length = len(protocol.encode_command(0, "SET", "VOLTAGE", 6000, -6000))
+        print(
+            f"driver, command rate: {rate_hz:.0f} /s; a line of {length} characters takes"
+            f" {10e3 * length / BAUD:.1f} ms more at {BAUD} baud, which carries {BAUD / 10 / length:.0f} /s"
+        )
+        grounded_s = grounding_times(client, rig, arguments.kills)
+        print(report("driver, node killed to output grounded", grounded_s, GROUNDED_BAR_S, 100))
+    except AssertionError as failure:
+        sys.exit(f"The measurement failed: {failure}; try again on a machine with less to do.")
+    finally:
+        rig.close()
+        client.close()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,27 @@
+"""Whether this machine kept time: a test against the clock proves nothing on one that did not."""
+
+import threading
+import time
+
+PERIOD_S = 0.01
+TOLERANCE_S = 0.05
+
+
+class Punctuality:
+    """Measures in the background how late a thread is woken."""
+
+    def __init__(self) -> None:
+        self._late: list[tuple[float, float]] = []  # (when, how late) [s]
+        threading.Thread(target=self._watch, daemon=True).start()
+
+    def _watch(self) -> None:
+        while True:
+            asleep_s = time.monotonic()
+            time.sleep(PERIOD_S)
+            awake_s = time.monotonic()
+            if awake_s - asleep_s > PERIOD_S + TOLERANCE_S:
+                self._late.append((awake_s, awake_s - asleep_s - PERIOD_S))
+
+    def worst_since(self, begin_s: float) -> float:
+        """Longest delay beyond the tolerance since `begin_s` (monotonic) [s]; 0 if there was none."""
+        return max((late_s for when_s, late_s in self._late if when_s >= begin_s), default=0.0)

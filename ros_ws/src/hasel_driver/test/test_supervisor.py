@@ -1,0 +1,244 @@
+"""The rules of arming, limits, timeouts and faults, on a supply that does what it is told, or does not."""
+
+import math
+
+import pytest
+from hasel_driver.errors import RefusedError
+from hasel_driver.faults import Fault, FaultCode, SupplyFaultError
+from hasel_driver.limits import Limits
+from hasel_driver.mode import Mode
+from hasel_driver.supervisor import Supervisor
+from hasel_driver.supply import Capabilities, Connection, Reading, Supply
+from hasel_driver.waveform import Waveform
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+ZERO = (0.0, 0.0)
+
+
+class Clock:
+    """Time that a test advances."""
+
+    def __init__(self) -> None:
+        self.now_s = 100.0
+
+    def __call__(self) -> float:
+        return self.now_s
+
+
+class ObedientSupply(Supply):
+    """Does at once what it is asked, unless `deaf`, `silent` or `broken`."""
+
+    capabilities = Capabilities(deadman=True, proves_grounded=True, bipolar=True, waveforms=True)
+
+    def __init__(self) -> None:
+        super().__init__(Limits(maximum_voltage_v=5000.0))
+        self.mode, self.voltage_v, self.fault = Mode.STANDBY, ZERO, None
+        self.deaf = self.silent = self.broken = False
+        self.heartbeats: list[bool] = []
+
+    def open(self) -> Connection:
+        self.mode, self.voltage_v, self.fault = Mode.STANDBY, ZERO, None
+        return Connection("obedient")
+
+    def close(self) -> None:
+        self.disarm()
+
+    def descriptors(self) -> list[int]:
+        return []
+
+    def service(self, now_s: float, heartbeat: bool) -> list[Reading]:
+        if self.broken:
+            raise SupplyFaultError(FaultCode.GARBAGE_RECEIVED)
+        self.heartbeats.append(heartbeat)
+        if self.silent:
+            return []
+        grounded = self.voltage_v == ZERO
+        values = (self.voltage_v, self.voltage_v, ZERO)
+        return [Reading(now_s, self.mode, grounded, self.fault, *values)]
+
+    def _become(self, mode: Mode, voltage_v=ZERO) -> None:
+        if not self.deaf:
+            self.mode, self.voltage_v = mode, voltage_v
+
+    def arm(self) -> None:
+        self._become(Mode.ARMED)
+
+    def disarm(self) -> None:
+        self._become(Mode.STANDBY)
+
+    def stop(self) -> None:
+        self._become(Mode.STANDBY)
+
+    def set_voltage(self, voltage_v) -> None:
+        self._become(Mode.ACTIVE if any(voltage_v) else Mode.ARMED, voltage_v)
+
+    def start(self, waveform: Waveform) -> None:
+        self._become(Mode.ACTIVE, (waveform.voltage_v, 0.0))
+
+
+class Case:
+    """A supervisor, its supply and its clock."""
+
+    def __init__(self) -> None:
+        self.supply, self.clock = ObedientSupply(), Clock()
+        self.supervisor = Supervisor(self.supply, self.clock)
+        self.supervisor.connect()
+
+    def pass_time(self, duration_s: float) -> None:
+        """Serve every 10 ms."""
+        for _ in range(round(duration_s / 0.01)):
+            self.clock.now_s += 0.01
+            self.supervisor.service()
+
+    def arm(self) -> None:
+        """And let it happen."""
+        self.supervisor.arm()
+        self.pass_time(0.02)
+
+
+@pytest.fixture
+def case() -> Case:
+    """A supervisor in STANDBY."""
+    return Case()
+
+
+def test_connecting_does_not_arm(case):
+    """After connecting the state is STANDBY, by the supply's own report."""
+    case.pass_time(1.0)
+    assert case.supervisor.status().mode is Mode.STANDBY
+    assert case.supervisor.status().output == "grounded"
+
+
+def test_commands_before_arming_are_rejected_and_counted(case):
+    """Nothing is sent unless armed."""
+    case.supervisor.command((1000.0, 0.0))
+    assert (case.supply.voltage_v, case.supervisor.rejected_commands) == (ZERO, 1)
+
+
+def test_a_command_is_clipped_and_expires(case):
+    """What is sent is within the limit, and zero 200 ms after the command was made."""
+    case.arm()
+    case.supervisor.command((9000.0, -9000.0), age_s=0.1)
+    assert case.supply.voltage_v == (5000.0, -5000.0)
+    case.pass_time(0.08)
+    assert case.supply.voltage_v == (5000.0, -5000.0)
+    case.pass_time(0.04)
+    assert (case.supply.voltage_v, case.supply.mode) == (ZERO, Mode.ARMED)
+
+
+@pytest.mark.parametrize("age_s", [0.2, 5.0, -0.2, math.nan])
+def test_commands_of_another_time_are_rejected(case, age_s):
+    """Too old, from the future, or of no time at all."""
+    case.arm()
+    case.supervisor.command((1000.0, 0.0), age_s)
+    assert case.supply.voltage_v == ZERO
+
+
+def test_old_reports_are_no_knowledge(case):
+    """Without reports for 200 ms the state is FAULT and every value unknown."""
+    case.arm()
+    case.supervisor.command((1000.0, 0.0))
+    case.supply.silent = True
+    case.pass_time(0.25)
+    status = case.supervisor.status()
+    assert (status.mode, status.output, status.fault.code) == (Mode.FAULT, "unknown", FaultCode.NO_TELEMETRY)
+    assert all(math.isnan(value) for value in (*status.commanded_v, *status.measured_v, *status.current_a))
+
+
+def test_no_heartbeat_for_a_supply_that_does_not_stop(case):
+    """A supply that stays live in spite of a stop gets no more heartbeats, so that its own timeout works."""
+    case.arm()
+    case.supervisor.command((1000.0, 0.0))
+    case.pass_time(0.02)
+    case.supply.deaf = True
+    case.supervisor.fail(Fault(FaultCode.EMERGENCY_STOP))
+    case.supply.heartbeats.clear()
+    case.pass_time(0.5)
+    assert True not in case.supply.heartbeats
+    assert case.supervisor.status().output == "live"
+    with pytest.raises(RefusedError, match="does not report its output grounded"):
+        case.supervisor.clear_fault()
+
+
+def test_a_supply_that_disarms_itself_is_a_fault(case):
+    """STANDBY that nobody asked for is not silently accepted, nor armed again."""
+    case.arm()
+    case.pass_time(0.5)
+    case.supply.mode = Mode.STANDBY
+    case.pass_time(0.5)
+    assert case.supervisor.fault.code is FaultCode.UNEXPECTED_STATE
+    assert case.supply.mode is Mode.STANDBY
+
+
+def test_a_supply_that_arms_itself_is_stopped(case):
+    """ARMED that nobody asked for is a fault, and is ended."""
+    case.pass_time(0.5)
+    case.supply.mode = Mode.ARMED
+    case.pass_time(0.1)
+    assert case.supervisor.fault.code is FaultCode.UNEXPECTED_STATE
+    assert case.supply.mode is Mode.STANDBY
+
+
+def test_the_first_fault_stays_but_an_emergency_stop_shows(case):
+    """The cause is not overwritten by its consequences; an emergency stop always is seen."""
+    case.supervisor.fail(Fault(FaultCode.DEVICE_RESET))
+    case.supervisor.fail(Fault(FaultCode.NO_REPLY))
+    assert case.supervisor.fault.code is FaultCode.DEVICE_RESET
+    case.supervisor.fail(Fault(FaultCode.EMERGENCY_STOP))
+    assert case.supervisor.fault.code is FaultCode.EMERGENCY_STOP
+
+
+def test_faults_print_as_sentences():
+    """Every code has words."""
+    assert str(Fault(FaultCode.LINK_LOST, "/dev/ttyACM0")) == "the serial port is gone: /dev/ttyACM0"
+    assert all(len(str(Fault(code))) > 5 for code in FaultCode)
+
+
+ACTIONS = st.lists(
+    st.sampled_from(
+        ["arm", "disarm", "command", "nan", "fail", "clear", "begin", "start", "hold", "end", "break", "mend"]
+        + ["silence", "wait", "wait longer"]
+    ),
+    max_size=40,
+)
+
+
+@settings(max_examples=300, deadline=None)
+@given(ACTIONS)
+def test_no_sequence_of_calls_leaves_voltage_where_it_must_not_be(actions):
+    """In STANDBY and FAULT the supply is at 0 V; live needs an `arm` since the last disarm, fault or clear."""
+    case, armed = Case(), False
+    supervisor, supply = case.supervisor, case.supply
+    calls = {
+        "arm": supervisor.arm,
+        "disarm": supervisor.disarm,
+        "command": lambda: supervisor.command((9000.0, -100.0)),
+        "nan": lambda: supervisor.command((math.nan, 0.0)),
+        "fail": lambda: supervisor.fail(Fault(FaultCode.EMERGENCY_STOP)),
+        "clear": supervisor.clear_fault,
+        "begin": supervisor.begin_experiment,
+        "start": lambda: supervisor.start(Waveform("box", 3000.0, 1.0, 1)),
+        "hold": lambda: supervisor.hold((3000.0, 0.0)),
+        "end": supervisor.end_experiment,
+        "break": lambda: setattr(supply, "broken", True),
+        "mend": lambda: [setattr(supply, name, False) for name in ("broken", "silent")],
+        "silence": lambda: setattr(supply, "silent", True),
+        "wait": lambda: case.pass_time(0.05),
+        "wait longer": lambda: case.pass_time(0.5),
+    }
+    for action in actions:
+        if action == "clear" and (supply.broken or supply.silent):
+            continue  # would wait for a supply that cannot answer
+        try:
+            calls[action]()
+        except RefusedError:
+            continue
+        if action == "arm":
+            armed = True
+        elif action in ("disarm", "fail", "clear"):
+            armed = False
+        if supervisor.fault is not None or supervisor.status().mode is Mode.STANDBY:
+            assert supply.voltage_v == ZERO
+        assert armed or supply.voltage_v == ZERO
+        assert max(map(abs, supply.voltage_v)) <= 5000.0
