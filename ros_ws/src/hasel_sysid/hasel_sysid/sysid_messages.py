@@ -5,11 +5,13 @@ from collections.abc import Mapping
 
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
-from hasel_interfaces.msg import Fit, NamedParameter, RunningError
+from hasel_interfaces.msg import Diagnosis, Fit, NamedParameter, RankedEffect, RunningError
 from hasel_sim.model import Model
 from hasel_sim.simulator_messages import to_time
 from std_msgs.msg import Header
 
+from hasel_sysid.diagnosis import Finding, Verdict
+from hasel_sysid.diagnosis import result as diagnosis_result
 from hasel_sysid.fit import FitResult
 from hasel_sysid.live import running_error
 
@@ -50,6 +52,39 @@ def fit_message(result: FitResult, model_file: str, stamp: Time) -> Fit:
         mae_fit=result.mean_absolute_error,
         mae_validation=math.nan,
         messages=result.sentences,
+    )
+
+
+def diagnosis_message(found: diagnosis_result.Diagnosis, status: str, stamp: Time) -> Diagnosis:
+    """`/hasel/diagnosis`."""
+    return Diagnosis(
+        header=Header(stamp=stamp),
+        status=status,
+        missing=[finding.effect for finding in found.findings if finding.verdict is Verdict.MISSING],
+        ranking=[_ranked(finding) for finding in found.findings],
+        indistinguishable=[", ".join(group) for group in found.groups],
+        noise_floor=found.noise.mean_absolute,
+        unexplained_fraction=1.0 - found.explained,
+    )
+
+
+def _ranked(finding: Finding) -> RankedEffect:
+    parameters = [
+        NamedParameter(
+            name=name,
+            value=value,
+            standard_error=error,
+            unit=finding.units[name],
+            determined=math.isfinite(error),
+        )
+        for name, (value, error) in finding.expected.items()
+    ]
+    return RankedEffect(
+        effect=finding.effect,
+        probability=finding.probability,
+        error_removed=finding.error_removed,
+        verdict=str(finding),
+        parameters=parameters,
     )
 
 

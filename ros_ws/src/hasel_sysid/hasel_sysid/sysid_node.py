@@ -6,13 +6,13 @@ from pathlib import Path
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
-from hasel_interfaces.msg import BendingAngle, Fit, RunningError, SupplyState
-from hasel_interfaces.srv import FitModel
+from hasel_interfaces.msg import BendingAngle, Diagnosis, Fit, RunningError, SupplyState
+from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import RecordingError
 from hasel_recording.topics import MEASURED, SIMULATED, STATE
 from hasel_sim.errors import HaselSimError
 from hasel_sim.live.live_model import live_model
-from hasel_sim.model import save_model
+from hasel_sim.model import Model, save_model
 from hasel_sim.node_parameters import NodeParameter, declare, words
 from hasel_sim.simulator_messages import to_nanoseconds
 from hasel_sim.simulator_node import EVERY_MESSAGE
@@ -24,11 +24,11 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from hasel_sysid.errors import SysidError
 from hasel_sysid.live.epochs import Epochs, StreamEpoch
-from hasel_sysid.live.fitting import chosen_recordings, fit_recordings
+from hasel_sysid.live.fitting import chosen_recordings, diagnose_recordings, fit_recordings, status
 from hasel_sysid.live.heard import Heard
 from hasel_sysid.live.pairing import Pair, Pairing
 from hasel_sysid.live.running_error import RunningErrors
-from hasel_sysid.sysid_messages import diagnostics, error_message, fit_message
+from hasel_sysid.sysid_messages import diagnosis_message, diagnostics, error_message, fit_message
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 PARAMETERS = (
@@ -55,6 +55,7 @@ class SysidNode(Node):
         self._pairs, self._latest, self._busy, self._doing = 0, None, threading.Lock(), ""
         self._error = self.create_publisher(RunningError, "/hasel/error", EVERY_MESSAGE)
         self._fit = self.create_publisher(Fit, "/hasel/fit", LATCHED)
+        self._diagnosis = self.create_publisher(Diagnosis, "/hasel/diagnosis", LATCHED)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         hearing, working = MutuallyExclusiveCallbackGroup(), ReentrantCallbackGroup()
         self._inputs = {
@@ -67,6 +68,7 @@ class SysidNode(Node):
         }
         self.create_timer(1.0, self._report, callback_group=hearing)
         self.create_service(FitModel, "/hasel/fit", self._serve_fit, callback_group=working)
+        self.create_service(Diagnose, "/hasel/diagnose", self._serve_diagnosis, callback_group=working)
 
     def _value(self, name: str):
         return self.get_parameter(name).value
@@ -107,8 +109,7 @@ class SysidNode(Node):
 
     def _serve_fit(self, request: FitModel.Request, response: FitModel.Response) -> FitModel.Response:
         def fit() -> str:
-            model, _ = live_model(self._value("model"), words(self, "effects"))
-            recordings = self._recordings(request.recordings)
+            model, recordings = self._model(), self._recordings(request.recordings)
             result = fit_recordings(model, recordings, request.method, self._value("jobs"), self._progress)
             path = Path(self._value("output")) / f"{model.name}_fitted.yaml"
             save_model(result.model, path)
@@ -117,6 +118,21 @@ class SysidNode(Node):
             return f"{result} Written to {path}; the simulator takes it by /hasel/load_model."
 
         return self._serve(fit, response)
+
+    def _serve_diagnosis(self, request: Diagnose.Request, response: Diagnose.Response) -> Diagnose.Response:
+        def diagnose() -> str:
+            model, recordings = self._model(), self._recordings(request.recordings)
+            effects = [effect for effect in request.effects if effect]
+            found = diagnose_recordings(model, recordings, effects, self._value("jobs"), self._progress)
+            stamp = self.get_clock().now().to_msg()
+            response.diagnosis = diagnosis_message(found, status(found), stamp)
+            self._diagnosis.publish(response.diagnosis)
+            return str(found)
+
+        return self._serve(diagnose, response)
+
+    def _model(self) -> Model:
+        return live_model(self._value("model"), words(self, "effects"))[0]
 
     def _recordings(self, paths: list[str]):
         return chosen_recordings(paths, [] if paths else self._heard.recordings())

@@ -1,4 +1,4 @@
-"""The fit that the node's service asks for."""
+"""The fit and the diagnosis that the node's services ask for."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -9,12 +9,16 @@ from hasel_sim.model import Model
 from hasel_sim.parallel import executor
 
 from hasel_sysid.dataset import experiment, prepared
+from hasel_sysid.diagnosis import Diagnosis, Verdict, diagnose
+from hasel_sysid.diagnosis.judgement import SIGNIFICANT
 from hasel_sysid.errors import SysidError
-from hasel_sysid.fit import METHODS, FitResult
+from hasel_sysid.fit import METHODS, FitResult, fit_least_squares
 from hasel_sysid.fit.least_squares import Progress
 from hasel_sysid.problem import Problem
 
 DEFAULT_METHOD = "least_squares"
+_EXPLAINED, _PARTLY = 0.9, 0.6
+"""Share of the error above the noise that the best effect must remove to be called an explanation."""
 
 
 def chosen_recordings(paths: Sequence[str | Path], heard: Sequence[Recording]) -> list[Recording]:
@@ -35,3 +39,31 @@ def fit_recordings(
     experiments = [experiment(recording) for recording in recordings]
     with executor(jobs or None) as pool:
         return METHODS[method](Problem(experiments, pool), prepared(model, experiments), progress)
+
+
+def diagnose_recordings(
+    model: Model,
+    recordings: Sequence[Recording],
+    effects: Sequence[str],
+    jobs: int,
+    progress: Progress | None = None,
+) -> Diagnosis:
+    """Fit and rank the effects (all known ones when none is named) that could be missing.
+
+    Raises SysidError, SimulationError or ModelError.
+    """
+    experiments = [experiment(recording) for recording in recordings]
+    with executor(jobs or None) as pool:
+        problem = Problem(experiments, pool)
+        fit = fit_least_squares(problem, prepared(model, experiments), progress)
+        return diagnose(problem, fit, effects or None, progress)
+
+
+def status(diagnosis: Diagnosis) -> str:
+    """What a diagnosis comes to, before any effect is added: one of the words of the Diagnosis message."""
+    if diagnosis.p_value >= SIGNIFICANT:
+        return "nothing_missing"
+    missing = any(finding.verdict is Verdict.MISSING for finding in diagnosis.findings)
+    if not missing or diagnosis.explained < _PARTLY:
+        return "unexplained"
+    return "explained" if diagnosis.explained >= _EXPLAINED else "partly_explained"

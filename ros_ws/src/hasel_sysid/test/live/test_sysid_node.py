@@ -2,12 +2,13 @@
 
 import threading
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import rclpy
 from hasel_interfaces.msg import BendingAngle, Fit, RunningError, SupplyState
-from hasel_interfaces.srv import FitModel
+from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import Recording
 from hasel_recording.topics import MEASURED, SIMULATED, STATE
 from hasel_sim.drive.voltage import VoltageSchedule
@@ -143,6 +144,27 @@ def test_what_was_heard_is_fitted_while_the_node_goes_on(talk, recording):
     assert found == pytest.approx(TRUTH, rel=1e-3)
     assert load_model(talk.fits[0].model).values == pytest.approx(found)
     assert talk.fits[0].mae_fit < 1e-4
+
+
+def test_a_missing_effect_is_named(talk, swimmer, recording):
+    """Of two candidates the one that acts in the run, with its verdict, value and unit."""
+    hidden = swimmer.with_effects("quadratic_drag").with_values({**TRUTH, "quadratic_drag.coefficient": 0.05})
+    run = Run("truth", recording.time_s, VoltageSchedule(recording.time_s, recording.voltage))
+    noise = 1e-4 * np.random.default_rng(5).standard_normal(len(recording.time_s))
+    measured = replace(recording, sin_theta=simulate(hidden, run).sin_theta + noise)
+    talk.say(measured, recording.sin_theta)
+    talk.until(lambda: len(talk.errors) == 61)
+    client = talk.user.create_client(Diagnose, "/hasel/diagnose")
+    assert client.wait_for_service(timeout_sec=10.0)
+    future = client.call_async(Diagnose.Request(effects=["quadratic_drag", "gain_drift"]))
+    talk.until(future.done)
+    answer = future.result()
+    assert answer.success, answer.message
+    first = answer.diagnosis.ranking[0]
+    assert (first.effect, answer.diagnosis.status) == ("quadratic_drag", "explained")
+    assert answer.diagnosis.missing == ["quadratic_drag"]
+    assert first.parameters[0].value == pytest.approx(0.05, rel=0.1)
+    assert answer.diagnosis.noise_floor == pytest.approx(0.8e-4, rel=0.5)
 
 
 def test_a_mistaken_request_is_answered_by_a_sentence(talk):
