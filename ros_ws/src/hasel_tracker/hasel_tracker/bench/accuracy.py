@@ -22,13 +22,14 @@ FRAME_RATE_HZ = 120.0
 
 @dataclass(frozen=True)
 class Condition:
-    """A way of taking the picture; `photograph` names a picture of scikit-image to put behind the swimmer."""
+    """A way of taking the picture; `photograph` and `skin` name pictures of scikit-image behind and on the body."""
 
     name: str
     degradation: Degradation = field(default_factory=Degradation)
     tilt_rad: float = 0.0
     radial_distortion: float = 0.0
     photograph: str = ""
+    skin: str = ""
     h264_rate_factor: int | None = None
     at_rest: bool = False
 
@@ -45,6 +46,7 @@ CONDITIONS = (
     Condition("tilted 15°, lens", Degradation(noise_levels=2.0), tilt_rad=0.26, radial_distortion=-0.1),
     Condition("photograph: gravel", Degradation(noise_levels=2.0, jpeg_quality=75), photograph="gravel"),
     Condition("photograph: coffee", Degradation(noise_levels=2.0, jpeg_quality=75), photograph="coffee"),
+    Condition("photograph on the skin: brick", Degradation(noise_levels=2.0, jpeg_quality=75), skin="brick"),
     Condition("at rest, MJPEG 75", Degradation(noise_levels=3.0, jpeg_quality=75), at_rest=True),
 )
 
@@ -105,14 +107,19 @@ def renderer_for(condition: Condition, width_px: int = 1920, height_px: int = 10
         tilt_rad=condition.tilt_rad,
         radial_distortion=condition.radial_distortion,
     )
-    background = None
-    if condition.photograph:
-        from skimage import data  # only the benchmark and the tests need photographs
+    background, skin = (
+        _photograph(name, width_px, height_px) if name else None
+        for name in (condition.photograph, condition.skin)
+    )
+    return Renderer(motion, view, degradation=condition.degradation, background=background, skin=skin)
 
-        picture = getattr(data, condition.photograph)()
-        picture = picture[..., ::-1] if picture.ndim == 3 else picture
-        background = filling(np.ascontiguousarray(picture), width_px, height_px)
-    return Renderer(motion, view, degradation=condition.degradation, background=background)
+
+def _photograph(name: str, width_px: int, height_px: int) -> np.ndarray:
+    from skimage import data  # only the benchmark and the tests need photographs
+
+    picture = getattr(data, name)()
+    picture = picture[..., ::-1] if picture.ndim == 3 else picture
+    return filling(np.ascontiguousarray(picture), width_px, height_px)
 
 
 def pictures(renderer: Renderer, condition: Condition, count: int) -> Iterator[RenderedFrame]:

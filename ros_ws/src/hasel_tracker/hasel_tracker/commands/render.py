@@ -60,6 +60,7 @@ def parser() -> argparse.ArgumentParser:
     )
     add("--glints", type=int, default=0, metavar="N", help="reflections on the water")
     add("--background", type=Path, help="photograph to put behind the swimmer")
+    add("--skin", type=Path, help="photograph whose texture the body wears")
     add("--codec", choices=CODECS, default="mjpeg", help="default: %(default)s")
     add("--quality", type=int, help="JPEG quality 1 to 100 (90), or H.264 constant rate factor 0 to 51 (20)")
     return options
@@ -78,7 +79,12 @@ def _render(options: argparse.Namespace) -> None:
         raise TrackerError(f"The light fall is {options.light_fall}; expected 0 to below 1.")
     shape = BodyShape()
     renderer = Renderer(
-        _motion(options, shape), _view(options), shape, _degradation(options), _background(options)
+        _motion(options, shape),
+        _view(options),
+        shape,
+        _degradation(options),
+        _photograph(options.background, options.size),
+        _photograph(options.skin, options.size),
     )
     quality = USUAL_QUALITY[options.codec] if options.quality is None else options.quality
     total = max(round(renderer.motion.duration_s * options.frame_rate), 1)
@@ -116,8 +122,8 @@ def _degradation(options: argparse.Namespace) -> Degradation:
     return Degradation(options.blur, options.exposure, options.noise, options.light_fall, options.glints)
 
 
-def _background(options: argparse.Namespace) -> np.ndarray | None:
-    return None if options.background is None else photograph(options.background, *options.size)
+def _photograph(path: Path | None, size_px: tuple[int, int]) -> np.ndarray | None:
+    return None if path is None else photograph(path, *size_px)
 
 
 def _size(text: str) -> tuple[int, int]:

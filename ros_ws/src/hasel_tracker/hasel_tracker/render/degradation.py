@@ -96,11 +96,5 @@ def compress(image: np.ndarray, jpeg_quality: int) -> np.ndarray:
     """Send an 8-bit BGR image through JPEG with 4:2:0 chroma, as one frame of an MJPEG stream."""
     if jpeg_quality == 0:
         return image
-    settings = [
-        cv2.IMWRITE_JPEG_QUALITY,
-        jpeg_quality,
-        cv2.IMWRITE_JPEG_SAMPLING_FACTOR,
-        cv2.IMWRITE_JPEG_SAMPLING_FACTOR_420,
-    ]
-    _, encoded = cv2.imencode(".jpg", image, settings)
+    _, encoded = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, jpeg_quality])
     return cv2.imdecode(encoded, cv2.IMREAD_COLOR)

@@ -31,13 +31,17 @@ class RenderedFrame:
 
 @dataclass(frozen=True)
 class Renderer:
-    """Draws a motion; `background` is an 8-bit BGR image of the view's size, or None for plain water."""
+    """Draws a motion; `background` is an 8-bit BGR image of the view's size, or None for plain water.
+
+    `skin` is an 8-bit BGR image whose texture the body wears and carries along, or None for plain skin.
+    """
 
     motion: Motion
     view: CameraView = field(default_factory=CameraView)
     shape: BodyShape = field(default_factory=BodyShape)
     degradation: Degradation = field(default_factory=Degradation)
     background: np.ndarray | None = None
+    skin: np.ndarray | None = None
 
     def frames(self, frame_rate_hz: float = 120.0, count: int | None = None) -> Iterator[RenderedFrame]:
         """Frames at a fixed rate, for the motion's duration or for `count` of them."""
@@ -81,7 +85,7 @@ class Renderer:
         picture = water.copy()
         line = self.motion.centre_line(time_s)
         stations = np.linspace(0.0, self.shape.total_length_m, len(line))
-        self._paint(picture, line, self.shape.half_height(stations), self.shape.body_colour)
+        self._paint(picture, line, self.shape.half_height(stations), self.shape.body_colour, self.skin)
         spine = np.full(len(line), 0.5 * self.shape.spine_thickness_m)
         self._paint(picture, line, spine, self.shape.spine_colour)
         for number, centre in enumerate(self.markers_m(time_s)):
@@ -90,7 +94,12 @@ class Renderer:
         return picture
 
     def _paint(
-        self, picture: np.ndarray, line_m: np.ndarray, half_height_m: np.ndarray, colour: tuple[int, ...]
+        self,
+        picture: np.ndarray,
+        line_m: np.ndarray,
+        half_height_m: np.ndarray,
+        colour: tuple[int, ...],
+        texture: np.ndarray | None = None,
     ) -> None:
         outline = self.view.to_pixels(_strip(line_m, half_height_m))
         fixed_point = np.rint(outline * 2**POLYGON_SHIFT).astype(np.int32)
@@ -98,7 +107,11 @@ class Renderer:
         cv2.fillPoly(mask, [fixed_point], 255, cv2.LINE_AA, POLYGON_SHIFT)
         x, y, width, height = cv2.boundingRect(np.rint(outline).astype(np.int32))
         box = _slices(x - 2, y - 2, width + 4, height + 4, picture.shape)
-        _blend(picture, box, mask[box].astype(np.float32) / 255.0, colour)
+        paint = np.array(colour, np.float32)
+        if texture is not None:
+            middle = self.view.to_pixels(line_m[len(line_m) // 2][None])[0]
+            paint = paint * _carried(texture, middle - [box[1].start, box[0].start], mask[box].shape)
+        _blend(picture, box, mask[box].astype(np.float32) / 255.0, paint)
 
     def _paint_marker(self, picture: np.ndarray, centre_m: np.ndarray) -> None:
         middle = self.view.to_pixels(centre_m[None])[0]
@@ -111,7 +124,7 @@ class Renderer:
             box[0].start - corner[1] : box[0].stop - corner[1],
             box[1].start - corner[0] : box[1].stop - corner[0],
         ]
-        _blend(picture, box, inside, self.shape.marker_colour)
+        _blend(picture, box, inside, np.array(self.shape.marker_colour, np.float32))
 
     def _blurred(self, picture: np.ndarray) -> np.ndarray:
         if self.degradation.blur_px == 0.0:
@@ -137,8 +150,14 @@ def _slices(x: int, y: int, width: int, height: int, shape: tuple[int, ...]) -> 
     return slice(int(top), int(bottom)), slice(int(left), int(right))
 
 
-def _blend(
-    picture: np.ndarray, box: tuple[slice, slice], coverage: np.ndarray, colour: tuple[int, ...]
-) -> None:
+def _carried(texture: np.ndarray, middle: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """Relative brightness of a texture whose centre lies at `middle`, shape (height, width, 3)."""
+    shift = middle - 0.5 * np.array(texture.shape[1::-1])
+    move = np.array([[1.0, 0.0, shift[0]], [0.0, 1.0, shift[1]]])
+    moved = cv2.warpAffine(texture, move, shape[::-1], borderMode=cv2.BORDER_REFLECT).astype(np.float32)
+    return np.clip(moved / texture.mean(), 0.0, 1.15)
+
+
+def _blend(picture: np.ndarray, box: tuple[slice, slice], coverage: np.ndarray, colour: np.ndarray) -> None:
     share = coverage[..., None]
-    picture[box] = (1.0 - share) * picture[box] + share * np.array(colour, np.float32)
+    picture[box] = (1.0 - share) * picture[box] + share * colour

@@ -71,7 +71,6 @@ class JpegWriter:
     def write(self, image: np.ndarray, time_s: float | None = None) -> None:
         """Append an 8-bit BGR image; without a time it follows at the frame rate."""
         settings = [cv2.IMWRITE_JPEG_QUALITY, self._quality]
-        settings += [cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_420]
         self.write_jpeg(cv2.imencode(".jpg", image, settings)[1].tobytes(), image.shape[1::-1], time_s)
 
     def write_jpeg(self, jpeg: bytes, size_px: tuple[int, int], time_s: float | None = None) -> None:
@@ -86,7 +85,6 @@ class JpegWriter:
         packet = av.Packet(jpeg)
         packet.stream, packet.time_base = self._stream, self._time_base
         packet.pts = packet.dts = round(seconds / self._time_base)
-        packet.duration = round(1 / (self._rate * self._time_base))
         packet.is_keyframe = True
         self._count += 1
         _mux(self._container, self._path, packet)

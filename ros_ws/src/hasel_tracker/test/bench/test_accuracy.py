@@ -21,6 +21,7 @@ FRAMES = 10
         ("tilted 15°, lens", 0.05),
         ("photograph: gravel", 0.4),
         ("photograph: coffee", 0.4),
+        ("photograph on the skin: brick", 0.4),
     ],
 )
 def test_markers_are_found_to_hundredths_of_a_pixel(name, limit_px):

@@ -47,3 +47,16 @@ def test_photograph_lies_behind_the_swimmer(renderer):
     picture = Renderer(renderer.motion, renderer.view, background=photograph).frame(0.0).image
     assert np.abs(picture[:60].astype(float) - photograph[:60]).mean() < 4.0
     assert np.abs(picture[170:190].astype(float) - photograph[170:190]).mean() > 20.0
+
+
+def test_texture_of_the_skin_is_carried_along(renderer):
+    """A photograph on the skin shows on the body, moves with it, and leaves water and markers as they are."""
+    skin = filling(data.brick(), 640, 360)
+    drawn = Renderer(BendingMotion(0.0, drift_m_per_s=-0.1), renderer.view, skin=skin)
+    plain = Renderer(drawn.motion, renderer.view)
+    before, after = drawn.frame(0.0).image.astype(float), drawn.frame(0.1).image.astype(float)
+    difference = np.abs(before - plain.frame(0.0).image).mean(axis=2)
+    assert difference[172:188, 120:300].mean() > 5.0
+    assert difference[:100].max() < 2.0
+    shift = round(0.1 * 0.1 * renderer.view.pixels_per_m)
+    assert np.abs(after[172:178, 120 + shift : 300 + shift] - before[172:178, 120:300]).mean() < 2.0
