@@ -13,6 +13,9 @@ from hasel_sysid.fit.uncertainty import parameter_covariance
 from hasel_sysid.noise import estimate_noise
 from hasel_sysid.problem import Evaluation, Problem
 
+_GENTLER = 4
+"""How often to try a gentler start."""
+
 Progress = Callable[[str, float], None]
 """Called with a line of text and the share done, 0 to 1."""
 
@@ -49,7 +52,7 @@ def _minimise(
     search = _Search(problem, model, names, progress, most_evaluations)
     lower, upper, start = _bounds_and_start(model, names)
     scale = np.maximum(np.abs(start), [_scale(model, name) for name in names])
-    search.at(start)
+    start = _first_that_runs(search, start, names)
     found = least_squares(
         search.residual,
         start,
@@ -62,6 +65,20 @@ def _minimise(
         max_nfev=most_evaluations,
     )
     return search.at(found.x), search.count
+
+
+def _first_that_runs(search: "_Search", start: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
+    """The start, its amplitudes halved until the motion is gentle enough to be simulated."""
+    amplitudes = np.array([name.startswith("amplitude_") for name in names])
+    for attempt in range(_GENTLER):
+        try:
+            search.at(start)
+            return start
+        except SimulationError:
+            if attempt == _GENTLER - 1 or not amplitudes.any():
+                raise
+            start = np.where(amplitudes, 0.5 * start, start)
+    return start
 
 
 class _Search:
