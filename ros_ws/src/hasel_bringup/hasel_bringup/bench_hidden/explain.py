@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 
 from hasel_sim.model import Model, load_model
-from hasel_sysid.dataset import Experiment
+from hasel_sysid.dataset import Experiment, prepared
 from hasel_sysid.improve import improve
+from hasel_sysid.problem import Problem
 
 from hasel_bringup.bench_hidden.generate import Laboratory
 
@@ -17,4 +18,5 @@ def explain(laboratory: Laboratory, pool: Executor) -> dict:
 
 def answer(model: Model, fitted: Sequence[Experiment], unseen: Sequence[Experiment], pool: Executor) -> dict:
     """The content of `improve --json` for these experiments, starting from a model."""
-    return improve(model, fitted, pool, validation=unseen).as_dict()
+    found = improve(Problem(fitted, pool), prepared(model, fitted), Problem(unseen, pool))
+    return found.to_json()
