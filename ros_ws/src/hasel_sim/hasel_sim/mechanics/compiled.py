@@ -186,31 +186,44 @@ def scatter_stress(P, elements, gradients, areas, force):
 
 
 @njit(cache=True, fastmath=True)
-def scatter_moduli(A, elements, gradients, areas, band, diagonal):
-    """Add the stiffness of moduli [elements, points, 4, 4] to a band matrix, entry (i, j) at [diagonal + i - j, j]."""
-    local = np.empty((8, 2, 16))
+def scatter_matrix(elastic, viscous, masses, weights, elements, gradients, areas, band, diagonal):
+    """Add weights[0] K + weights[1] C + weights[2] M to a band matrix, entry (i, j) at [i, diagonal + j - i].
+
+    elastic, viscous: moduli [elements, points, 4, 4]; masses: [elements, 8, 8].
+    """
+    local = np.empty((16, 16))
     half = np.empty((4, 16))
+    by_position, by_velocity, by_acceleration = weights[0], weights[1], weights[2]
     for e in range(elements.shape[0]):
-        local[:] = 0.0
-        for g in range(A.shape[1]):
-            s = areas[e, g]
+        for a in range(8):
+            for b in range(8):
+                mass = by_acceleration * masses[e, a, b]
+                local[2 * a, 2 * b], local[2 * a, 2 * b + 1] = mass, 0.0
+                local[2 * a + 1, 2 * b], local[2 * a + 1, 2 * b + 1] = 0.0, mass
+        for g in range(elastic.shape[1]):
+            s = by_position * areas[e, g]
+            v = by_velocity * areas[e, g]
             for row in range(4):
+                m0 = s * elastic[e, g, row, 0] + v * viscous[e, g, row, 0]
+                m1 = s * elastic[e, g, row, 1] + v * viscous[e, g, row, 1]
+                m2 = s * elastic[e, g, row, 2] + v * viscous[e, g, row, 2]
+                m3 = s * elastic[e, g, row, 3] + v * viscous[e, g, row, 3]
                 for b in range(8):
-                    dx, dy = s * gradients[e, g, b, 0], s * gradients[e, g, b, 1]
-                    half[row, 2 * b] = A[e, g, row, 0] * dx + A[e, g, row, 1] * dy
-                    half[row, 2 * b + 1] = A[e, g, row, 2] * dx + A[e, g, row, 3] * dy
+                    dx, dy = gradients[e, g, b, 0], gradients[e, g, b, 1]
+                    half[row, 2 * b] = m0 * dx + m1 * dy
+                    half[row, 2 * b + 1] = m2 * dx + m3 * dy
             for a in range(8):
                 dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
                 for column in range(16):
-                    local[a, 0, column] += dx * half[0, column] + dy * half[1, column]
-                    local[a, 1, column] += dx * half[2, column] + dy * half[3, column]
-        for b in range(8):
-            for k in range(2):
-                j = 2 * elements[e, b] + k
-                for a in range(8):
-                    i = diagonal + 2 * elements[e, a] - j
-                    band[i, j] += local[a, 0, 2 * b + k]
-                    band[i + 1, j] += local[a, 1, 2 * b + k]
+                    local[2 * a, column] += dx * half[0, column] + dy * half[1, column]
+                    local[2 * a + 1, column] += dx * half[2, column] + dy * half[3, column]
+        for a in range(8):
+            for i in range(2):
+                row = 2 * elements[e, a] + i
+                for b in range(8):
+                    j = diagonal + 2 * elements[e, b] - row
+                    band[row, j] += local[2 * a + i, 2 * b]
+                    band[row, j + 1] += local[2 * a + i, 2 * b + 1]
 
 
 @njit(cache=True, fastmath=True)
@@ -306,7 +319,7 @@ def scatter_sites(direct, along, nodes, shape, slope, measure, band, diagonal):
                     for k in range(2):
                         value = weight * (direct[s, i, k] * shape[s, b] + along[s, i, k] * slope[s, b])
                         row, column = 2 * nodes[s, a] + i, 2 * nodes[s, b] + k
-                        band[diagonal + row - column, column] += value
+                        band[row, diagonal + column - row] += value
 
 
 @njit(cache=True, fastmath=True)

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from hasel_sim.mechanics.banded import BandMatrix
 from hasel_sim.mechanics.compiled import mass_product
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.mesh.serendipity import reference_gradients
@@ -15,29 +14,18 @@ def element_masses(mesh: Mesh, nodes: np.ndarray, density: np.ndarray) -> np.nda
 
 
 class Mass:
-    """Consistent mass of a mesh: as a product with nodal vectors, and as a band matrix."""
+    """Consistent mass of a mesh: of its elements [kg per m depth] [elements, 8, 8] and as a product with vectors."""
 
     def __init__(self, mesh: Mesh, masses: np.ndarray) -> None:
-        self._elements, self._masses = mesh.elements, np.ascontiguousarray(masses)
-        self.matrix = _assemble(mesh, masses)
+        self._elements, self.masses = mesh.elements, np.ascontiguousarray(masses)
         self.lumped = _lumped(mesh, masses)
         """Mass of every node [kg per m depth], by scaling the diagonal (Hinton, Rock, Zienkiewicz 1976), [nodes]."""
 
     def product(self, columns: np.ndarray) -> np.ndarray:
         """Mass times each of the vectors [columns, nodes, 2]; the same shape comes back."""
         out = np.zeros(columns.shape)
-        mass_product(self._masses, self._elements, columns, out)
+        mass_product(self.masses, self._elements, columns, out)
         return out
-
-
-def _assemble(mesh: Mesh, masses: np.ndarray) -> BandMatrix:
-    band = BandMatrix(2 * len(mesh.nodes), mesh.half_bandwidth, 2 * len(mesh.clamped))
-    for element, mass in zip(mesh.elements, masses, strict=True):
-        for axis in range(2):
-            unknown = 2 * element + axis
-            rows, columns = unknown[:, None], unknown[None, :]
-            band.entries[band.diagonal + rows - columns, np.broadcast_to(columns, (8, 8))] += mass
-    return band
 
 
 def _lumped(mesh: Mesh, masses: np.ndarray) -> np.ndarray:

@@ -43,9 +43,9 @@ def initial_state(
         _branch_slopes(system, state, parameters, slopes)
 
     line = system.linearise(motion, drive, Memory())
-    state.acceleration = -line.matrix(0.0, 0.0, 1.0).factorise().solve(
-        system.residual(motion, drive, Memory())[None]
-    )[0]
+    state.acceleration = (
+        -line.matrix(0.0, 0.0, 1.0).factorise().solve(system.residual(motion, drive, Memory())[None])[0]
+    )
     if parameters:
         motion, line, inertia = start_of_motion(system, state, drive)
         change = line.along(slopes.position, slopes.velocity, slopes.acceleration)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from hasel_sim.errors import SimulationError
-from hasel_sim.mechanics.banded import BandFactors
+from hasel_sim.mechanics.banded import BandFactors, BandMatrix
 from hasel_sim.mechanics.branches import green_stress_direction
 from hasel_sim.mechanics.generalised_alpha import StepCoefficients
 from hasel_sim.mechanics.residual_slopes import ResidualSlope, SolidSlope
@@ -36,6 +36,7 @@ class Stepper:
 
     def __init__(self, system: System, tolerance: float) -> None:
         self.system, self.tolerance = system, tolerance
+        self._matrix: BandMatrix | None = None
         self._factors: BandFactors | None = None
         corners = system.nodes[system.mesh.elements]
         self._length = float(np.ptp(corners, axis=1).max(axis=1).min())
@@ -50,16 +51,32 @@ class Stepper:
 
     def factorise(self, line: Linearisation, c: StepCoefficients) -> BandFactors:
         """Factors of the derivative of the residual by the end-of-step acceleration."""
-        self._factors = line.matrix(c.position, c.velocity, c.acceleration).factorise()
+        self._matrix = line.matrix(c.position, c.velocity, c.acceleration, self._matrix)
+        self._factors = self._matrix.factorise()
         self.factorisations += 1
         return self._factors
 
     def step(self, state: State, drive: DriveState, c: StepCoefficients) -> tuple[State, Motion]:
         """The state after a step and the motion at which forces balance. Raises SimulationError when Newton fails."""
         memory = self.memory(state, c.at)
-        acceleration = state.acceleration.copy()
-        if self._change is not None:
-            acceleration += self._change
+        kept = state.acceleration
+        guesses = [kept] if self._change is None else [kept + self._change, kept]
+        for guess in guesses:
+            acceleration = self._balance(state, drive, c, memory, guess)
+            if acceleration is not None:
+                break
+        else:
+            self._fail(drive)
+        self._change = acceleration - state.acceleration
+        motion = balance_motion(state, c, acceleration)
+        self._stress = self.system.second_piola(motion, drive, memory)
+        return self._end(state, c, acceleration), motion
+
+    def _balance(
+        self, state: State, drive: DriveState, c: StepCoefficients, memory: Memory, guess: np.ndarray
+    ) -> np.ndarray | None:
+        """The end-of-step acceleration by Newton's method from a guess; None where it does not converge."""
+        acceleration = guess.copy()
         stale, last = True, np.inf
         for iteration in range(_MOST_ITERATIONS):
             motion = balance_motion(state, c, acceleration)
@@ -69,23 +86,17 @@ class Stepper:
                 if iteration == 0 and self._stress is not None:
                     line.with_initial_stress(self.system.second_piola(motion, drive, memory), self._stress)
                 self.factorise(line, c)
-            residual = self.system.residual(motion, drive, memory)
-            correction = self._factors.solve(residual[None])[0]
+            correction = self._factors.solve(self.system.residual(motion, drive, memory)[None])[0]
             acceleration -= correction
             size = c.end_position * float(np.abs(correction).max())
             self.iterations += 1
             if size < self.tolerance or (fresh and size**2 < self.tolerance * self._length):
-                break
+                return acceleration
             if not np.isfinite(size) or (iteration and size > 1e3 * last):
-                self._fail(drive)
+                return None
             stale = size > _SLOW * last
             last = size
-        else:
-            self._fail(drive)
-        self._change = acceleration - state.acceleration
-        motion = balance_motion(state, c, acceleration)
-        self._stress = self.system.second_piola(motion, drive, memory)
-        return self._end(state, c, acceleration), motion
+        return None
 
     def _fail(self, drive: DriveState) -> None:
         raise SimulationError(

@@ -61,6 +61,7 @@ class System:
         self.forces, self.stresses = forces, stresses
         self.weight = mass.product(np.broadcast_to(gravity, (1, *nodes.shape)).copy())[0]
         self.held = len(mesh.clamped)
+        self._last_strain: tuple[Motion, np.ndarray, np.ndarray] | None = None
 
     def residual(
         self, motion: Motion, drive: DriveState, memory: Memory, load_factor: float = 1.0
@@ -74,10 +75,17 @@ class System:
         out[: self.held] = 0.0
         return out
 
+    def _strain(self, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+        """Deformation gradient and its rate; kept for the last motion, which is asked for several times."""
+        if self._last_strain is None or self._last_strain[0] is not motion:
+            F, rate = self.solid.gradient(motion.position), self.solid.gradient(motion.velocity)
+            self._last_strain = motion, F, rate
+        return self._last_strain[1:]
+
     def _first_piola(
         self, motion: Motion, drive: DriveState, memory: Memory
     ) -> tuple[np.ndarray, np.ndarray]:
-        F, rate = self.solid.gradient(motion.position), self.solid.gradient(motion.velocity)
+        F, rate = self._strain(motion)
         P = self.solid.stress(F, rate, drive.contraction, memory.history, memory.step)
         for law in self.stresses:
             P[law.elements] += law.stress(F, rate, drive)
@@ -94,7 +102,7 @@ class System:
         self, motion: Motion, drive: DriveState, memory: Memory, load_factor: float = 1.0
     ) -> "Linearisation":
         """All derivatives of the residual by the motion, at this motion; valid until the next call."""
-        F, rate = self.solid.gradient(motion.position), self.solid.gradient(motion.velocity)
+        F, rate = self._strain(motion)
         elastic, viscous = self.solid.moduli(F, rate, drive.contraction, memory.history, memory.step)
         for law in self.stresses:
             law.add_moduli(F, rate, drive, elastic, viscous)
@@ -123,19 +131,32 @@ class Linearisation:
         self.system, self.elastic, self.viscous, self.F, self.rate = system, elastic, viscous, F, rate
         self._load_factor = load_factor
 
-    def matrix(self, position: float, velocity: float, acceleration: float) -> BandMatrix:
-        """position K + velocity C + acceleration M."""
-        s = self.system.solid
-        band = BandMatrix(2 * len(self.system.nodes), self.system.mesh.half_bandwidth, 2 * self.system.held)
-        band.set_to(self.system.mass.matrix, acceleration)
-        moduli = position * self.elastic + velocity * self.viscous
-        compiled.scatter_moduli(moduli, s.elements, s.gradients, s.areas, band.entries, band.diagonal)
+    def matrix(
+        self, position: float, velocity: float, acceleration: float, out: BandMatrix | None = None
+    ) -> BandMatrix:
+        """position K + velocity C + acceleration M; into `out`, whose factors are then lost, where given."""
+        s, mesh = self.system.solid, self.system.mesh
+        if out is None:
+            out = BandMatrix(2 * len(mesh.nodes), mesh.half_bandwidth, 2 * self.system.held)
+        else:
+            out.clear()
+        compiled.scatter_matrix(
+            self.elastic,
+            self.viscous,
+            self.system.mass.masses,
+            np.array([position, velocity, acceleration]),
+            s.elements,
+            s.gradients,
+            s.areas,
+            out.entries,
+            out.diagonal,
+        )
         share = self._load_factor
         for law in self.system.forces:
             law.add_matrix(
-                share * position, share * velocity, share * acceleration, band.entries, band.diagonal
+                share * position, share * velocity, share * acceleration, out.entries, out.diagonal
             )
-        return band
+        return out
 
     def with_initial_stress(self, found: np.ndarray, expected: np.ndarray) -> "Linearisation":
         """The same with the geometric stiffness of another second Piola stress, both [elements, points, 3].

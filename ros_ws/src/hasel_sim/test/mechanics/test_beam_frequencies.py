@@ -12,13 +12,11 @@ FREE_FREE = np.array([4.73004074, 7.85320462, 10.9956078])
 
 
 def _dense(band) -> np.ndarray:
-    n, k = band.entries.shape[1], band.half_bandwidth
+    n, k = band.unknowns, band.half_bandwidth
     out = np.zeros((n, n))
-    for column in range(n):
-        low, high = max(0, column - k), min(n, column + k + 1)
-        out[low:high, column] = band.entries[
-            band.diagonal + low - column : band.diagonal + high - column, column
-        ]
+    for row in range(n):
+        low, high = max(0, row - k), min(n, row + k + 1)
+        out[row, low:high] = band.entries[row, band.diagonal + low - row : band.diagonal + high - row]
     return out[band.held :, band.held :]
 
 

@@ -8,17 +8,17 @@ from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.stepper import Stepper
 from hasel_sim.mechanics.system import DriveState, Memory, Motion
 from scipy.linalg import eigh
-from scipy.sparse import coo_matrix
 
 NONE = np.zeros(2)
 
 
 def _dense(band) -> np.ndarray:
-    k, n = band.half_bandwidth, band.entries.shape[1]
-    rows = np.arange(3 * k + 1)[:, None] - band.diagonal + np.arange(n)
-    columns = np.broadcast_to(np.arange(n), rows.shape)
-    inside = (rows >= 0) & (rows < n)
-    return coo_matrix((band.entries[inside], (rows[inside], columns[inside])), (n, n)).toarray()
+    n, k = band.unknowns, band.half_bandwidth
+    out = np.zeros((n, n))
+    for row in range(n):
+        low, high = max(0, row - k), min(n, row + k + 1)
+        out[row, low:high] = band.entries[row, band.diagonal + low - row : band.diagonal + high - row]
+    return out[band.held :, band.held :]
 
 
 def _bending_mode(system, still) -> tuple[np.ndarray, float]:
