@@ -1,8 +1,8 @@
 """LU factors of a banded matrix without pivoting, four pivots and four rows at a time.
 
-For the nearly symmetric positive definite matrices of a time step no pivoting is needed, which halves the work and keeps
-the band narrow; Newton's method and iterative refinement see to what little accuracy it may cost (Golub and Van Loan,
-Matrix Computations, sections 4.1 and 4.3).
+For the nearly symmetric positive definite matrices of a time step no pivoting is needed, which halves the work and
+keeps the band narrow; Newton's method and iterative refinement see to what little accuracy it may cost (Golub and Van
+Loan, Matrix Computations, sections 4.1 and 4.3).
 
 Row i is stored in one line, entry (i, j) at [i, LEFT + k + j - i] with k the half bandwidth, between paddings of zeros
 that spare the loops all questions about the band's ends. Below the n rows come at least k + 8 padding rows.

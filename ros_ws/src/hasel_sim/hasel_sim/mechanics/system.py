@@ -62,6 +62,7 @@ class System:
         self.weight = mass.product(np.broadcast_to(gravity, (1, *nodes.shape)).copy())[0]
         self.held = len(mesh.clamped)
         self._last_strain: tuple[Motion, np.ndarray, np.ndarray] | None = None
+        self._last_stress: tuple[Motion, DriveState, Memory, np.ndarray] | None = None
 
     def residual(
         self, motion: Motion, drive: DriveState, memory: Memory, load_factor: float = 1.0
@@ -85,11 +86,15 @@ class System:
     def _first_piola(
         self, motion: Motion, drive: DriveState, memory: Memory
     ) -> tuple[np.ndarray, np.ndarray]:
+        """Deformation gradient and first Piola stress; kept for the last motion likewise."""
         F, rate = self._strain(motion)
-        P = self.solid.stress(F, rate, drive.contraction, memory.history, memory.step)
-        for law in self.stresses:
-            P[law.elements] += law.stress(F, rate, drive)
-        return F, P
+        last = self._last_stress
+        if last is None or last[0] is not motion or last[1] is not drive or last[2] is not memory:
+            P = self.solid.stress(F, rate, drive.contraction, memory.history, memory.step)
+            for law in self.stresses:
+                P[law.elements] += law.stress(F, rate, drive)
+            self._last_stress = motion, drive, memory, P
+        return F, self._last_stress[3]
 
     def second_piola(self, motion: Motion, drive: DriveState, memory: Memory) -> np.ndarray:
         """Second Piola stress [Pa] (xx, yy, xy) at the Gauss points, [elements, points, 3]."""
