@@ -6,6 +6,8 @@ Loan, Matrix Computations, sections 4.1 and 4.3).
 
 Row i is stored in one line, entry (i, j) at [i, LEFT + k + j - i] with k the half bandwidth, between paddings of zeros
 that spare the loops all questions about the band's ends. Below the n rows come at least k + 8 padding rows.
+Where the body is thin the band is narrower: `reach` says, for every unknown, how far right and down of the diagonal
+anything lies, fill-in included.
 """
 
 import numpy as np
@@ -26,7 +28,7 @@ def _multipliers(row, at, u, inverse):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def factorise(A, n, k):
+def factorise(A, n, k, reach):
     """Overwrite A with its factors (unit lower triangle, upper triangle).
 
     Returns the number of the first unknown whose pivot vanishes beside the matrix's own diagonal, or -1.
@@ -53,21 +55,22 @@ def factorise(A, n, k):
         u[0], u[1], u[2] = A[first, middle + 1], A[first, middle + 2], A[first, middle + 3]
         u[3], u[4] = A[first + 1, middle + 1], A[first + 1, middle + 2]
         u[5] = A[first + 2, middle + 1]
-        r0 = A[first, middle + 4 : middle + 4 + k]
-        r1 = A[first + 1, middle + 3 : middle + 3 + k]
-        r2 = A[first + 2, middle + 2 : middle + 2 + k]
-        r3 = A[first + 3, middle + 1 : middle + 1 + k]
-        for i in range(first + 4, first + 4 + k, 4):
+        m = reach[min(first + 3, n - 1)]
+        r0 = A[first, middle + 4 : middle + 4 + m]
+        r1 = A[first + 1, middle + 3 : middle + 3 + m]
+        r2 = A[first + 2, middle + 2 : middle + 2 + m]
+        r3 = A[first + 3, middle + 1 : middle + 1 + m]
+        for i in range(first + 4, first + 4 + m, 4):
             at = middle + first - i
             a0, a1, a2, a3 = _multipliers(A[i], at, u, inverse)
             b0, b1, b2, b3 = _multipliers(A[i + 1], at - 1, u, inverse)
             c0, c1, c2, c3 = _multipliers(A[i + 2], at - 2, u, inverse)
             d0, d1, d2, d3 = _multipliers(A[i + 3], at - 3, u, inverse)
-            s0 = A[i, at + 4 : at + 4 + k]
-            s1 = A[i + 1, at + 3 : at + 3 + k]
-            s2 = A[i + 2, at + 2 : at + 2 + k]
-            s3 = A[i + 3, at + 1 : at + 1 + k]
-            for t in range(k):
+            s0 = A[i, at + 4 : at + 4 + m]
+            s1 = A[i + 1, at + 3 : at + 3 + m]
+            s2 = A[i + 2, at + 2 : at + 2 + m]
+            s3 = A[i + 3, at + 1 : at + 1 + m]
+            for t in range(m):
                 x, y, z, w = r0[t], r1[t], r2[t], r3[t]
                 s0[t] -= a0 * x + a1 * y + a2 * z + a3 * w
                 s1[t] -= b0 * x + b1 * y + b2 * z + b3 * w
@@ -77,44 +80,51 @@ def factorise(A, n, k):
 
 
 @njit(cache=True, fastmath=True)
-def solve(A, n, k, x):
-    """Solve in place for every right-hand side in x [columns, k + n + k], which has k zeros on either side."""
+def solve(A, n, k, reach, x):
+    """Solve in place for every right-hand side in x [columns, n + k], which ends with k zeros."""
     middle = LEFT + k
+    columns = x.shape[0]
+    first = 0
     for i in range(n):
-        lower = A[i, LEFT:middle]
-        for c in range(x.shape[0]):
-            before = x[c, i : i + k]
+        while first + reach[first] < i:
+            first += 1
+        lower = A[i, middle - (i - first) : middle]
+        for c in range(columns):
+            before = x[c, first:i]
             total = 0.0
-            for t in range(k):
+            for t in range(i - first):
                 total += lower[t] * before[t]
-            x[c, k + i] -= total
+            x[c, i] -= total
     for i in range(n - 1, -1, -1):
-        upper = A[i, middle + 1 : middle + 1 + k]
+        m = reach[i]
+        upper = A[i, middle + 1 : middle + 1 + m]
         inverse = 1.0 / A[i, middle]
-        for c in range(x.shape[0]):
-            behind = x[c, k + i + 1 : k + i + 1 + k]
+        for c in range(columns):
+            behind = x[c, i + 1 : i + 1 + m]
             total = 0.0
-            for t in range(k):
+            for t in range(m):
                 total += upper[t] * behind[t]
-            x[c, k + i] = (x[c, k + i] - total) * inverse
+            x[c, i] = (x[c, i] - total) * inverse
 
 
 @njit(cache=True, fastmath=True)
-def solve_transposed(A, n, k, x):
+def solve_transposed(A, n, k, reach, x):
     """The same with the transposed matrix."""
     middle = LEFT + k
     for i in range(n):
-        upper = A[i, middle + 1 : middle + 1 + k]
+        m = reach[i]
+        upper = A[i, middle + 1 : middle + 1 + m]
         for c in range(x.shape[0]):
-            value = x[c, k + i] / A[i, middle]
-            x[c, k + i] = value
-            behind = x[c, k + i + 1 : k + i + 1 + k]
-            for t in range(k):
+            value = x[c, i] / A[i, middle]
+            x[c, i] = value
+            behind = x[c, i + 1 : i + 1 + m]
+            for t in range(m):
                 behind[t] -= upper[t] * value
     for i in range(n - 1, -1, -1):
-        lower = A[i, LEFT:middle]
+        m = min(i, k)
+        lower = A[i, middle - m : middle]
         for c in range(x.shape[0]):
-            value = x[c, k + i]
-            before = x[c, i : i + k]
-            for t in range(k):
+            value = x[c, i]
+            before = x[c, i - m : i]
+            for t in range(m):
                 before[t] -= lower[t] * value

@@ -140,9 +140,9 @@ class Linearisation:
         self, position: float, velocity: float, acceleration: float, out: BandMatrix | None = None
     ) -> BandMatrix:
         """position K + velocity C + acceleration M; into `out`, whose factors are then lost, where given."""
-        s, mesh = self.system.solid, self.system.mesh
+        s = self.system.solid
         if out is None:
-            out = BandMatrix(2 * len(mesh.nodes), mesh.half_bandwidth, 2 * self.system.held)
+            out = BandMatrix(self.system.mesh.reach, 2 * self.system.held)
         else:
             out.clear()
         compiled.scatter_matrix(

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 
 import numpy as np
 
@@ -34,10 +35,14 @@ class Mesh:
     clamped: np.ndarray
     outline_slope: np.ndarray
 
-    @property
-    def half_bandwidth(self) -> int:
-        """Largest distance between two degrees of freedom of one element."""
-        return int(2 * (self.elements.max(axis=1) - self.elements.min(axis=1)).max() + 1)
+    @cached_property
+    def reach(self) -> np.ndarray:
+        """How far each degree of freedom reaches to higher-numbered ones in a factorised matrix, [2 nodes]."""
+        last = np.arange(len(self.nodes))
+        np.maximum.at(last, self.elements, self.elements.max(axis=1)[:, None])
+        last = np.maximum.accumulate(last)
+        unknown = np.arange(2 * len(last))
+        return 2 * np.repeat(last, 2) + 1 - unknown
 
     def point(self, position: tuple[float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Where a material point sits: its element's nodes [8], shape functions [8] and gradients [1/m] [8, 2].
