@@ -12,7 +12,7 @@ FOLDER = Path(__file__).resolve().parents[3] / "shared" / "data" / "real_beam"
 INTERNAL_LOSSES = {"material_damping", "structural_damping", "viscoelastic_creep"}
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.timeout(600),
+    pytest.mark.timeout(1200),
     pytest.mark.skipif(
         not FOLDER.is_dir(),
         reason="the measured beam is not shipped; expected it in ../shared/data/real_beam",

@@ -26,7 +26,8 @@ def improved(case, pool):
     return answer(load_model("swimmer"), fitted, unseen, pool)
 
 
-@pytest.mark.timeout(400)
+@slow
+@pytest.mark.timeout(900)
 def test_nothing_hidden_is_nothing_missing(pool):
     """No effect is accused, and the model is left as it was fitted."""
     found = improved("nothing_hidden", pool)
@@ -36,7 +37,7 @@ def test_nothing_hidden_is_nothing_missing(pool):
     assert found["stages"][0]["mae_fit"] < NEAR_THE_NOISE
 
 
-@pytest.mark.timeout(400)
+@pytest.mark.timeout(900)
 @pytest.mark.parametrize(
     "effect", ["charging_lag", *(pytest.param(e, marks=slow) for e in ("quadratic_drag", "muscle_asymmetry"))]
 )

@@ -4,7 +4,7 @@ import zlib
 from dataclasses import asdict, dataclass
 
 import numpy as np
-from hasel_sim.effects.base import Effect, EffectParameter
+from hasel_sim.effects.base import EffectParameter
 from hasel_sim.effects.registry import find_effects
 
 from hasel_bringup.bench_hidden.unlisted import UNLISTED
@@ -49,12 +49,12 @@ def effect_source(identity: str) -> str:
 
 def draw_values(case: Case, generator: np.random.Generator) -> dict[str, dict[str, float]]:
     """Value of every parameter of the hidden effects, by effect id and parameter name."""
-    found = find_effects(tuple(effect_source(identity) for identity in case.effects))
-    return {effect.id: _values(effect, case.size, generator) for effect in found}
+    return {identity: _values(identity, case.size, generator) for identity in case.effects}
 
 
-def _values(effect: Effect, size: float, generator: np.random.Generator) -> dict[str, float]:
-    return {p.name: _value(p, size, generator, effect.id in UNLISTED) for p in effect.parameters}
+def _values(identity: str, size: float, generator: np.random.Generator) -> dict[str, float]:
+    effect = find_effects((effect_source(identity),))[0]
+    return {p.name: _value(p, size, generator, identity in UNLISTED) for p in effect.parameters}
 
 
 def _value(p: EffectParameter, size: float, generator: np.random.Generator, unlisted: bool) -> float:

@@ -8,7 +8,7 @@ _CLASSES = {
     "heavier_body": "HeavierBody",
     "one_sided_dead_zone": "OneSidedDeadZone",
     "stirred_bath": "StirredBath",
-    "tired_by_cycles": "TiredByCycles",
+    "tired_by_strokes": "TiredByStrokes",
 }
 UNLISTED = {name: f"{Path(__file__).parent / name}.py:{kind}" for name, kind in _CLASSES.items()}
-"""Effect id -> what a model file would name it by."""
+"""Name -> what a model file would call it."""
