@@ -80,7 +80,7 @@ def _finals(
         effect = trial.start.effect
         model = fit.model.with_effects(effect.source or effect.id).with_values(trial.step)
         if progress:
-            progress(f"refitting with {effect.id}", 0.8 + 0.2 * number / _FINALISTS)
+            progress(f"refitting with {effect.id}", 0.7 + 0.3 * number / _FINALISTS)
         try:
             finals[effect.id] = fit_least_squares(
                 problem, model, tolerance=1e-3, most_evaluations=8, drafts=False

@@ -27,13 +27,13 @@ def search(
         first += trials.first(every[begin : begin + batch])
         if progress:
             progress(
-                f"tried {len(first)} of {len(every)} starts", min(1.0, (begin + batch) / len(every)) * 0.6
+                f"tried {len(first)} of {len(every)} starts", 0.5 * min(1.0, (begin + batch) / len(every))
             )
     best = _best_of_each(first)
     for number, keep in enumerate(_ROUNDS):
         best = sorted(trials.further(best[:keep]) + best[keep:], key=_promise)
         if progress:
-            progress(f"round {number + 2}: {best[0].start.effect.id} promises most", 0.6 + 0.2 * (number + 1))
+            progress(f"round {number + 2}: {best[0].start.effect.id} promises most", 0.5 + 0.1 * (number + 1))
     return best, first
 
 

@@ -24,7 +24,7 @@ def fit_least_squares(
     problem: Problem,
     model: Model,
     progress: Progress | None = None,
-    tolerance: float = 1e-4,
+    tolerance: float = 5e-4,
     most_evaluations: int = 25,
     drafts: bool = True,
 ) -> FitResult:

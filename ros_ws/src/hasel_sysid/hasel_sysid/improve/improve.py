@@ -48,9 +48,8 @@ def improve(
         accepted, reason = _accepted(stages[-1].fit, found)
         if accepted is None:
             break
-        refit = fit_least_squares(problem, accepted.fit.model, drafts=False)
-        stages.append(_stage(refit, model, validation))
-        if _is_noise(refit, found):
+        stages.append(_stage(accepted.fit, model, validation))
+        if _is_noise(accepted.fit, found):
             reason = f"What is left after adding {accepted.effect} is noise."
             break
     if stages[-1].diagnosis is None and on_stage:
@@ -117,7 +116,7 @@ def _accepted(fit: FitResult, found: Diagnosis) -> tuple[Finding | None, str]:
 
 def _is_noise(fit: FitResult, found: Diagnosis) -> bool:
     """Whether what is left is no more than the noise of the diagnosis before."""
-    return fit.mean_absolute_error <= 1.02 * found.noise.mean_absolute
+    return fit.mean_absolute_error <= 1.03 * found.noise.mean_absolute
 
 
 def _conclude(stages: list[Stage], reason: str) -> Improvement:
