@@ -1,0 +1,25 @@
+"""Numbers as a reader wants them."""
+
+import pytest
+from hasel_sysid.report.numbers import percent, value_with_error
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "unit", "text"),
+    [
+        (0.062431, 0.00112, "1", "0.0624 ± 0.0011"),
+        (0.26412, 0.0123, "1/s", "0.264 ± 0.012 1/s"),
+        (123456.0, 2345.0, "Pa", "123456 ± 2345 Pa"),
+        (0.25, None, "1", "0.25"),
+        (0.25, float("inf"), "s", "0.25 s"),
+        (float("nan"), 0.1, "s", "–"),
+    ],
+)
+def test_value_with_error(value, error, unit, text):
+    """Digits follow the standard error; the unit 1 is not written."""
+    assert value_with_error(value, error, unit) == text
+
+
+def test_percent():
+    """Shares in per cent, unknown ones as a dash."""
+    assert [percent(share) for share in (0.93, 0.004, 0.0, float("nan"))] == ["93 %", "0.4 %", "0 %", "–"]
