@@ -70,12 +70,12 @@ def test_one_swing_cannot_tell_the_damping_laws_apart(found):
 
 
 def test_stiffness_is_a_wrong_constant_or_creep(found):
-    """The beam swings as if it were about 18 % stiffer than the 264 kPa of its static test."""
+    """The beam swings as if it were about 17 % stiffer than the 264 kPa of its static test."""
     missing = set(found["verdict"]["missing"])
     assert missing & {"soft_modulus", "viscoelastic_creep"}
     if "soft_modulus" in missing:
         scale = found["stages"][-1]["parameters"]["soft_modulus.scale"]["value"]
-        assert scale == pytest.approx(1.18, abs=0.05)
+        assert scale == pytest.approx(1.17, abs=0.05)
 
 
 def test_error_falls_on_the_run_that_was_not_fitted(found):

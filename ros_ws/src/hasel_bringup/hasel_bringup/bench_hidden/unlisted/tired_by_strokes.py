@@ -10,9 +10,7 @@ class TiredByStrokes(DriveEffect):
     """Contraction depends on the number of strokes so far, not on time."""
 
     id = "tired_by_strokes"
-    physics = (
-        "Each zipping squeezes some liquid past a leaking seal, so every stroke is smaller than the last."
-    )
+    physics = "Each stroke drains the supply's reservoir a little, so every stroke is weaker than the last."
     equation = "a <- a (1 - d)^(strokes of either muscle before)"
     parameters = (EffectParameter("loss", "d", "1", 0.0, 0.0, 0.3, 0.07),)
     stage = DriveStage.TARGET
