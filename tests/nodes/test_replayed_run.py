@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hasel_bringup.demo.processes import Processes
 from hasel_interfaces.srv import FitModel, LoadModel
 from hasel_sim.model import load_model, save_model
 from hasel_sim.parallel import SerialExecutor
@@ -12,7 +13,6 @@ from hasel_sysid.dataset import load_experiments
 from hasel_sysid.problem import Problem
 
 from tests.nodes.listener import Listener, stamp_ns
-from tests.nodes.stack import Stack
 
 RUNS = Path(__file__).resolve().parents[2] / "data" / "unseen_rig" / "quadratic_drag"
 RUN = RUNS / "fit_5500V_2.0Hz.csv"
@@ -48,7 +48,8 @@ def listener(domain):
 @pytest.fixture
 def stack(tmp_path, domain, listener, model_file):
     """Simulator and identification, ready and connected to each other."""
-    with Stack(tmp_path, domain) as stack:
+    environment = {"ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    with Processes(tmp_path, environment) as stack:
         model = ("--ros-args", "-p", f"model:={model_file}")
         stack.start("hasel_sim", "simulator", *model)
         stack.start("hasel_sysid", "sysid", *model, "-p", f"output:={tmp_path}")
@@ -61,7 +62,7 @@ def stack(tmp_path, domain, listener, model_file):
         yield stack
 
 
-def replay(stack: Stack, listener: Listener, *arguments: str) -> None:
+def replay(stack: Processes, listener: Listener, *arguments: str) -> None:
     """Replay the run and wait until every frame was compared."""
     listener.forget()
     expected = ("--expect", "hasel_simulator", "hasel_sysid", "listener")

@@ -25,6 +25,7 @@ setup(
         "console_scripts": [
             "bench = hasel_bringup.bench:main",
             "bench_hidden = hasel_bringup.bench_hidden.command:main",
+            "demo = hasel_bringup.demo.command:main",
             "replay = hasel_bringup.replay.command:main",
             "virtual_rig = hasel_bringup.virtual_rig.command:main",
         ]

@@ -69,6 +69,7 @@ class SysidNode(Node):
         self.create_timer(1.0, self._report, callback_group=hearing)
         self.create_service(FitModel, "/hasel/fit", self._serve_fit, callback_group=working)
         self.create_service(Diagnose, "/hasel/diagnose", self._serve_diagnosis, callback_group=working)
+        self.get_logger().info("Ready to compare /hasel/bending/simulated with /hasel/bending/measured.")
 
     def _value(self, name: str):
         return self.get_parameter(name).value
