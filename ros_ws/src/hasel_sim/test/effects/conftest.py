@@ -4,9 +4,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from hasel_sim.build import Builder
 from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.effects.base import EffectParameter, ForceEffect
 from hasel_sim.effects.registry import catalogue, find_effects
+from hasel_sim.mechanics.statics import equilibrium
+from hasel_sim.mechanics.system import DriveState
 from hasel_sim.model import Model, load_model
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
@@ -70,6 +74,23 @@ def contraction_of():
     return contraction
 
 
+class _FirstModePull(ForceEffect):
+    """A force per mass in proportion to the first mode of a beam."""
+
+    id = "pull"
+    depends_on = ()
+    parameters = (EffectParameter("acceleration", "a", "m/s^2", 0.0, -1e3, 1e3, 1.0),)
+
+    def __init__(self, beam: "Cantilever") -> None:
+        self._beam = beam
+
+    def force(self, at, p: SimpleNamespace) -> np.ndarray:
+        """Upwards, most at the tip."""
+        return p.acceleration * np.stack(
+            [0 * at.reference[:, 0], self._beam.mode(at.reference[:, 0])], axis=1
+        )
+
+
 class Cantilever:
     """A clamped beam without damping of its own, 0.1 m long, with what beam theory says about it."""
 
@@ -92,8 +113,7 @@ class Cantilever:
 
     def mode(self, x: np.ndarray) -> np.ndarray:
         """First mode at x [m], 1 at the tip."""
-        z = self.wave_number * x / self.length
-        ratio = 0.734096
+        z, ratio = self.wave_number * x / self.length, 0.734096
         return (np.cosh(z) - np.cos(z) - ratio * (np.sinh(z) - np.sin(z))) / 2.0
 
     def along(self, integrand) -> float:
@@ -102,27 +122,41 @@ class Cantilever:
         return float(np.trapezoid(integrand(self.mode(x)), x))
 
     def model(
-        self, identity: str | None = None, gravity: float = 0.0, retardation: float = 0.0, **values
+        self,
+        identity: str | None = None,
+        gravity: float = 0.0,
+        retardation: float = 0.0,
+        mesh_density: float = 0.5,
+        **values,
     ) -> Model:
         """The beam, with one effect or none."""
-        effects = find_effects((identity,)) if identity else ()
         return self._rectangle(
             length=self.length,
             height=self.height,
-            effects=effects,
+            effects=find_effects((identity,)) if identity else (),
             gravity=gravity,
             retardation=retardation,
             values={f"{identity}.{name}": value for name, value in values.items()},
-            mesh_density=0.5,
+            mesh_density=mesh_density,
         )
 
-    def ring_down(self, duration: float, identity: str | None = None, sag: float = 0.004, **values):
-        """Time [s] and tip deflection [m] about its equilibrium, let go from a sag [m] of its tip."""
-        pull = sag * 8 * self.bending_stiffness / (self.density * self.height * self.length**4)
-        time = np.arange(0.0, duration, 1 / 240)
-        run = Run("ring-down", time, None, "static_equilibrium", 1e3 + 1.0)
-        markers = simulate(self.model(identity, gravity=1e-3 * pull, **values), run).markers
-        return time, markers[:, 2, 1]
+    def bent(self, tip: float) -> np.ndarray:
+        """Nodal positions [m] under forces that bend the beam into its first mode; tip: its deflection [m]."""
+        pull = _FirstModePull(self)
+        values = {"pull.acceleration": tip * self.frequency**2}
+        model = self._rectangle(
+            length=self.length, height=self.height, effects=(pull,), values=values, mesh_density=0.5
+        )
+        return equilibrium(Builder(model).system(), DriveState(np.zeros(2), np.zeros(2), 0.0), 1.0, 1e-11)[0]
+
+    def ring_down(
+        self, duration: float, identity: str | None = None, tip: float = 0.004, frames=240.0, **values
+    ):
+        """Time [s] and tip deflection [m] after letting go of the first mode with a tip deflection [m]."""
+        model = self.model(identity, **values).with_numerics(steps_per_second=frames)
+        time = np.arange(0.0, duration, 1 / frames)
+        run = Run("ring-down", time, None, "held_shape", initial_shape=self.bent(tip))
+        return time, simulate(model, run).markers[:, 2, 1]
 
 
 @pytest.fixture(scope="session")

@@ -44,23 +44,27 @@ class StructuralDamping(MaterialEffect):
 
     def modify(self, coefficients: Coefficients, p: SimpleNamespace) -> None:
         """Take from the lasting stiffness what the branches carry at the reference frequency."""
-        coefficients.equilibrium *= _bank(p.loss_factor)[0]
+        lasting, _, viscous = _bank(p.loss_factor)
+        coefficients.equilibrium *= lasting
+        coefficients.retardation += viscous
 
     def branches(self, p: SimpleNamespace) -> list[tuple[float, float]]:
         """The bank."""
         return list(zip(_bank(p.loss_factor)[1], _TIMES, strict=True))
 
 
-def _bank(loss_factor: float) -> tuple[float, np.ndarray]:
-    """Lasting share of the modulus and the branches' ratios, such that the storage modulus at 2 Hz is 1.
+def _bank(loss_factor: float) -> tuple[float, np.ndarray, float]:
+    """Lasting share of the modulus, the branches' ratios and a retardation time [s]; storage modulus 1 at 2 Hz.
 
     A spring-pot (i omega)^p has the spectrum sin(pi p) / pi tau^-p per unit of ln tau; the part slower than the bank
-    acts as lasting stiffness.
+    acts as lasting stiffness, the part faster than it as viscosity.
     """
     power = 2 / np.pi * np.arctan(loss_factor)
-    slowest = _TIMES[-1] * np.sqrt(_SPACING)
+    fastest, slowest = _TIMES[0] / np.sqrt(_SPACING), _TIMES[-1] * np.sqrt(_SPACING)
+    density = power * np.sinc(power)
     lasting = np.sinc(power) * (_REFERENCE * slowest) ** -power
-    ratios = power * np.sinc(power) * np.log(_SPACING) * (_REFERENCE * _TIMES) ** -power
+    ratios = density * np.log(_SPACING) * (_REFERENCE * _TIMES) ** -power
+    viscous = density * fastest * (_REFERENCE * fastest) ** -power / (1 - power)
     turn = (_REFERENCE * _TIMES) ** 2
     storage = lasting + np.sum(ratios * turn / (1 + turn))
-    return lasting / storage, ratios / storage
+    return lasting / storage, ratios / storage, viscous / storage

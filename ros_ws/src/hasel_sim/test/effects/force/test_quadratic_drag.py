@@ -8,7 +8,7 @@ from hasel_sim.effects.force.quadratic_drag import FLUID_DENSITY
 def test_the_inverse_amplitude_grows_linearly(cantilever, extremes):
     """Energy lost per cycle goes with amplitude cubed, so 1/amplitude grows by (8/3) b / m each cycle."""
     beam, coefficient = cantilever(), 2.0
-    _, tip = beam.ring_down(2.0, "quadratic_drag", coefficient=coefficient, sag=0.008)
+    _, tip = beam.ring_down(2.0, "quadratic_drag", coefficient=coefficient, tip=0.008)
     found = 1 / extremes(tip)
     growth = np.diff(found)
     mass = beam.density * beam.height * beam.along(lambda mode: mode**2)

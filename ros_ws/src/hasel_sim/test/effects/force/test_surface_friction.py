@@ -8,7 +8,7 @@ from hasel_sim.effects.force.surface_friction import GRAVITY
 def test_the_envelope_falls_linearly(cantilever, extremes):
     """Coulomb: every half cycle loses 2 F / k, whatever the amplitude, as long as the beam is far from sticking."""
     beam, coefficient = cantilever(), 0.01
-    _, tip = beam.ring_down(1.3, "surface_friction", coefficient=coefficient, sag=0.02)
+    _, tip = beam.ring_down(1.3, "surface_friction", coefficient=coefficient, tip=0.02)
     loss = -np.diff(extremes(tip)[:6])
     omega_squared = beam.frequency**2
     shape = beam.along(lambda mode: mode) / beam.along(lambda mode: mode**2)
