@@ -11,7 +11,7 @@ import numpy as np
 from hasel_sim.adjoint.weights import StateWeights, green_pulled_back, history_pulled_back
 from hasel_sim.mechanics.generalised_alpha import StepCoefficients
 from hasel_sim.mechanics.initial import start_of_motion
-from hasel_sim.mechanics.residual_slopes import ResidualSlope, SolidSlope
+from hasel_sim.mechanics.residual_slopes import NoSlope, ResidualSlope, SolidSlope
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.statics import equilibrium_multiplier
 from hasel_sim.mechanics.stepper import Stepper, balance_motion
@@ -53,7 +53,7 @@ def reverse_step(
         kept, gained = solid.branches.factors(c.at)
         earlier.branch = left[:, None, None, None] * weights.branch + np.multiply.outer(kept, history)
         earlier.green = -np.tensordot(gain, weights.branch, 1) - gained.sum() * history
-    contraction = np.einsum("mnd,nd->m", line.by_contraction(drive), multiplier)
+    contraction = line.by_contraction(drive).reshape(2, -1) @ multiplier.ravel()
     by_parameter = _by_parameter(parameters, motion, drive, line, before, c.at, multiplier)
     if weights.branch is not None:
         for column, parameter in enumerate(parameters):
@@ -99,6 +99,8 @@ def _by_parameter(
 ) -> np.ndarray:
     out = np.zeros(len(parameters))
     for column, parameter in enumerate(parameters):
+        if isinstance(parameter, NoSlope):
+            continue
         slope = np.zeros_like(multiplier)
         parameter.add(motion, drive, line, state, at, slope, load_factor)
         out[column] = (slope * multiplier).sum()

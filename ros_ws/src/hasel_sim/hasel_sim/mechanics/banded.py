@@ -29,8 +29,9 @@ class BandMatrix:
 
         Raises SimulationError when it is singular.
         """
-        for row in range(self.held, min(self.held + self.half_bandwidth, self.unknowns)):
-            self.entries[row, : self.diagonal + self.held - row] = 0.0
+        if self.held:
+            for row in range(self.held, min(self.held + self.half_bandwidth, self.unknowns)):
+                self.entries[row, : self.diagonal + self.held - row] = 0.0
         self.entries[self.unknowns :, self.diagonal] = 1.0
         inner, free = self.entries[self.held :], self.unknowns - self.held
         reach = self.reach[self.held :]

@@ -279,6 +279,43 @@ def scatter_directions(elastic, viscous, stress, elements, gradients, areas, shi
 
 
 @njit(cache=True, fastmath=True)
+def scatter_pulled_back(elastic, viscous, elements, gradients, areas, weights, force):
+    """Add to force [2, nodes, 2] the transposed stiffness and damping times nodal weights [nodes, 2]."""
+    local = np.empty((2, 8, 2))
+    for e in range(elements.shape[0]):
+        local[:] = 0.0
+        for g in range(elastic.shape[1]):
+            d0 = d1 = d2 = d3 = 0.0
+            for a in range(8):
+                node = elements[e, a]
+                dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
+                d0 += weights[node, 0] * dx
+                d1 += weights[node, 0] * dy
+                d2 += weights[node, 1] * dx
+                d3 += weights[node, 1] * dy
+            A, B, s = elastic[e, g], viscous[e, g], areas[e, g]
+            p0 = s * (A[0, 0] * d0 + A[1, 0] * d1 + A[2, 0] * d2 + A[3, 0] * d3)
+            p1 = s * (A[0, 1] * d0 + A[1, 1] * d1 + A[2, 1] * d2 + A[3, 1] * d3)
+            p2 = s * (A[0, 2] * d0 + A[1, 2] * d1 + A[2, 2] * d2 + A[3, 2] * d3)
+            p3 = s * (A[0, 3] * d0 + A[1, 3] * d1 + A[2, 3] * d2 + A[3, 3] * d3)
+            q0 = s * (B[0, 0] * d0 + B[1, 0] * d1 + B[2, 0] * d2 + B[3, 0] * d3)
+            q1 = s * (B[0, 1] * d0 + B[1, 1] * d1 + B[2, 1] * d2 + B[3, 1] * d3)
+            q2 = s * (B[0, 2] * d0 + B[1, 2] * d1 + B[2, 2] * d2 + B[3, 2] * d3)
+            q3 = s * (B[0, 3] * d0 + B[1, 3] * d1 + B[2, 3] * d2 + B[3, 3] * d3)
+            for a in range(8):
+                dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
+                local[0, a, 0] += p0 * dx + p1 * dy
+                local[0, a, 1] += p2 * dx + p3 * dy
+                local[1, a, 0] += q0 * dx + q1 * dy
+                local[1, a, 1] += q2 * dx + q3 * dy
+        for a in range(8):
+            node = elements[e, a]
+            for row in range(2):
+                force[row, node, 0] += local[row, a, 0]
+                force[row, node, 1] += local[row, a, 1]
+
+
+@njit(cache=True, fastmath=True)
 def contraction_force(F, coefficients, muscle, elements, gradients, areas, force):
     """Derivative of the internal force by the contraction of each muscle, into force [2, nodes, 2]."""
     force[:] = 0.0

@@ -139,7 +139,7 @@ class Stepper:
         rate = slopes.velocity + c.velocity_a * slopes.acceleration
         stress = None if slopes.branch is None else self._history_stress(line, slopes, c.at)
         right = line.along(shift, rate, c.acceleration_a * slopes.acceleration, stress)
-        right += np.einsum("cm,mnd->cnd", contraction_slopes, line.by_contraction(drive))
+        right += np.tensordot(contraction_slopes, line.by_contraction(drive), 1)
         for column, parameter in enumerate(parameters):
             parameter.add(motion, drive, line, state, c.at, right[column])
         self.system.held_to_zero(right)

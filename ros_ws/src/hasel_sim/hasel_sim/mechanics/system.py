@@ -194,16 +194,8 @@ class Linearisation:
         """Transposed derivatives by position, velocity and acceleration times weights [nodes, 2], [3, nodes, 2]."""
         s, nothing = self.system.solid, np.zeros_like(weights)
         out = np.stack([nothing, nothing, self.system.mass.product(weights[None])[0]])
-        compiled.scatter_directions(
-            np.ascontiguousarray(self.elastic.swapaxes(-1, -2)),
-            np.ascontiguousarray(self.viscous.swapaxes(-1, -2)),
-            np.empty((0, *self.elastic.shape[:3])),
-            s.elements,
-            s.gradients,
-            s.areas,
-            np.stack([weights, nothing]),
-            np.stack([nothing, weights]),
-            out[:2],
+        compiled.scatter_pulled_back(
+            self.elastic, self.viscous, s.elements, s.gradients, s.areas, weights, out[:2]
         )
         for law in self.system.forces:
             law.add_pulled_back(self._load_factor * weights, out)

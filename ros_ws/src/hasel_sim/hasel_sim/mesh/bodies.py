@@ -20,9 +20,9 @@ def outline_fault(
     if np.all(height > 0.5 * spine_thickness):
         return None
     return (
-        f"the outline is {2e3 * height.min():.2f} mm high at x = {1e3 * s[np.argmin(height)] * body_length:.0f} mm and "
-        f"crosses the spine of {1e3 * spine_thickness:.2f} mm; expected a body higher than its spine everywhere: change "
-        "outline_coefficients or spine_thickness_m"
+        f"the outline is {2e3 * height.min():.2f} mm high at x = {1e3 * s[np.argmin(height)] * body_length:.0f} mm "
+        f"and crosses the spine of {1e3 * spine_thickness:.2f} mm; expected a body higher than its spine everywhere: "
+        "change outline_coefficients or spine_thickness_m"
     )
 
 
