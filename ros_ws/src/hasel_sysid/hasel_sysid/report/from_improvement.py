@@ -8,6 +8,7 @@ from hasel_sysid.improve.result import Improvement, Status
 from hasel_sysid.report.content import KeyNumber, NextRun, ReportContent, Stage
 from hasel_sysid.report.from_diagnosis import ranked_rows, what_remains
 from hasel_sysid.report.from_results import comparison_content, parameter_rows
+from hasel_sysid.report.numbers import percent
 from hasel_sysid.suggest import Suggestion
 
 _SHOWN_SUGGESTIONS = 3
@@ -34,7 +35,7 @@ def improvement_content(
     return replace(
         content,
         title=_title(improvement),
-        verdict=improvement.reason,
+        verdict=_verdict(improvement),
         good=_NEWS[improvement.status],
         key_numbers=_key_numbers(improvement, comparisons),
         stages=_stages(comparisons, start),
@@ -58,6 +59,12 @@ def _title(improvement: Improvement) -> str:
     }[improvement.status]
 
 
+def _verdict(improvement: Improvement) -> str:
+    found = {finding.effect: finding for finding in improvement.diagnosis.findings}
+    said = [str(found[effect]) for effect in improvement.missing[:1] if effect in found]
+    return " ".join([*said, improvement.reason])
+
+
 def _key_numbers(improvement: Improvement, comparisons: Sequence[Comparison]) -> tuple[KeyNumber, ...]:
     first, last = comparisons[0], comparisons[-1]
     numbers = []
@@ -71,7 +78,7 @@ def _key_numbers(improvement: Improvement, comparisons: Sequence[Comparison]) ->
     numbers.append(
         KeyNumber(f"{improvement.noise_floor:.4f}", "noise floor", "what a perfect model would leave")
     )
-    explained = f"{1 - improvement.unexplained_fraction:.0%}"
+    explained = percent(1 - improvement.unexplained_fraction)
     numbers.append(KeyNumber(explained, "explained", "of the squared error above the noise"))
     return tuple(numbers)
 

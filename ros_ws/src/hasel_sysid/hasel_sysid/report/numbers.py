@@ -7,7 +7,9 @@ def percent(share: float) -> str:
     """A share from 0 to 1 as per cent; a dash when not known."""
     if not math.isfinite(share):
         return "–"
-    return f"{100 * share:.0f} %" if share >= 0.1 or share == 0 else f"{100 * share:.1g} %"
+    if 0 < share < 0.0005:
+        return "< 0.1 %"
+    return f"{100 * share:.0f} %" if share >= 0.0095 or share == 0 else f"{100 * share:.1f} %"
 
 
 def value_with_error(value: float, error: float | None, unit: str) -> str:

@@ -22,4 +22,11 @@ def test_value_with_error(value, error, unit, text):
 
 def test_percent():
     """Shares in per cent, unknown ones as a dash."""
-    assert [percent(share) for share in (0.93, 0.004, 0.0, float("nan"))] == ["93 %", "0.4 %", "0 %", "–"]
+    assert [percent(share) for share in (0.93, 0.0996, 0.004, 1e-9, 0.0, float("nan"))] == [
+        "93 %",
+        "10 %",
+        "0.4 %",
+        "< 0.1 %",
+        "0 %",
+        "–",
+    ]

@@ -36,7 +36,7 @@ def overlay_figure(runs: Sequence[RunOverlay]) -> go.Figure:
                 legendgroup="measured",
                 showlegend=index == 0,
                 mode="markers",
-                marker={"color": MEASURED, "size": 3, "opacity": 0.55},
+                marker={"color": MEASURED, "size": 5, "opacity": 0.3},
             ),
             **where,
         )

@@ -8,7 +8,7 @@ from hasel_sysid.report.content import RankedRow
 from hasel_sysid.report.figures.style import FITTED, MODELS, styled
 
 
-def ranking_figure(ranking: Sequence[RankedRow], most: int = 12) -> go.Figure:
+def ranking_figure(ranking: Sequence[RankedRow], most: int = 8) -> go.Figure:
     """Horizontal bars, most probable on top."""
     shown = list(ranking)[:most]
     names = [row.effect for row in shown]
