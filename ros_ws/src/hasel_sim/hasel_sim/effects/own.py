@@ -40,7 +40,9 @@ def rebuild_own_effect(path: str, kind: str, text: str) -> Effect:
     found = own[kind]
     if not issubclass(found, _PLACES):
         names = ", ".join(place.__name__ for place in _PLACES)
-        raise ModelError(f"class '{kind}' in '{path}' is no effect; expected a subclass of one of {names}")
+        raise ModelError(
+            f"class '{kind}' in '{path}' is no effect; expected a subclass of one of {names}: derive it from one"
+        )
     found.id, found.source, found.text = kind, f"{path}:{kind}", text
     return found()
 
