@@ -20,6 +20,7 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
+            "bench = hasel_sim.commands.bench:main",
             "effects = hasel_sim.commands.effects:main",
             "simulator = hasel_sim.simulator_node:main",
         ]

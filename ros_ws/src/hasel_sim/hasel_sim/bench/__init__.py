@@ -1,0 +1,1 @@
+"""How fast the simulator is, and how exact, measured beside the bars it must meet."""

@@ -1,0 +1,58 @@
+"""Convergence of the swimmer's angle under refinement of mesh and time step, and what a fit to measurements prefers."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hasel_sim.bench.cases import box_run, fitted_swimmer, node_count
+from hasel_sim.simulate import simulate
+
+DENSITIES = (0.5, 1.0, 1.5, 2.0, 3.0)
+FINEST = {"mesh_density": 4.0, "quadrature_order": 2}
+STEPS_PER_SECOND = (120.0, 240.0, 480.0, 960.0)
+
+
+@dataclass(frozen=True)
+class MeshError:
+    """Mean |difference of sin theta| from the finest mesh at 5.5 kV, 2 Hz."""
+
+    quadrature_order: int
+    mesh_density: float
+    nodes: int
+    error: float
+
+
+@dataclass(frozen=True)
+class StepError:
+    """Mean |difference of sin theta| from 1920 steps a second on the default mesh."""
+
+    steps_per_second: float
+    error: float
+
+
+def mesh_errors() -> list[MeshError]:
+    """Errors of both quadratures on all meshes."""
+    model, run = fitted_swimmer(), box_run()
+    finest = simulate(model.with_numerics(**FINEST), run).sin_theta
+    out = []
+    for order in (3, 2):
+        for density in DENSITIES:
+            refined = model.with_numerics(mesh_density=density, quadrature_order=order)
+            error = np.abs(simulate(refined, run).sin_theta - finest).mean()
+            out.append(MeshError(order, density, node_count(refined), float(error)))
+    return out
+
+
+def step_errors() -> list[StepError]:
+    """Errors of the time step on the default mesh."""
+    model, run = fitted_swimmer(), box_run()
+    finest = simulate(model.with_numerics(steps_per_second=1920.0), run).sin_theta
+    return [
+        StepError(
+            rate,
+            float(
+                np.abs(simulate(model.with_numerics(steps_per_second=rate), run).sin_theta - finest).mean()
+            ),
+        )
+        for rate in STEPS_PER_SECOND
+    ]

@@ -1,0 +1,80 @@
+"""Cost of a second of motion: forward, with all sensitivities, and by the adjoint; by nodes and by parameters."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hasel_sim.adjoint import DifferentiableRun
+from hasel_sim.bench.cases import FRAMES_PER_SECOND, box_run, fitted_swimmer, node_count, with_nodes
+from hasel_sim.bench.timing import processor_seconds
+from hasel_sim.model import Model
+from hasel_sim.simulate import simulate
+
+REPEATS = 5
+MANY_PARAMETERS = (
+    "soft_modulus",
+    "spine_modulus",
+    "material_damping",
+    "pre_bend",
+    "quadratic_drag",
+    "linear_drag",
+)
+
+
+@dataclass(frozen=True)
+class Speed:
+    """Processor seconds per second of motion on a mesh; adjoint: the sweep back alone."""
+
+    nodes: int
+    parameters: int
+    forward: float
+    sensitivities: float
+    adjoint: float
+
+    @property
+    def real_time_factor(self) -> float:
+        """Seconds of motion simulated per second."""
+        return 1 / self.forward
+
+    def __str__(self) -> str:
+        return (
+            f"{self.nodes} nodes: {self.milliseconds(self.forward):.2f} ms a frame, "
+            f"{self.real_time_factor:.1f} x real time; with all sensitivities {self.sensitivities / self.forward:.2f} x, adjoint {self.adjoint / self.forward:.2f} x"
+        )
+
+    @staticmethod
+    def milliseconds(seconds: float) -> float:
+        """Milliseconds per frame at 120 frames a second."""
+        return 1e3 * seconds / FRAMES_PER_SECOND
+
+
+def measure_speed(model: Model) -> Speed:
+    """Speed with one model at 5.5 kV, 2 Hz, differentiated by all its parameters."""
+    run, names = box_run(), list(model.parameters)
+    differentiable = DifferentiableRun(model, run, names)
+
+    def there_and_back() -> None:
+        values = differentiable.values().requires_grad_()
+        differentiable.angle(values=values).square().sum().backward()
+
+    forward = processor_seconds(lambda: simulate(model, run), REPEATS)
+    both = processor_seconds(there_and_back, REPEATS)
+    sensitivities = processor_seconds(lambda: simulate(model, run, names), REPEATS)
+    return Speed(node_count(model), len(names), forward, sensitivities, both - forward)
+
+
+def by_nodes(wanted: tuple[int, ...]) -> tuple[list[Speed], float]:
+    """Speeds on meshes of about so many nodes, and the slope of log cost against log nodes."""
+    speeds = [measure_speed(with_nodes(fitted_swimmer(), nodes)) for nodes in wanted]
+    nodes, cost = np.log([[s.nodes, s.forward] for s in speeds]).T
+    return speeds, float(np.polyfit(nodes, cost, 1)[0])
+
+
+def by_parameters() -> list[tuple[int, float]]:
+    """Number of parameters and cost with all their sensitivities over the forward cost, on one model with effects."""
+    model, run = fitted_swimmer().with_effects(*MANY_PARAMETERS), box_run()
+    forward = processor_seconds(lambda: simulate(model, run), 3)
+    names = list(model.parameters)
+    counts = sorted({1, 2, 4, len(names)})
+    costs = [processor_seconds(lambda n=n: simulate(model, run, names[-n:]), 3) for n in counts]
+    return [(0, 1.0), *((n, cost / forward) for n, cost in zip(counts, costs, strict=True))]

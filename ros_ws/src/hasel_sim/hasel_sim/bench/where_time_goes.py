@@ -1,0 +1,37 @@
+"""Shares of the time of a forward run, by what is done."""
+
+import cProfile
+import pstats
+
+from hasel_sim.bench.cases import box_run
+from hasel_sim.model import Model
+from hasel_sim.simulate import simulate
+
+KERNELS = {
+    ("banded_lu.py", "factorise"): "factorise the band matrix",
+    ("banded_lu.py", "solve"): "solve with the factors",
+    ("compiled.py", "scatter_matrix"): "assemble the matrix",
+    ("compiled.py", "moduli"): "material moduli",
+    ("compiled.py", "first_piola"): "stresses",
+    ("compiled.py", "deformation"): "deformation gradients",
+    ("compiled.py", "scatter_stress"): "nodal forces",
+    ("compiled.py", "mass_product"): "inertia forces",
+}
+REST = "everything else (Python, array copies)"
+
+
+def shares(model: Model) -> list[tuple[str, float]]:
+    """What is done and its share of the time, largest first."""
+    simulate(model, box_run(0.05))
+    profile = cProfile.Profile()
+    profile.runcall(simulate, model, box_run())
+    rows = pstats.Stats(profile).stats
+    total = sum(row[2] for row in rows.values())
+    found = {
+        label: sum(
+            row[2] for (path, _, name), row in rows.items() if path.endswith(file) and name == function
+        )
+        for (file, function), label in KERNELS.items()
+    }
+    found[REST] = total - sum(found.values())
+    return sorted(((label, seconds / total) for label, seconds in found.items()), key=lambda pair: -pair[1])

@@ -1,0 +1,53 @@
+"""`bench`: speed beside its bars, or convergence."""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+from threadpoolctl import threadpool_limits
+
+from hasel_sim.bench.cases import fitted_swimmer
+from hasel_sim.bench.convergence import mesh_errors, step_errors
+from hasel_sim.bench.report import ConvergenceReport, SpeedReport
+from hasel_sim.bench.speed import by_nodes, by_parameters
+from hasel_sim.bench.timing import first_run_seconds
+from hasel_sim.bench.where_time_goes import shares
+
+SIZES = (180, 336, 700, 1400)
+"""Wanted nodes: the second is the default mesh, the last has as many as the simulator this one is compared with."""
+
+
+def measure_speeds(console: Console) -> SpeedReport:
+    """Everything about speed, saying what is under way."""
+    with console.status("compiling as on a first run"):
+        first_run = first_run_seconds()
+    with console.status("timing four meshes"):
+        sizes, slope = by_nodes(SIZES)
+    with console.status("timing against the number of parameters"):
+        parameters = by_parameters()
+    return SpeedReport(first_run, sizes, sizes[1], sizes[-1], slope, parameters, shares(fitted_swimmer()))
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the tables; 0 when every bar is met, else 1."""
+    parser = argparse.ArgumentParser(prog="bench", description=__doc__)
+    parser.add_argument("--convergence", action="store_true", help="errors under refinement instead of speed")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write all numbers here")
+    options = parser.parse_args(arguments)
+    console = Console()
+    with threadpool_limits(1):
+        if options.convergence:
+            report = ConvergenceReport(mesh_errors(), step_errors())
+        else:
+            report = measure_speeds(console)
+    report.print(console)
+    if options.json:
+        options.json.write_text(json.dumps(report.values(), indent=1))
+    return int(isinstance(report, SpeedReport) and not all(bar.met for bar in report.bars()))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
