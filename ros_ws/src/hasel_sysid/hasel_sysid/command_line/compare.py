@@ -53,9 +53,14 @@ def _compare(options: argparse.Namespace) -> None:
 
                 comparisons.append(compare(model, experiments, pool, unseen, label, step))
     except KeyboardInterrupt:
-        if not comparisons:
-            raise
-        print(f"stopped after {len(comparisons)} of {len(models)} models", file=sys.stderr)
+        if comparisons:
+            _finish(options, comparisons)
+            print(f"{len(comparisons)} of {len(models)} models were compared", file=sys.stderr)
+        raise
+    _finish(options, comparisons)
+
+
+def _finish(options: argparse.Namespace, comparisons: Sequence[Comparison]) -> None:
     show(comparisons)
     if options.json:
         first = comparisons[0].to_json()

@@ -73,11 +73,10 @@ def _fit(options: argparse.Namespace) -> None:
                 result.model, experiments, pool, unseen, f"{label}, fitted", part(progress, "", 0.95, 1.0)
             )
     except KeyboardInterrupt:
-        if problem is None or problem.best is None:
-            raise
-        path = _save(model.with_values(problem.best.model.values), options.output)
-        print(f"stopped; wrote the best model so far, without uncertainties, to {path}", file=sys.stderr)
-        return
+        if problem is not None and problem.best is not None:
+            path = _save(model.with_values(problem.best.model.values), options.output)
+            print(f"wrote the best model so far, without uncertainties, to {path}", file=sys.stderr)
+        raise
     _finish(options, result, comparison)
 
 

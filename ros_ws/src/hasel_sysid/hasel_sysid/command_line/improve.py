@@ -79,10 +79,9 @@ def _improve(options: argparse.Namespace) -> None:
             )
             stages = [_comparison(stage, experiments, unseen, pool, label) for stage in found.stages]
     except KeyboardInterrupt:
-        if not written:
-            raise
-        print(f"stopped; stages so far ({len(written)}) are in {ledger.path}", file=sys.stderr)
-        return
+        if written:
+            print(f"wrote the stages so far ({len(written)}), see {ledger.path}", file=sys.stderr)
+        raise
     _finish(options, found, start, stages)
 
 

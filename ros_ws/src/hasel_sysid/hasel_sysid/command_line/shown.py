@@ -15,7 +15,8 @@ def show(comparisons: Sequence[Comparison]) -> None:
     for finding in comparisons[0].set_up:
         print(f"{finding.severity.value}: {finding}", file=sys.stderr)
     console.print(run_table(comparisons))
-    console.print(condition_table(comparisons))
+    if any(run.series.voltage > 0 for run in comparisons[0].runs):
+        console.print(condition_table(comparisons))
     for comparison in comparisons:
         print(comparison)
         for sentence in comparison.where.sentences():

@@ -7,6 +7,7 @@ import plotly.graph_objects as go
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from plotly.offline import get_plotlyjs
 
+from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.report.content import ReportContent
 from hasel_sysid.report.figures.component_map import component_map_figure
 from hasel_sysid.report.figures.conditions import conditions_figure
@@ -63,11 +64,16 @@ def _figures(content: ReportContent) -> dict[str, go.Figure | None]:
         figures["ranking"] = ranking_figure(content.ranking)
     if content.comparisons:
         first = content.comparisons[0]
-        figures["conditions"] = conditions_figure(content.comparisons) if len(first.runs) > 1 else None
+        figures["conditions"] = conditions_figure(content.comparisons) if _driven(first) else None
         figures["phase"] = phase_map_figure(first.runs)
         figures["components"] = component_map_figure(first.runs)
         figures["residual_tests"] = residual_tests_figure(first.runs)
     return figures
+
+
+def _driven(comparison: Comparison) -> bool:
+    """Whether there are several runs with a drive, so that conditions can be compared."""
+    return sum(run.series.voltage > 0 for run in comparison.runs) > 1
 
 
 def _html(figure: go.Figure) -> str:

@@ -45,9 +45,8 @@ def _failure(kind: Kind, runs: list[RunSeries], parts: list[Component], noise: f
         return None
     if kind is Kind.OFFSET and whole.scatter > whole.standard_error:
         remarks.append("not alike in all runs as that of a camera or a marker would be")
-    detail = None
-    if kind is Kind.RINGING:
-        detail = {name: float(np.median([c.detail[name] for c in parts])) for name in parts[0].detail}
+    details = [c.detail for c in parts if c.detail]
+    detail = {name: float(np.median([d[name] for d in details])) for name in details[0]} if details else None
     component = Component(kind, whole.mean, whole.standard_error, parts[0].unit, size, detail)
     return Failure(component, ALL_RUNS, ", ".join(remarks))
 

@@ -154,8 +154,8 @@ def interrupted_after(monkeypatch):
 def test_ctrl_c_leaves_the_best_model(folder, tmp_path, capsys, interrupted_after):
     """A fit that is interrupted says so in one line and leaves the best model so far."""
     interrupted_after(fit, 2)
-    assert fit.main([*_arguments(folder, "coarse.yaml"), "--output", str(tmp_path)]) == 0
-    assert "stopped; wrote the best model so far" in capsys.readouterr().err
+    assert fit.main([*_arguments(folder, "coarse.yaml"), "--output", str(tmp_path)]) == 130
+    assert "wrote the best model so far" in capsys.readouterr().err
     assert load_model(tmp_path / "fitted_model.yaml").values["slope"] != 1.0
     assert not (tmp_path / "report.html").exists()
 
@@ -171,6 +171,6 @@ def test_ctrl_c_keeps_the_models_compared_so_far(folder, tmp_path, capsys, inter
     """An interrupt during the second of two models reports the first."""
     interrupted_after(compare, 3)
     arguments = [*_arguments(folder, "truth.yaml"), "--model", str(folder / "coarse.yaml")]
-    assert compare.main([*arguments, "--output", str(tmp_path)]) == 0
-    assert "stopped after 1 of 2 models" in capsys.readouterr().err
+    assert compare.main([*arguments, "--output", str(tmp_path)]) == 130
+    assert "1 of 2 models were compared" in capsys.readouterr().err
     assert "truth against 3 recordings" in (tmp_path / "report.html").read_text(encoding="utf-8")

@@ -1,0 +1,118 @@
+"""The report's content from a diagnosis and an improvement."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hasel_sim.model import load_model
+from hasel_sysid.diagnosis.result import Diagnosis, Finding, Verdict
+from hasel_sysid.improve.result import Improvement, Stage, Status
+from hasel_sysid.noise import NoiseModel
+from hasel_sysid.report.from_diagnosis import diagnosis_content, ranked_rows
+from hasel_sysid.report.from_improvement import improvement_content
+from hasel_sysid.report.write import render
+from hasel_sysid.where_it_fails.analyse import where_it_fails
+
+DRAG = {"quadratic_drag.coefficient": (0.25, 0.004)}
+UNITS = {"quadratic_drag.coefficient": "1"}
+
+
+@pytest.fixture
+def diagnosis() -> Diagnosis:
+    """Quadratic drag is missing; a user's own effect is absent."""
+    findings = [
+        Finding("quadratic_drag", Verdict.MISSING, 0.93, 0.98, DRAG, UNITS, 0.4, 0.01),
+        Finding("my_effect", Verdict.ABSENT, 0.01, 0.02, {}, {}, 0.1, 0.5),
+    ]
+    noise = NoiseModel(9e-6, 0.0, 0.5, "a test")
+    return Diagnosis(findings, [("quadratic_drag", "linear_drag")], noise, 0.0, 0.98, 0.99, 0.02)
+
+
+@pytest.fixture
+def improvement(diagnosis) -> Improvement:
+    """Two stages: the fitted baseline, and with the drag; errors 0.03 → 0.003 and 0.04 → 0.004 on unseen runs."""
+    baseline = load_model("swimmer").with_levels(np.array([4500.0]))
+    drag = baseline.with_effects("quadratic_drag").with_values({"quadratic_drag.coefficient": 0.25})
+    stages = [
+        Stage((), _fit(baseline, 0.03), 0.04, diagnosis),
+        Stage(("quadratic_drag",), _fit(drag, 0.003), 0.004),
+    ]
+    return Improvement(stages, Status.EXPLAINED, ("quadratic_drag",), 0.02, 0.0024, "What is left is noise.")
+
+
+def _fit(model, error: float) -> SimpleNamespace:
+    return SimpleNamespace(
+        model=model,
+        mean_absolute_error=error,
+        at_bound=("slope",),
+        sentences=["slope is at its lower bound."],
+    )
+
+
+def _comparison(model, label: str, error: float, unseen: float) -> SimpleNamespace:
+    """What a report reads of a comparison, without runs."""
+    return SimpleNamespace(
+        label=label,
+        model=model,
+        runs=(),
+        where=where_it_fails([]),
+        set_up=(),
+        mean_absolute_error=error,
+        mean_absolute_error_unseen=unseen,
+        by_voltage=(),
+        by_frequency=(),
+    )
+
+
+def test_rows_of_the_ranking(diagnosis):
+    """Built-in effects bring their physics, own ones go without; values keep unit and error."""
+    drag, own = ranked_rows(diagnosis)
+    assert (drag.effect, drag.verdict, drag.probability) == ("quadratic_drag", "missing", 0.93)
+    assert drag.physics
+    assert (drag.expected[0].name, drag.expected[0].value, drag.expected[0].standard_error) == (
+        "coefficient",
+        0.25,
+        0.004,
+    )
+    assert own.physics == ""
+
+
+def test_stages_fall_from_the_start_to_the_last(improvement):
+    """The start, the fit and every added effect are stages with both errors; the key numbers are the last ones."""
+    models = [stage.fit.model for stage in improvement.stages]
+    start = _comparison(models[0], "swimmer", 0.08, 0.09)
+    stages = [_comparison(models[0], "fitted", 0.03, 0.04), _comparison(models[1], "+ drag", 0.003, 0.004)]
+    content = improvement_content(improvement, stages, start)
+    assert [(s.label, s.error, s.error_unseen) for s in content.stages] == [
+        ("start", 0.08, 0.09),
+        ("fit", 0.03, 0.04),
+        ("+ quadratic_drag", 0.003, 0.004),
+    ]
+    assert "coefficient = 0.25" in content.stages[-1].note
+    assert [number.value for number in content.key_numbers] == ["0.0030", "0.0040", "0.0024", "98 %"]
+    assert content.title == "Missing: quadratic_drag"
+    assert content.good is True
+    slope = next(row for row in content.parameters if row.name == "slope")
+    assert slope.remark == "on its bound"
+
+
+def test_rendered_improvement_and_diagnosis(improvement, diagnosis):
+    """Both contents make a page with verdict, groups and what remains."""
+    models = [stage.fit.model for stage in improvement.stages]
+    stages = [_comparison(models[0], "fitted", 0.03, 0.04), _comparison(models[1], "+ drag", 0.003, 0.004)]
+    page = render(improvement_content(improvement, stages))
+    assert "What is left is noise." in page
+    assert "slope is at its lower bound." in page
+    page = render(diagnosis_content(diagnosis, stages[0]))
+    assert "<code>quadratic_drag</code>, <code>linear_drag</code>" in page
+    assert "Probability that it is none of the listed effects: 2%." in page
+
+
+def test_unexplained_is_no_good_news(improvement):
+    """Nothing found is said in the title and not in green."""
+    none = replace(improvement, status=Status.UNEXPLAINED, missing=())
+    model = improvement.stages[0].fit.model
+    content = improvement_content(none, [_comparison(model, "fitted", 0.03, 0.04)])
+    assert content.title == "None of the listed effects explains the measurements"
+    assert content.good is False
