@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from hasel_recording import RecordingError, read_recording
+from hasel_sim.model import load_model, save_model
 from hasel_sysid.command_line import fit, improve
 from rich.console import Console
 from rich.markup import escape
@@ -17,6 +18,7 @@ from hasel_bringup.errors import BringupError
 
 _DATA = Path("data") / "unseen_rig" / "quadratic_drag"
 _REPLAYED = "val_5200V_2.5Hz.csv"
+_OF_RUBBER = ("soft_modulus", "material_damping")
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -70,7 +72,7 @@ class Demo:
             f"Replay {self.replayed.name} again, with both models", lambda: self._live(fitted, improved)
         )
         if self.beam:
-            self._step("Fit the measured beam to one run, compare on the other", self._beam)
+            self._step("Fit the measured beam to one run, compare on another", self._beam)
         minutes, seconds = divmod(round(time.monotonic() - begun), 60)
         self._console.print(
             f"\nDone in {minutes} min {seconds} s: open {escape(str(self.output / 'report.html'))}"
@@ -94,9 +96,13 @@ class Demo:
                 )
 
     def _beam(self) -> None:
+        """The beam's model is a bare elastic one: give it the stiffness and the damping of its rubber to fit."""
         seen, unseen = map(str, self.beam)
-        folder = str(self.output / "beam")
-        _call(fit, [seen, "--validate", unseen, "--model", "beam", "--output", folder])
+        folder = self.output / "beam"
+        folder.mkdir(exist_ok=True)
+        model = folder / "beam_with_rubber.yaml"
+        save_model(load_model("beam").with_effects(*_OF_RUBBER), model)
+        _call(fit, [seen, "--validate", unseen, "--model", str(model), "--output", str(folder)])
 
 
 def _files(folder: Path, pattern: str) -> list[Path]:
