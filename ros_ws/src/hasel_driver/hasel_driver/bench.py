@@ -76,8 +76,8 @@ def main() -> None:
     parser.add_argument("--kills", type=int, default=5, help="nodes to be killed")
     arguments = parser.parse_args()
     client, rig = RosClient(), Rig(VIRTUAL_SUPPLY)
+    driver = DriverProcess(client, rig.port)
     try:
-        driver = DriverProcess(client, rig.port)
         driver.arm()
         rig.say("trace")
         measured_s = latencies(client, rig, arguments.commands)
@@ -94,6 +94,7 @@ def main() -> None:
     except AssertionError as failure:
         sys.exit(f"The measurement failed: {failure}; try again on a machine with less to do.")
     finally:
+        driver.close()
         rig.close()
         client.close()
 

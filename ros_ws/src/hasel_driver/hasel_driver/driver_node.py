@@ -2,8 +2,6 @@
 
 import sys
 import time
-from concurrent.futures import Future
-from functools import partial
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -12,21 +10,20 @@ from rclpy._rclpy_pybind11 import RCLError
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
-from std_srvs.srv import Trigger
 
 from hasel_driver.backends import make_supply
+from hasel_driver.driver_services import DriverServices
 from hasel_driver.errors import DriverError, RefusedError
 from hasel_driver.experiment_server import ExperimentServer
 from hasel_driver.faults import Fault, FaultCode
 from hasel_driver.limits import Voltages
 from hasel_driver.messages import to_diagnostics, to_supply_state
-from hasel_driver.mode import Mode
 from hasel_driver.node_parameters import declare, values
-from hasel_driver.supervisor import Status, Supervisor
+from hasel_driver.status import Status
+from hasel_driver.supervisor import Supervisor
 from hasel_driver.supply_thread import SupplyThread
 from hasel_driver.urgent_inputs import ALIVE_PERIOD_S, UrgentInputs
 
-PROOF_TIMEOUT_S = 0.4
 THREAD_SWITCH_S = 0.0005  # Python's 5 ms would let the executor hold up the supply's thread
 
 
@@ -43,9 +40,9 @@ class DriverNode(LifecycleNode):
         slow = ReentrantCallbackGroup()
         self._state = self.create_publisher(SupplyState, "/hasel/state", 50)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
-        for name in ("arm", "disarm", "emergency_stop", "clear_fault"):
-            handler = partial(self._serve, getattr(self, f"_{name}"))
-            self.create_service(Trigger, f"/hasel/{name}", handler, callback_group=slow)
+        self._trigger_services = DriverServices(
+            self, slow, lambda: self._thread, self._check_arming, self._check_clearing
+        )
         self.create_timer(ALIVE_PERIOD_S, self._on_heartbeat, callback_group=MutuallyExclusiveCallbackGroup())
         self.create_timer(1.0, self._on_diagnostics, callback_group=slow)
         self.experiments = ExperimentServer(self, lambda: self._thread, slow)
@@ -82,7 +79,7 @@ class DriverNode(LifecycleNode):
         self._lifecycle_active = False
         if self._thread is not None:
             try:
-                self._disarm()
+                self._trigger_services.disarm()
             except DriverError as error:
                 self.get_logger().error(str(error))
         return super().on_deactivate(state)
@@ -139,6 +136,8 @@ class DriverNode(LifecycleNode):
         thread = self._thread
         if thread is None:
             return
+        if not thread.is_alive():
+            self._publish(thread.supervisor.status())
         thread.host_is_alive("services")
         masters = self.count_publishers("/hasel/command")
         if masters > 1 and thread.supervisor.armed:
@@ -159,19 +158,9 @@ class DriverNode(LifecycleNode):
             }
         self._diagnostics.publish(to_diagnostics(status, self.get_clock().now().to_msg(), details))
 
-    # Services
+    # What the services ask for
 
-    def _serve(self, action, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        try:
-            response.message = action()
-            response.success = True
-        except DriverError as error:
-            response.message = str(error)
-            self.get_logger().warning(response.message)
-        return response
-
-    def _arm(self) -> str:
-        thread = self._require_thread()
+    def _check_arming(self) -> None:
         if not self._lifecycle_active:
             raise RefusedError("The node is not active: activate it (lifecycle) first.")
         if self._stop_asserted:
@@ -185,39 +174,18 @@ class DriverNode(LifecycleNode):
             )
         if self.count_publishers("/hasel/command") > 1:
             raise RefusedError("More than one node publishes /hasel/command: stop all but one, then arm.")
-        supervisor = thread.supervisor
-        if not supervisor.capabilities.deadman and not self.get_parameter("accept_no_deadman").value:
+        deadman = self._thread.supervisor.capabilities.deadman
+        if not deadman and not self.get_parameter("accept_no_deadman").value:
             raise RefusedError(
                 "This supply stays live when its host dies:"
                 " set the parameter accept_no_deadman if that is acceptable."
             )
-        _result(thread.call(supervisor.arm))
-        armed = thread.expect(
-            lambda: supervisor.status().mode is Mode.ARMED or not supervisor.armed, PROOF_TIMEOUT_S
-        )
-        if not _result(armed) or not supervisor.armed:
-            thread.call(supervisor.disarm)
-            raise RefusedError(f"The supply did not arm: {supervisor.refusal or supervisor.status()}.")
-        self.get_logger().warning("Armed: high voltage may be on the output from now on.")
-        return "Armed, 0 V."
 
-    def _disarm(self) -> str:
-        thread = self._require_thread()
-        _result(thread.call(thread.supervisor.disarm))
-        return self._prove_grounded(thread, "Disarmed")
-
-    def _emergency_stop(self) -> str:
-        self.fail(Fault(FaultCode.EMERGENCY_STOP, "by service"))
-        return self._prove_grounded(self._require_thread(), "Stopped")
-
-    def _clear_fault(self) -> str:
-        thread = self._require_thread()
+    def _check_clearing(self) -> None:
         if self._stop_asserted:
             raise RefusedError("The emergency stop topic still says true: publish false first.")
-        supervisor = thread.supervisor
-        _result(thread.expect(lambda: supervisor.status().grounded is not False, PROOF_TIMEOUT_S))
-        _result(thread.call(supervisor.clear_fault))
-        return "Cleared: STANDBY, disarmed."
+
+    # Faults
 
     def fail(self, fault: Fault) -> None:
         """Ground the output and latch `fault`."""
@@ -225,29 +193,6 @@ class DriverNode(LifecycleNode):
         if thread is not None:
             self.get_logger().error(f"{fault}: grounding the output.")
             thread.call(lambda: thread.supervisor.fail(fault))
-
-    def _prove_grounded(self, thread: SupplyThread, done: str) -> str:
-        supervisor = thread.supervisor
-
-        def off() -> bool:
-            status = supervisor.status()
-            return status.grounded is True and not status.mode.may_be_live
-
-        if _result(thread.expect(off, PROOF_TIMEOUT_S)):
-            return f"{done}: the supply reports its output grounded. Stored charge needs its bleeder's time."
-        if not supervisor.capabilities.proves_grounded and supervisor.connected:
-            return f"{done}: the supply was switched off, but this kind cannot prove its output grounded."
-        raise RefusedError(f"{done}, but NOT proven: {supervisor.status()}. Treat the output as live.")
-
-    def _require_thread(self) -> SupplyThread:
-        thread = self._thread
-        if thread is None:
-            raise RefusedError("The port is closed: configure the node (lifecycle) first.")
-        if not thread.is_alive():
-            raise RefusedError(
-                "The supply's thread has ended; the board has grounded itself: clean up and configure."
-            )
-        return thread
 
     def report_illegal_transition(self, error: Exception) -> None:
         """Rclpy lets an illegal transition escape from spin: ground what is armed, and live on."""
@@ -257,8 +202,10 @@ class DriverNode(LifecycleNode):
             self.fail(Fault(FaultCode.ILLEGAL_TRANSITION))
 
 
-def _result(future: Future):
-    return future.result(timeout=10.0)
+def autostart(node: DriverNode) -> None:
+    """Configure and activate, as far as it goes."""
+    if node.trigger_configure() == TransitionCallbackReturn.SUCCESS:
+        node.trigger_activate()
 
 
 def main() -> None:
@@ -269,7 +216,7 @@ def main() -> None:
     executor = MultiThreadedExecutor(num_threads=4)
     executor.add_node(node)
     if node.get_parameter("autostart").value:
-        node.trigger_configure() == TransitionCallbackReturn.SUCCESS and node.trigger_activate()
+        autostart(node)
     try:
         while rclpy.ok():
             try:

@@ -7,7 +7,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from hasel_interfaces.msg import SupplyState
 
 from hasel_driver.mode import Mode
-from hasel_driver.supervisor import Status
+from hasel_driver.status import Status
 
 OUTPUT_WORDS = {
     "grounded": "The supply reports its output grounded.",

@@ -6,12 +6,12 @@ What it tells about the output comes from the supply's own recent report, never 
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from hasel_driver.errors import LimitError, PortError, RefusedError
 from hasel_driver.faults import Fault, FaultCode, SupplyFaultError
 from hasel_driver.limits import Voltages, clip
 from hasel_driver.mode import Mode
+from hasel_driver.status import UNKNOWN, Status
 from hasel_driver.supply import Capabilities, Connection, Reading, Supply
 from hasel_driver.waveform import Waveform
 
@@ -21,29 +21,6 @@ TRANSITION_S = 0.3  # time the board has to follow a request
 STOP_REPEAT_S = 0.05
 FIRST_READING_S = 0.5
 REOPEN_S = 0.03  # lets the other end notice that the port was closed
-UNKNOWN: Voltages = (math.nan, math.nan)
-
-
-@dataclass(frozen=True)
-class Status:
-    """What is known about the supply now; `commanded_v` and the rest are NaN where it is not known."""
-
-    time_s: float
-    mode: Mode
-    fault: Fault | None
-    grounded: bool | None
-    commanded_v: Voltages
-    measured_v: Voltages
-    current_a: Voltages
-
-    @property
-    def output(self) -> str:
-        """`grounded` only where the supply itself reports it, else `live` or `unknown`."""
-        return {True: "grounded", False: "live", None: "unknown"}[self.grounded]
-
-    def __str__(self) -> str:
-        fault = f" ({self.fault})" if self.fault else ""
-        return f"{self.mode.name}{fault}, output {self.output}"
 
 
 class Supervisor:

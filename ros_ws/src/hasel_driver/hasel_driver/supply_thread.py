@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from hasel_driver.faults import Fault, FaultCode
-from hasel_driver.supervisor import Status, Supervisor
+from hasel_driver.status import Status
+from hasel_driver.supervisor import Supervisor
 from hasel_driver.supply import Supply
 
 LOOP_PERIOD_S = 0.01
@@ -86,7 +87,7 @@ class SupplyThread(threading.Thread):
             self._wake_reader = -1
 
     def _wake(self) -> None:
-        with contextlib.suppress(BlockingIOError):  # a full pipe: it is awake already
+        with contextlib.suppress(BlockingIOError, BrokenPipeError):  # awake already, or ended
             os.write(self._wake_writer, b"w")
 
     def _wait(self) -> None:

@@ -1,29 +1,16 @@
 """The supply's board in Python: the same protocol, states and faults as the sketch in `firmware/`."""
 
-from collections.abc import Callable
-
 from hasel_driver import protocol
-from hasel_driver.errors import LimitError, ProtocolError
+from hasel_driver.errors import ProtocolError
 from hasel_driver.faults import FaultCode
 from hasel_driver.line_buffer import LineBuffer
 from hasel_driver.mode import Mode
 from hasel_driver.virtual_bridge import VirtualBridge
+from hasel_driver.virtual_commands import SETTINGS, RefusalError, execute
 from hasel_driver.virtual_muscle import VirtualMuscle
 from hasel_driver.waveform import Waveform
 
 CONFIRMATION_MS = 3  # a trip must hold this long
-# quantity: (least, most, at boot)
-SETTINGS: dict[str, tuple[int, int, int]] = {
-    "MAXIMUM": (0, 10_000, 10_000),
-    "SLEW": (1, 2_000, 400),
-    "TRIP": (1, 1_000, 450),
-    "HEARTBEAT": (100, 2_000, 500),
-    "TELEMETRY": (10, 1_000, 10),
-}
-
-
-class _RefusalError(Exception):
-    """A command that is answered with ERR and this reason."""
 
 
 class VirtualBoard:
@@ -40,9 +27,9 @@ class VirtualBoard:
         self.bridges = (VirtualBridge(), VirtualBridge())
         self.mode, self.fault = Mode.STANDBY, FaultCode.NONE
         self.settings = {name: initial for name, (_, _, initial) in SETTINGS.items()}
-        self._voltage = (0, 0)
-        self._waveform = Waveform("box", 0, 1.0, 1)
-        self._waveform_ms: int | None = None
+        self.voltage = (0, 0)
+        self.waveform = Waveform("box", 0, 1.0, 1)
+        self.waveform_ms: int | None = None
         self._time_ms = self._heartbeat_ms = self._telemetry_ms = 0
         self._over_ms = {FaultCode.OVERCURRENT: 0, FaultCode.OVERVOLTAGE: 0}
         self._sequence = 0
@@ -76,9 +63,9 @@ class VirtualBoard:
 
     def _watch(self) -> None:
         if not self.interlock_closed:
-            self._fail(FaultCode.INTERLOCK)
+            self.fail(FaultCode.INTERLOCK)
         elif self._heartbeat_ms > self.settings["HEARTBEAT"]:
-            self._fail(FaultCode.HEARTBEAT)
+            self.fail(FaultCode.HEARTBEAT)
         most_v = max(self.settings["MAXIMUM"] * 1.05, self.settings["MAXIMUM"] + 100)
         over = {
             FaultCode.OVERCURRENT: any(1e6 * m.current_a > self.settings["TRIP"] for m in self.muscles),
@@ -87,18 +74,18 @@ class VirtualBoard:
         for code, exceeded in over.items():
             self._over_ms[code] = self._over_ms[code] + 1 if exceeded else 0
             if self._over_ms[code] >= CONFIRMATION_MS:
-                self._fail(code)
+                self.fail(code)
 
     def _wanted(self) -> tuple[int, int]:
-        if self._waveform_ms is None:
-            return self._voltage
-        time_s = self._waveform_ms * 1e-3
-        self._waveform_ms += 1
-        if time_s >= self._waveform.duration_s:
-            self._set_voltage((0, 0))
+        if self.waveform_ms is None:
+            return self.voltage
+        time_s = self.waveform_ms * 1e-3
+        self.waveform_ms += 1
+        if time_s >= self.waveform.duration_s:
+            self.set_voltage((0, 0))
             self._send("!WAVEFORM DONE")
             return 0, 0
-        upper, lower = self._waveform.voltage(time_s)
+        upper, lower = self.waveform.voltage(time_s)
         return round(upper), round(lower)
 
     def _report(self, wanted: tuple[int, int]) -> None:
@@ -118,19 +105,22 @@ class VirtualBoard:
     def _send(self, text: str) -> None:
         self.transmitted += protocol.encode(text)
 
-    def _ground(self, mode: Mode) -> None:
-        self.mode, self._voltage, self._waveform_ms = mode, (0, 0), None
+    def ground(self, mode: Mode) -> None:
+        """Converters off, contacts on their way to ground."""
+        self.mode, self.voltage, self.waveform_ms = mode, (0, 0), None
         for bridge in self.bridges:
             bridge.release()
 
-    def _fail(self, code: FaultCode) -> None:
-        self._ground(Mode.FAULT)
+    def fail(self, code: FaultCode) -> None:
+        """Ground and latch the first fault."""
+        self.ground(Mode.FAULT)
         if self.fault is FaultCode.NONE:
             self.fault = code
             self._send(f"!FAULT {int(code)} {code.name}")
 
-    def _set_voltage(self, voltage: tuple[int, int]) -> None:
-        self._voltage, self._waveform_ms = voltage, None
+    def set_voltage(self, voltage: tuple[int, int]) -> None:
+        """Ask for a voltage [V], within MAXIMUM; ends a waveform."""
+        self.voltage, self.waveform_ms = voltage, None
         self.mode = Mode.ACTIVE if any(voltage) else Mode.ARMED
 
     def _obey(self, line: bytes) -> None:
@@ -140,13 +130,13 @@ class VirtualBoard:
             self._refuse_line(line)
             return
         if self.mode.may_be_live and command.sequence != (self._sequence + 1) % protocol.SEQUENCE_MODULUS:
-            self._fail(FaultCode.SEQUENCE)
+            self.fail(FaultCode.SEQUENCE)
             self._send(f"<{command.sequence:03d} ERR SEQUENCE " + " ".join(command.words))
             return
         self._sequence, self._heartbeat_ms = command.sequence, 0
         try:
-            answer = "OK " + self._execute(command.words)
-        except _RefusalError as refusal:
+            answer = "OK " + execute(self, command.words)
+        except RefusalError as refusal:
             answer = f"ERR {refusal} " + " ".join(command.words)
         self._send(f"<{command.sequence:03d} {answer}")
 
@@ -158,108 +148,4 @@ class VirtualBoard:
         else:
             self._send("<--- ERR SYNTAX")
         if self.mode.may_be_live:
-            self._fail(FaultCode.GARBAGE)
-
-    def _execute(self, words: tuple[str, ...]) -> str:
-        simple: dict[str, Callable[[], None]] = {
-            "PING": lambda: None,
-            "ARM": self._arm,
-            "DISARM": self._disarm,
-            "STOP": lambda: self._fail(FaultCode.STOP),
-            "CLEAR": self._clear,
-            "START": self._start,
-        }
-        if words[0] in simple:
-            if len(words) > 1:
-                raise _RefusalError("SYNTAX")
-            simple[words[0]]()
-            return words[0]
-        if words[0] not in ("SET", "GET") or len(words) < 2:
-            raise _RefusalError("UNKNOWN")
-        if words[0] == "SET":
-            self._set(words[1], words[2:])
-        elif len(words) > 2:
-            raise _RefusalError("SYNTAX")
-        return f"{words[1]} {self._value(words[1])}"
-
-    def _value(self, quantity: str) -> str:
-        if quantity == "IDENTITY":
-            return " ".join(protocol.IDENTITY)
-        if quantity == "VOLTAGE":
-            return f"{self._voltage[0]} {self._voltage[1]}"
-        if quantity == "WAVEFORM":
-            w = self._waveform
-            numbers = (round(w.voltage_v), round(w.frequency_hz * 1e3), w.periods, round(w.duty * 1e3))
-            return " ".join([w.shape, *map(str, numbers), w.polarity, w.muscles])
-        if quantity in self.settings:
-            return str(self.settings[quantity])
-        raise _RefusalError("UNKNOWN")
-
-    def _set(self, quantity: str, arguments: tuple[str, ...]) -> None:
-        if quantity == "VOLTAGE":
-            self._require(self.mode.may_be_live)
-            most = self.settings["MAXIMUM"]
-            upper, lower = _integers(arguments, 2)
-            self._set_voltage((_clip(upper, -most, most), _clip(lower, -most, most)))
-        elif quantity == "WAVEFORM":
-            self._require(self.mode is not Mode.ACTIVE)
-            self._waveform = self._parse_waveform(arguments)
-        elif quantity in SETTINGS:
-            self._require(self.mode is Mode.STANDBY or quantity == "TELEMETRY")
-            least, most, _ = SETTINGS[quantity]
-            self.settings[quantity] = _clip(_integers(arguments, 1)[0], least, most)
-        else:
-            raise _RefusalError("UNKNOWN")
-
-    def _parse_waveform(self, arguments: tuple[str, ...]) -> Waveform:
-        if len(arguments) != 7:
-            raise _RefusalError("SYNTAX")
-        voltage, frequency, periods, duty = _integers(arguments[1:5], 4)
-        try:
-            return Waveform(
-                shape=arguments[0],
-                voltage_v=_clip(voltage, 0, self.settings["MAXIMUM"]),
-                frequency_hz=_clip(frequency, 10, 50_000) / 1000,
-                periods=_clip(periods, 1, 60_000),
-                duty=_clip(duty, 1, 1000) / 1000,
-                polarity=arguments[5],
-                muscles=arguments[6],
-            )
-        except LimitError as error:
-            raise _RefusalError("SYNTAX") from error
-
-    def _require(self, allowed: bool) -> None:
-        if not allowed:
-            raise _RefusalError("STATE")
-
-    def _arm(self) -> None:
-        self._require(self.mode is Mode.STANDBY)
-        if not self.interlock_closed:
-            raise _RefusalError("INTERLOCK")
-        self.mode = Mode.ARMED
-
-    def _disarm(self) -> None:
-        self._ground(Mode.STANDBY if self.fault is FaultCode.NONE else Mode.FAULT)
-
-    def _clear(self) -> None:
-        self._require(self.mode is Mode.FAULT)
-        if not self.interlock_closed:
-            raise _RefusalError("INTERLOCK")
-        self.mode, self.fault = Mode.STANDBY, FaultCode.NONE
-
-    def _start(self) -> None:
-        self._require(self.mode is Mode.ARMED)
-        self.mode, self._waveform_ms = Mode.ACTIVE, 0
-
-
-def _clip(value: int, least: int, most: int) -> int:
-    return min(max(value, least), most)
-
-
-def _integers(words: tuple[str, ...], count: int) -> list[int]:
-    if len(words) != count or any(len(word.lstrip("-")) > 6 for word in words):
-        raise _RefusalError("SYNTAX")
-    try:
-        return [int(word) for word in words]
-    except ValueError as error:
-        raise _RefusalError("SYNTAX") from error
+            self.fail(FaultCode.GARBAGE)

@@ -5,6 +5,7 @@ the output goes live and dead (host's monotonic clock [s]) and answers the quest
 """
 
 import argparse
+import itertools
 import os
 import random
 import re
@@ -157,7 +158,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="virtual_supply", description=__doc__.splitlines()[0])
     parser.add_argument("--link", type=Path, help="also make the port available under this name")
     parser.add_argument("--capacitance-nf", type=float, default=0.5, help="capacitance of each muscle [nF]")
-    arguments = parser.parse_args([word for word in sys.argv[1:] if word != "--ros-args"])
+    own = itertools.takewhile(lambda word: word != "--ros-args", sys.argv[1:])  # launch files add some
+    arguments = parser.parse_args(list(own))
     muscles = tuple(VirtualMuscle(capacitance_f=arguments.capacitance_nf * 1e-9) for _ in range(2))
     supply = VirtualSupply(VirtualBoard(muscles), PseudoTerminal(arguments.link), _tell)
     commands = b""

@@ -8,7 +8,8 @@ from hasel_driver.hasel_supply import HaselSupply
 from hasel_driver.limits import Limits, Voltages
 from hasel_driver.mode import Mode
 from hasel_driver.serial_port import SerialPort
-from hasel_driver.supervisor import Status, Supervisor
+from hasel_driver.status import Status
+from hasel_driver.supervisor import Supervisor
 from hasel_driver.supply_thread import SupplyThread
 from hasel_driver.testing.rig import Rig
 

@@ -12,6 +12,7 @@ from lifecycle_msgs.srv import ChangeState
 from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
@@ -28,7 +29,7 @@ class RosClient:
     """One for a whole test run; `states` collects `/hasel/state`."""
 
     def __init__(self) -> None:
-        rclpy.init()
+        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)  # those are the test runner's
         self.node = rclpy.create_node("user")
         self.states: list[SupplyState] = []
         self.node.create_subscription(SupplyState, "/hasel/state", self.states.append, 200)

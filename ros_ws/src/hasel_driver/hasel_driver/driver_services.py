@@ -1,0 +1,109 @@
+"""The services arm, disarm, emergency_stop and clear_fault: each answers success only with proof."""
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from functools import partial
+from typing import Any
+
+from rclpy.callback_groups import CallbackGroup
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+
+from hasel_driver.errors import DriverError, RefusedError
+from hasel_driver.faults import Fault, FaultCode
+from hasel_driver.mode import Mode
+from hasel_driver.supply_thread import SupplyThread
+
+PROOF_TIMEOUT_S = 0.4
+
+
+class DriverServices:
+    """`thread()` is the running supply or None; `check_arming()` and `check_clearing()` raise RefusedError."""
+
+    def __init__(
+        self,
+        node: Node,
+        group: CallbackGroup,
+        thread: Callable[[], SupplyThread | None],
+        check_arming: Callable[[], None],
+        check_clearing: Callable[[], None],
+    ) -> None:
+        self._node, self._thread = node, thread
+        self._check_arming, self._check_clearing = check_arming, check_clearing
+        for name in ("arm", "disarm", "emergency_stop", "clear_fault"):
+            handler = partial(self._serve, getattr(self, name))
+            node.create_service(Trigger, f"/hasel/{name}", handler, callback_group=group)
+
+    def _serve(
+        self, action: Callable[[], str], _: Trigger.Request, response: Trigger.Response
+    ) -> Trigger.Response:
+        try:
+            response.message = action()
+            response.success = True
+        except DriverError as error:
+            response.message = str(error)
+            self._node.get_logger().warning(response.message)
+        return response
+
+    def arm(self) -> str:
+        """STANDBY to ARMED."""
+        thread = self._require_thread()
+        self._check_arming()
+        supervisor = thread.supervisor
+        _result(thread.call(supervisor.arm))
+        decided = thread.expect(
+            lambda: supervisor.status().mode is Mode.ARMED or not supervisor.armed, PROOF_TIMEOUT_S
+        )
+        if not _result(decided) or not supervisor.armed:
+            thread.call(supervisor.disarm)
+            raise RefusedError(f"The supply did not arm: {supervisor.refusal or supervisor.status()}.")
+        self._node.get_logger().warning("Armed: high voltage may be on the output from now on.")
+        return "Armed, 0 V."
+
+    def disarm(self) -> str:
+        """To STANDBY, from everywhere but FAULT."""
+        thread = self._require_thread()
+        _result(thread.call(thread.supervisor.disarm))
+        return self._prove_grounded(thread, "Disarmed")
+
+    def emergency_stop(self) -> str:
+        """To FAULT, from everywhere."""
+        thread = self._require_thread()
+        thread.call(lambda: thread.supervisor.fail(Fault(FaultCode.EMERGENCY_STOP, "by service")))
+        return self._prove_grounded(thread, "Stopped")
+
+    def clear_fault(self) -> str:
+        """FAULT to STANDBY."""
+        thread = self._require_thread()
+        self._check_clearing()
+        supervisor = thread.supervisor
+        _result(thread.expect(lambda: supervisor.status().grounded is not False, PROOF_TIMEOUT_S))
+        _result(thread.call(supervisor.clear_fault))
+        return "Cleared: STANDBY, disarmed."
+
+    def _prove_grounded(self, thread: SupplyThread, done: str) -> str:
+        supervisor = thread.supervisor
+
+        def off() -> bool:
+            status = supervisor.status()
+            return status.grounded is True and not status.mode.may_be_live
+
+        if _result(thread.expect(off, PROOF_TIMEOUT_S)):
+            return f"{done}: the supply reports its output grounded. Stored charge needs its bleeder's time."
+        if not supervisor.capabilities.proves_grounded and supervisor.connected:
+            return f"{done}: the supply was switched off, but this kind cannot prove its output grounded."
+        raise RefusedError(f"{done}, but NOT proven: {supervisor.status()}. Treat the output as live.")
+
+    def _require_thread(self) -> SupplyThread:
+        thread = self._thread()
+        if thread is None:
+            raise RefusedError("The port is closed: configure the node (lifecycle) first.")
+        if not thread.is_alive():
+            raise RefusedError(
+                "The supply's thread has ended, so the board grounds itself: clean up and configure."
+            )
+        return thread
+
+
+def _result(future: Future) -> Any:
+    return future.result(timeout=10.0)

@@ -1,0 +1,140 @@
+"""Commands of the virtual board: what each does, or why it is refused (`firmware/PROTOCOL.md`)."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from hasel_driver import protocol
+from hasel_driver.errors import LimitError
+from hasel_driver.faults import FaultCode
+from hasel_driver.mode import Mode
+from hasel_driver.waveform import Waveform
+
+if TYPE_CHECKING:
+    from hasel_driver.virtual_board import VirtualBoard
+
+# quantity: (least, most, at boot)
+SETTINGS: dict[str, tuple[int, int, int]] = {
+    "MAXIMUM": (0, 10_000, 10_000),
+    "SLEW": (1, 2_000, 400),
+    "TRIP": (1, 1_000, 450),
+    "HEARTBEAT": (100, 2_000, 500),
+    "TELEMETRY": (10, 1_000, 10),
+}
+
+
+class RefusalError(Exception):
+    """A command that is answered with ERR and this reason."""
+
+
+def execute(board: "VirtualBoard", words: tuple[str, ...]) -> str:
+    """Obey a command; the words of the reply after OK. Raises RefusalError."""
+    simple: dict[str, Callable[[], None]] = {
+        "PING": lambda: None,
+        "ARM": lambda: _arm(board),
+        "DISARM": lambda: _disarm(board),
+        "STOP": lambda: board.fail(FaultCode.STOP),
+        "CLEAR": lambda: _clear(board),
+        "START": lambda: _start(board),
+    }
+    if words[0] in simple:
+        if len(words) > 1:
+            raise RefusalError("SYNTAX")
+        simple[words[0]]()
+        return words[0]
+    if words[0] not in ("SET", "GET") or len(words) < 2:
+        raise RefusalError("UNKNOWN")
+    if words[0] == "SET":
+        _set(board, words[1], words[2:])
+    elif len(words) > 2:
+        raise RefusalError("SYNTAX")
+    return f"{words[1]} {_value(board, words[1])}"
+
+
+def _value(board: "VirtualBoard", quantity: str) -> str:
+    if quantity == "IDENTITY":
+        return " ".join(protocol.IDENTITY)
+    if quantity == "VOLTAGE":
+        return f"{board.voltage[0]} {board.voltage[1]}"
+    if quantity == "WAVEFORM":
+        w = board.waveform
+        numbers = (round(w.voltage_v), round(w.frequency_hz * 1e3), w.periods, round(w.duty * 1e3))
+        return " ".join([w.shape, *map(str, numbers), w.polarity, w.muscles])
+    if quantity in board.settings:
+        return str(board.settings[quantity])
+    raise RefusalError("UNKNOWN")
+
+
+def _set(board: "VirtualBoard", quantity: str, arguments: tuple[str, ...]) -> None:
+    if quantity == "VOLTAGE":
+        _require(board.mode.may_be_live)
+        most = board.settings["MAXIMUM"]
+        upper, lower = _integers(arguments, 2)
+        board.set_voltage((_clip(upper, -most, most), _clip(lower, -most, most)))
+    elif quantity == "WAVEFORM":
+        _require(board.mode is not Mode.ACTIVE)
+        board.waveform = _parse_waveform(board, arguments)
+    elif quantity in SETTINGS:
+        _require(board.mode is Mode.STANDBY or quantity == "TELEMETRY")
+        least, most, _ = SETTINGS[quantity]
+        board.settings[quantity] = _clip(_integers(arguments, 1)[0], least, most)
+    else:
+        raise RefusalError("UNKNOWN")
+
+
+def _parse_waveform(board: "VirtualBoard", arguments: tuple[str, ...]) -> Waveform:
+    if len(arguments) != 7:
+        raise RefusalError("SYNTAX")
+    voltage, frequency, periods, duty = _integers(arguments[1:5], 4)
+    try:
+        return Waveform(
+            shape=arguments[0],
+            voltage_v=_clip(voltage, 0, board.settings["MAXIMUM"]),
+            frequency_hz=_clip(frequency, 10, 50_000) / 1000,
+            periods=_clip(periods, 1, 60_000),
+            duty=_clip(duty, 1, 1000) / 1000,
+            polarity=arguments[5],
+            muscles=arguments[6],
+        )
+    except LimitError as error:
+        raise RefusalError("SYNTAX") from error
+
+
+def _require(allowed: bool) -> None:
+    if not allowed:
+        raise RefusalError("STATE")
+
+
+def _arm(board: "VirtualBoard") -> None:
+    _require(board.mode is Mode.STANDBY)
+    if not board.interlock_closed:
+        raise RefusalError("INTERLOCK")
+    board.mode = Mode.ARMED
+
+
+def _disarm(board: "VirtualBoard") -> None:
+    board.ground(Mode.STANDBY if board.fault is FaultCode.NONE else Mode.FAULT)
+
+
+def _clear(board: "VirtualBoard") -> None:
+    _require(board.mode is Mode.FAULT)
+    if not board.interlock_closed:
+        raise RefusalError("INTERLOCK")
+    board.mode, board.fault = Mode.STANDBY, FaultCode.NONE
+
+
+def _start(board: "VirtualBoard") -> None:
+    _require(board.mode is Mode.ARMED)
+    board.mode, board.waveform_ms = Mode.ACTIVE, 0
+
+
+def _clip(value: int, least: int, most: int) -> int:
+    return min(max(value, least), most)
+
+
+def _integers(words: tuple[str, ...], count: int) -> list[int]:
+    if len(words) != count or any(len(word.lstrip("-")) > 6 for word in words):
+        raise RefusalError("SYNTAX")
+    try:
+        return [int(word) for word in words]
+    except ValueError as error:
+        raise RefusalError("SYNTAX") from error
