@@ -8,6 +8,7 @@ import numpy as np
 
 from hasel_sim.effects.base import Coefficients, Effect, EffectParameter, ForceEffect, MaterialEffect
 from hasel_sim.errors import ModelError
+from hasel_sim.first_run import announce_compilation
 from hasel_sim.mechanics.branches import Branches
 from hasel_sim.mechanics.force_law import ForceLaw
 from hasel_sim.mechanics.inertia import Mass, element_masses
@@ -105,6 +106,7 @@ class Builder:
     """Builds the system of a model at its parameter values, on the model's mesh or on moved nodes [m] [nodes, 2]."""
 
     def __init__(self, model: Model, nodes: np.ndarray | None = None) -> None:
+        announce_compilation()
         self.model = model
         self.mesh = model_mesh(model) if nodes is None else replace(model_mesh(model), nodes=nodes)
         self.nodes = self.mesh.nodes

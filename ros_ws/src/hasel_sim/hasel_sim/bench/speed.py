@@ -37,9 +37,11 @@ class Speed:
         return 1 / self.forward
 
     def __str__(self) -> str:
+        sensitivities, adjoint = self.sensitivities / self.forward, self.adjoint / self.forward
         return (
             f"{self.nodes} nodes: {self.milliseconds(self.forward):.2f} ms a frame, "
-            f"{self.real_time_factor:.1f} x real time; with all sensitivities {self.sensitivities / self.forward:.2f} x, adjoint {self.adjoint / self.forward:.2f} x"
+            f"{self.real_time_factor:.1f} x real time; with all sensitivities {sensitivities:.2f} x, "
+            f"adjoint sweep {adjoint:.2f} x"
         )
 
     @staticmethod

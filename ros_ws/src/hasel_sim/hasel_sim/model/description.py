@@ -149,7 +149,7 @@ class Description(_Section):
             marker = getattr(self.markers, name)
             if not marker.fixed and not 0 <= marker.x_m <= length + 1e-9:
                 raise ValueError(
-                    f"markers.{name}.x_m is {marker.x_m:g}; expected 0 to {length:g} m, a place on the body: correct it "
-                    "or set fixed: true for a marker of the rig"
+                    f"markers.{name}.x_m is {marker.x_m:g}; expected 0 to {length:g} m, a place on the body: correct "
+                    "it or set fixed: true for a marker of the rig"
                 )
         return self

@@ -4,11 +4,12 @@ from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
 import numpy as np
+from pydantic import ValidationError
 
 from hasel_sim.effects.base import Effect
 from hasel_sim.effects.registry import find_effects
 from hasel_sim.errors import ModelError, nearest_name
-from hasel_sim.model.description import Description
+from hasel_sim.model.description import Description, Numerics
 from hasel_sim.model.parameter import Parameter
 
 _AMPLITUDE_START_PER_VOLT = 0.04 / 5500.0
@@ -120,8 +121,17 @@ class Model:
         return replace(self, effects=effects, parameters=parameters)
 
     def with_numerics(self, **changes: float) -> "Model":
-        """A copy with other numerics, such as mesh_density=2 or steps_per_second=960."""
-        numerics = self.description.numerics.model_copy(update=changes)
+        """A copy with other numerics, such as mesh_density=2 or steps_per_second=960.
+
+        Raises ModelError for an unknown one or a bad value.
+        """
+        try:
+            numerics = Numerics.model_validate({**self.description.numerics.model_dump(), **changes})
+        except ValidationError as error:
+            problem = error.errors()[0]
+            raise ModelError(
+                f"numerics.{problem['loc'][0]} is {problem['input']!r}; {problem['msg'].lower()}: correct it"
+            ) from None
         return replace(self, description=self.description.model_copy(update={"numerics": numerics}))
 
 

@@ -1,0 +1,88 @@
+"""The benchmark measures what it says."""
+
+import json
+
+import numpy as np
+import pytest
+from hasel_sim.bench.cases import box_run, fitted_swimmer, node_count, with_nodes
+from hasel_sim.bench.convergence import mesh_errors, step_errors
+from hasel_sim.bench.report import Bar, SpeedReport
+from hasel_sim.bench.speed import measure_speed
+from hasel_sim.bench.timing import first_run_seconds
+from hasel_sim.bench.where_time_goes import shares
+from hasel_sim.commands import bench
+
+
+def test_a_mesh_of_about_so_many_nodes_is_found():
+    """Within some ten per cent, the default's own number exactly."""
+    model = fitted_swimmer()
+    assert node_count(with_nodes(model, 336)) == 336
+    assert node_count(with_nodes(model, 1400)) == pytest.approx(1400, rel=0.1)
+
+
+def test_the_run_alternates_at_its_frequency():
+    """Four switches in a second at 2 Hz, upper muscle first."""
+    schedule = box_run().schedule
+    assert schedule.switches() == pytest.approx([0.0, 0.25, 0.5, 0.75])
+    assert schedule.at(np.array([0.1, 0.3])).tolist() == [[5500, 0], [0, 5500]]
+
+
+def test_the_default_mesh_runs_far_ahead_of_real_time():
+    """Twice the bar's half on a busy machine; sensitivities and adjoint cost about another run each."""
+    speed = measure_speed(fitted_swimmer())
+    assert speed.real_time_factor > 5
+    assert speed.sensitivities / speed.forward < 2.5
+    assert speed.adjoint / speed.forward < 2.0
+    assert "336 nodes" in str(speed)
+
+
+def test_the_profile_accounts_for_all_time():
+    """Shares sum to one, and every kernel was seen."""
+    found = shares(fitted_swimmer())
+    assert sum(share for _, share in found) == pytest.approx(1.0)
+    assert all(share > 0 for _, share in found)
+
+
+def test_a_missed_bar_is_not_met():
+    """In either direction."""
+    assert not Bar("speed", 4.0, 5.0, at_least=True).met
+    assert not Bar("cost", 3.0, 2.0).met
+    assert Bar("cost", 1.0, 2.0).met
+
+
+@pytest.mark.slow
+def test_the_first_run_compiles_within_half_a_minute():
+    """On a machine that has compiled nothing."""
+    assert first_run_seconds() < 30
+
+
+@pytest.mark.slow
+def test_mesh_and_time_step_converge():
+    """Errors fall with refinement; reduced quadrature converges faster; the default step is good to 0.001."""
+    errors = {(e.quadrature_order, e.mesh_density): e.error for e in mesh_errors()}
+    for order in (2, 3):
+        ordered = [errors[order, d] for d in (0.5, 1.0, 2.0, 3.0)]
+        assert ordered == sorted(ordered, reverse=True)
+    assert errors[2, 1.0] < errors[3, 1.0]
+    assert errors[2, 1.5] < 0.002
+    steps = {e.steps_per_second: e.error for e in step_errors()}
+    assert steps[240.0] < 1e-3
+    assert steps[120.0] / steps[480.0] == pytest.approx(16, rel=0.3)
+
+
+def test_the_command_prints_tables_and_writes_json(tmp_path, monkeypatch, capsys):
+    """Exit status 1 when a bar is missed."""
+    speed = measure_speed(fitted_swimmer().with_numerics(mesh_density=0.3))
+    report = SpeedReport(40.0, [speed], speed, speed, 1.0, [(0, 1.0)], [("all", 1.0)])
+    monkeypatch.setattr(bench, "measure_speeds", lambda console: report)
+    path = tmp_path / "bench.json"
+    assert bench.main(["--json", str(path)]) == 1
+    values = json.loads(path.read_text())
+    assert values["bars"][-1] == {
+        "what": "first run, compiling (s)",
+        "measured": 40.0,
+        "limit": 30,
+        "at_least": False,
+        "met": False,
+    }
+    assert "Where the time goes".lower() in capsys.readouterr().out.lower()
