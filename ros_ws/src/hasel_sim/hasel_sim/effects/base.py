@@ -222,6 +222,8 @@ class MaterialEffect(Effect):
     place = "material"
     regions: ClassVar[tuple[Region, ...]] = ()
     """Where `first_piola` adds stress; empty for an effect without additional stress."""
+    depends_on: ClassVar[tuple[str, ...]] = ("deformation",)
+    """Which of deformation and rate the additional stress depends on."""
 
     def modify(self, coefficients: Coefficients, p: SimpleNamespace) -> None:
         """Change the constants in place."""

@@ -1,5 +1,6 @@
 """Checks of a material effect: either a stress or changed constants; null, response, locality, sound constants."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -35,6 +36,16 @@ def _check_stress(effect: MaterialEffect, null: SimpleNamespace, typical: Simple
     few = MaterialPoints(**{name: part[:2] for name, part in parts.items()}, fibre=65e3, time=0.3)
     off = called(effect, "first_piola", (n, 2, 2), at, null)
     on = called(effect, "first_piola", (n, 2, 2), at, typical)
+    unknown = [name for name in effect.depends_on if name not in ("deformation", "rate")]
+    expect(not unknown, effect, f"depends on {unknown}", "name deformation, rate or both in depends_on")
+    for name in {"deformation", "rate"} - set(effect.depends_on):
+        moved = replace(at, **{name: parts[name] + 0.01 * rng.standard_normal((n, 2, 2))})
+        expect(
+            same(called(effect, "first_piola", (n, 2, 2), moved, typical), on),
+            effect,
+            f"uses the {name} without saying so",
+            f'add "{name}" to depends_on',
+        )
     expect(not np.any(off), effect, "adds stress at its null values", "make first_piola return zeros there")
     expect(np.any(on), effect, "adds no stress at its typical values", "make first_piola use its parameters")
     expect(

@@ -6,7 +6,7 @@ import numpy as np
 
 from hasel_sim.effects.base import MaterialEffect, MaterialPoints
 
-_DIFFERENCE_F, _DIFFERENCE_RATE = 1e-6, 1e-4
+_DIFFERENCE = {"deformation": 1e-6, "rate": 1e-4}
 
 
 class StressLaw:
@@ -43,19 +43,21 @@ class StressLaw:
         self, deformation: np.ndarray, rate: np.ndarray, drive, elastic: np.ndarray, viscous: np.ndarray
     ) -> None:
         """Add the derivatives by F and by its rate to elastic and viscous [elements, points, 4, 4]."""
-        here, speed = deformation[self.elements], rate[self.elements]
-        points, n = here.shape[1], here.shape[0] * here.shape[1]
-        F = np.tile(here.reshape(n, 4), (16, 1)).reshape(16, n, 4)
-        R = np.tile(speed.reshape(n, 4), (16, 1)).reshape(16, n, 4)
-        for component in range(4):
-            F[2 * component, :, component] += _DIFFERENCE_F
-            F[2 * component + 1, :, component] -= _DIFFERENCE_F
-            R[8 + 2 * component, :, component] += _DIFFERENCE_RATE
-            R[9 + 2 * component, :, component] -= _DIFFERENCE_RATE
-        P = self._evaluate(F.reshape(-1, 2, 2), R.reshape(-1, 2, 2), drive, points, 16).reshape(8, 2, n, 4)
-        change = (P[:, 0] - P[:, 1]).transpose(1, 2, 0).reshape(here.shape[0], points, 4, 8)
-        elastic[self.elements] += change[..., :4] / (2 * _DIFFERENCE_F)
-        viscous[self.elements] += change[..., 4:] / (2 * _DIFFERENCE_RATE)
+        names, moduli = self.effect.depends_on, {"deformation": elastic, "rate": viscous}
+        fields = {"deformation": deformation[self.elements], "rate": rate[self.elements]}
+        shape = fields["deformation"].shape
+        n, copies = shape[0] * shape[1], 8 * len(names)
+        batch = {name: np.tile(field.reshape(n, 4), (copies, 1)) for name, field in fields.items()}
+        for index, name in enumerate(names):
+            moved = batch[name].reshape(len(names), 4, 2, n, 4)[index]
+            for component in range(4):
+                moved[component, 0, :, component] += _DIFFERENCE[name]
+                moved[component, 1, :, component] -= _DIFFERENCE[name]
+        F, speed = (batch[name].reshape(-1, 2, 2) for name in ("deformation", "rate"))
+        P = self._evaluate(F, speed, drive, shape[1], copies).reshape(len(names), 4, 2, n, 4)
+        for index, name in enumerate(names):
+            change = (P[index, :, 0] - P[index, :, 1]) / (2 * _DIFFERENCE[name])
+            moduli[name][self.elements] += change.transpose(1, 2, 0).reshape(*shape, 4)
 
     def contraction_slope(self, deformation: np.ndarray, rate: np.ndarray, drive, muscle: int) -> np.ndarray:
         """Derivative of the stress by the contraction of one muscle (0 upper, 1 lower), [elements here, points, 4]."""

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.mesh.serendipity import edge_functions, reference_gradients
@@ -23,16 +24,45 @@ class Sites:
 
     def value(self, field: np.ndarray) -> np.ndarray:
         """A nodal field [..., nodes, 2] at the sites, [..., n, 2]."""
-        return np.einsum("nk,...nkd->...nd", self.shape, field[..., self.nodes, :])
+        return self._interpolated(self.shape, field)
 
     def tangent(self, position: np.ndarray) -> np.ndarray:
         """Derivative of a nodal field along the skin, [..., n, 2]."""
-        return np.einsum("nk,...nkd->...nd", self.slope, position[..., self.nodes, :])
+        return self._interpolated(self.slope, position)
+
+    def _interpolated(self, weights: np.ndarray, field: np.ndarray) -> np.ndarray:
+        out = np.empty((*field.shape[:-2], len(self.nodes), 2))
+        columns = np.ascontiguousarray(field).reshape(-1, *field.shape[-2:])
+        _gather(columns, self.nodes, weights, out.reshape(-1, *out.shape[-2:]))
+        return out
 
     def scatter(self, force: np.ndarray, out: np.ndarray) -> None:
-        """Add forces at the sites [..., n, 2], times the measure, to the nodes in out [..., nodes, 2]."""
-        share = force[..., :, None, :] * (self.shape * self.measure[:, None])[..., None]
-        np.add.at(out, (..., self.nodes, slice(None)), share)
+        """Add forces at the sites [..., n, 2], times the measure, to the nodes in out [..., nodes, 2] (contiguous)."""
+        columns = out.view()
+        columns.shape = (-1, *out.shape[-2:])
+        force = np.ascontiguousarray(force, dtype=float).reshape(-1, *force.shape[-2:])
+        _spread(force, self.nodes, self.shape * self.measure[:, None], columns)
+
+
+@njit(cache=True)
+def _gather(field, nodes, weights, out):
+    for c in range(field.shape[0]):
+        for s in range(nodes.shape[0]):
+            x = y = 0.0
+            for k in range(nodes.shape[1]):
+                x += weights[s, k] * field[c, nodes[s, k], 0]
+                y += weights[s, k] * field[c, nodes[s, k], 1]
+            out[c, s, 0] = x
+            out[c, s, 1] = y
+
+
+@njit(cache=True)
+def _spread(force, nodes, weights, out):
+    for c in range(force.shape[0]):
+        for s in range(nodes.shape[0]):
+            for k in range(nodes.shape[1]):
+                out[c, nodes[s, k], 0] += weights[s, k] * force[c, s, 0]
+                out[c, nodes[s, k], 1] += weights[s, k] * force[c, s, 1]
 
 
 def body_sites(mesh: Mesh, nodes: np.ndarray, density: np.ndarray) -> Sites:

@@ -48,6 +48,7 @@ class FilmViscosity(MaterialEffect):
     equation = "tension += eta dl/dt"
     parameters = (EffectParameter("eta", "eta", "Pa s", 0.0, 0.0, 1e5, 2e3),)
     regions = (Region.UPPER_MUSCLE, Region.LOWER_MUSCLE)
+    depends_on = ("deformation", "rate")
 
     def first_piola(self, at, p):
         return at.along_fibre(p.eta * at.rate[:, 0, 0])
@@ -198,6 +199,7 @@ def test_a_broken_effect_is_refused_with_what_to_change(said, written):
             "return signal[:5]",
             r"where .* is expected",
         ),
+        (SLIP, '("deformation", "rate")', '("deformation",)', "uses the rate without saying so"),
         (SLIP, "p.eta *", "1 + p.eta *", "adds stress at its null values"),
         (SLIP, "at.rate[:, 0, 0]", "at.rate[:, 0, 0].mean()", "depends on others|fails in first_piola"),
         (ROLL, "sin_theta + p.offset", "sin_theta + 0.1", "changes what is observed at its null values"),
