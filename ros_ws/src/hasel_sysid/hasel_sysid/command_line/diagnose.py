@@ -18,7 +18,7 @@ from hasel_sysid.command_line.options import (
 )
 from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
-from hasel_sysid.command_line.shown import show
+from hasel_sysid.command_line.shown import announce, show
 from hasel_sysid.compare import compare
 from hasel_sysid.dataset import prepared
 from hasel_sysid.diagnosis import diagnose
@@ -48,6 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _diagnose(options: argparse.Namespace) -> None:
     experiments, unseen = load_all(options)
+    said = announce([*experiments, *unseen])
     label, model = chosen_model(options.model, [*experiments, *unseen])
     with executor(options.jobs, options.scheduler) as pool, progress_bar("diagnose") as progress:
         problem = Problem(experiments, pool)
@@ -56,7 +57,7 @@ def _diagnose(options: argparse.Namespace) -> None:
         comparison = compare(
             fit.model, experiments, pool, unseen, f"{label}, fitted", part(progress, "", 0.95, 1.0)
         )
-    show([comparison])
+    show([comparison], said)
     print(found)
     if options.json:
         write_json({**comparison.to_json(), **diagnosis_json(found)}, options.json)

@@ -20,8 +20,9 @@ from hasel_sysid.command_line.options import (
 )
 from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
-from hasel_sysid.command_line.shown import show
+from hasel_sysid.command_line.shown import announce, show
 from hasel_sysid.compare import Comparison, compare
+from hasel_sysid.data_gate import Finding
 from hasel_sysid.dataset import prepared
 from hasel_sysid.errors import SysidError
 from hasel_sysid.fit import METHODS, FitResult
@@ -57,6 +58,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _fit(options: argparse.Namespace) -> None:
     experiments, unseen = load_all(options)
+    said = announce([*experiments, *unseen])
     label, model = chosen_model(options.model, [*experiments, *unseen])
     model = prepared(model, experiments)
     if not model.free:
@@ -77,12 +79,14 @@ def _fit(options: argparse.Namespace) -> None:
             path = _save(model.with_values(problem.best.model.values), options.output)
             print(f"wrote the best model so far, without uncertainties, to {path}", file=sys.stderr)
         raise
-    _finish(options, result, comparison)
+    _finish(options, result, comparison, said)
 
 
-def _finish(options: argparse.Namespace, result: FitResult, comparison: Comparison) -> None:
+def _finish(
+    options: argparse.Namespace, result: FitResult, comparison: Comparison, said: Sequence[Finding]
+) -> None:
     path = _save(result.model, options.output)
-    show([comparison])
+    show([comparison], said)
     print(result)
     if options.json:
         write_json({**comparison.to_json(), **_fit_json(result)}, options.json)

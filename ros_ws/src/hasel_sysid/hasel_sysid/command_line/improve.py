@@ -21,7 +21,7 @@ from hasel_sysid.command_line.options import (
 )
 from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
-from hasel_sysid.command_line.shown import show
+from hasel_sysid.command_line.shown import announce, show
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.compare.compare import comparison_of
 from hasel_sysid.dataset import Experiment, prepared
@@ -57,6 +57,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _improve(options: argparse.Namespace) -> None:
     experiments, unseen = load_all(options)
+    said = announce([*experiments, *unseen])
     label, model = chosen_model(options.model, [*experiments, *unseen])
     model = prepared(model, experiments)
     options.output.mkdir(parents=True, exist_ok=True)
@@ -82,6 +83,7 @@ def _improve(options: argparse.Namespace) -> None:
         if written:
             print(f"wrote the stages so far ({len(written)}), see {ledger.path}", file=sys.stderr)
         raise
+    show([stages[0]], said)
     _finish(options, found, start, stages)
 
 
@@ -99,7 +101,6 @@ def _finish(
     options: argparse.Namespace, found: Improvement, start: Comparison, stages: Sequence[Comparison]
 ) -> None:
     folder: Path = options.output
-    show([stages[0]])
     print(found.diagnosis)
     print(found)
     save_model(found.model, folder / MODEL_FILE)
@@ -108,7 +109,11 @@ def _finish(
     waterfall_picture(content.stages, content.noise_floor, folder / "waterfall.png")
     stages_picture(content.stages, content.noise_floor, folder / "error_by_stage.png")
     if options.json:
-        details = {"where_it_fails": stages[0].where.sentences(), "start": start.to_json()}
+        details = {
+            "where_it_fails": stages[0].where.sentences(),
+            "data_gate": [finding.to_json() for finding in stages[0].set_up],
+            "start": start.to_json(),
+        }
         write_json({**found.to_json(), **details}, options.json)
     print(f"Wrote {folder / MODEL_FILE} and {report}.")
 

@@ -1,4 +1,4 @@
-"""Comparisons on the terminal."""
+"""Comparisons and faults of the set-up on the terminal."""
 
 import sys
 from collections.abc import Sequence
@@ -7,13 +7,21 @@ from rich.console import Console
 
 from hasel_sysid.compare import Comparison
 from hasel_sysid.compare.table import condition_table, run_table
+from hasel_sysid.data_gate import Finding, check_recording
+from hasel_sysid.dataset import Experiment
 
 
-def show(comparisons: Sequence[Comparison]) -> None:
-    """Print tables, faults of the set-up and where the models fail."""
+def announce(experiments: Sequence[Experiment]) -> list[Finding]:
+    """Check recordings before anything is simulated; faults of the set-up go to stderr and are returned."""
+    found = [finding for experiment in experiments for finding in check_recording(experiment.recording)]
+    _tell(found)
+    return found
+
+
+def show(comparisons: Sequence[Comparison], said: Sequence[Finding] = ()) -> None:
+    """Print tables and where the models fail, and those faults of the set-up that have not been `said`."""
+    _tell([finding for finding in comparisons[0].set_up if finding not in said])
     console = Console(soft_wrap=True)
-    for finding in comparisons[0].set_up:
-        print(f"{finding.severity.value}: {finding}", file=sys.stderr)
     console.print(run_table(comparisons))
     if any(run.series.voltage > 0 for run in comparisons[0].runs):
         console.print(condition_table(comparisons))
@@ -21,3 +29,8 @@ def show(comparisons: Sequence[Comparison]) -> None:
         print(comparison)
         for sentence in comparison.where.sentences():
             print(f"  {sentence}")
+
+
+def _tell(findings: Sequence[Finding]) -> None:
+    for finding in findings:
+        print(f"{finding.severity.value}: {finding}", file=sys.stderr)

@@ -8,7 +8,7 @@ from hasel_sysid.improve.result import Improvement, Status
 from hasel_sysid.report.content import KeyNumber, NextRun, ReportContent, Stage
 from hasel_sysid.report.from_diagnosis import ranked_rows, what_remains
 from hasel_sysid.report.from_results import comparison_content, parameter_rows
-from hasel_sysid.report.numbers import percent
+from hasel_sysid.report.numbers import error_text, percent
 from hasel_sysid.suggest import Suggestion
 
 _SHOWN_SUGGESTIONS = 3
@@ -73,10 +73,14 @@ def _key_numbers(improvement: Improvement, comparisons: Sequence[Comparison]) ->
         ("on unseen runs", first.mean_absolute_error_unseen, last.mean_absolute_error_unseen),
     ):
         if before is not None and after is not None:
-            note = f"from {before:.4f} of the fitted baseline" if len(comparisons) > 1 else "fitted baseline"
-            numbers.append(KeyNumber(f"{after:.4f}", label, note))
+            note = (
+                f"from {error_text(before)} of the fitted baseline"
+                if len(comparisons) > 1
+                else "fitted baseline"
+            )
+            numbers.append(KeyNumber(error_text(after), label, note))
     numbers.append(
-        KeyNumber(f"{improvement.noise_floor:.4f}", "noise floor", "what a perfect model would leave")
+        KeyNumber(error_text(improvement.noise_floor), "noise floor", "what a perfect model would leave")
     )
     explained = percent(1 - improvement.unexplained_fraction)
     numbers.append(KeyNumber(explained, "explained", "of the squared error above the noise"))

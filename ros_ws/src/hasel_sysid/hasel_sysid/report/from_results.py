@@ -8,6 +8,7 @@ from hasel_sim.model import Model
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.fit.result import FitResult
 from hasel_sysid.report.content import KeyNumber, ParameterRow, ReportContent, RunOverlay
+from hasel_sysid.report.numbers import count_text, error_text
 
 _RMS_TO_MEAN = 0.798
 """Mean magnitude of Gaussian noise of unit standard deviation."""
@@ -51,7 +52,7 @@ def comparison_content(comparisons: Sequence[Comparison]) -> ReportContent:
     labels = ", ".join(c.label for c in comparisons)
     frames = sum(len(run.series.time) for run in first.runs)
     return ReportContent(
-        title=f"{labels} against {len(first.runs)} recordings",
+        title=f"{labels} against {count_text(len(first.runs), 'recording')}",
         subtitle=f"{frames} frames; errors are mean |Δ sin θ| with each run's offset taken out",
         verdict=first.where.sentences()[0],
         good=not first.where.failures and not any(run.analysis.failures for run in first.runs),
@@ -67,18 +68,20 @@ def key_numbers(comparison: Comparison) -> tuple[KeyNumber, ...]:
     numbers = []
     if comparison.mean_absolute_error is not None:
         fitted = sum(not run.unseen for run in comparison.runs)
-        numbers.append(KeyNumber(f"{comparison.mean_absolute_error:.4f}", "mean |Δ sin θ|", f"{fitted} runs"))
+        numbers.append(
+            KeyNumber(error_text(comparison.mean_absolute_error), "mean |Δ sin θ|", count_text(fitted, "run"))
+        )
     if comparison.mean_absolute_error_unseen is not None:
         unseen = sum(run.unseen for run in comparison.runs)
         numbers.append(
             KeyNumber(
-                f"{comparison.mean_absolute_error_unseen:.4f}",
+                error_text(comparison.mean_absolute_error_unseen),
                 "on unseen runs",
-                f"{unseen} runs, never fitted",
+                f"{count_text(unseen, 'run')}, never fitted",
             )
         )
     noise = _RMS_TO_MEAN * comparison.where.noise
-    numbers.append(KeyNumber(f"{noise:.4f}", "noise floor", "from the fastest part of the measured angle"))
+    numbers.append(KeyNumber(error_text(noise), "noise floor", "from the fastest part of the measured angle"))
     return tuple(numbers)
 
 
@@ -89,7 +92,7 @@ def fit_content(result: FitResult, comparison: Comparison) -> ReportContent:
     content = comparison_content([comparison])
     return replace(
         content,
-        title=f"{comparison.label}: {len(comparison.runs)} recordings",
+        title=f"{comparison.label}: {count_text(len(comparison.runs), 'recording')}",
         verdict=str(comparison),
         good=None,
         parameters=parameter_rows(result.model, remarks),

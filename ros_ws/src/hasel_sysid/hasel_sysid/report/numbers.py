@@ -3,6 +3,21 @@
 import math
 
 
+def error_text(error: float) -> str:
+    """An error of sin theta: four decimals, or two digits where these would say nothing."""
+    return f"{error:.4f}" if error >= 0.0005 or error == 0 else f"{error:.1e}"
+
+
+def change_text(change: float) -> str:
+    """A change of such an error, with its sign."""
+    return ("+" if change > 0 else "−") + error_text(abs(change))
+
+
+def count_text(count: int, what: str) -> str:
+    """A count with its noun, such as 1 run or 3 runs."""
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
+
+
 def percent(share: float) -> str:
     """A share from 0 to 1 as per cent; a dash when not known."""
     if not math.isfinite(share):

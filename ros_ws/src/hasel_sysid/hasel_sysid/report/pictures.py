@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 
 from hasel_sysid.report.content import RunOverlay, Stage
 from hasel_sysid.report.figures.style import DROP, FITTED, MEASURED, MODELS, NOISE, RISE, UNSEEN
+from hasel_sysid.report.numbers import change_text, error_text
 
 _DOTS_PER_INCH = 150
 
@@ -46,7 +47,7 @@ def stages_picture(stages: Sequence[Stage], noise_floor: float | None, path: Pat
             continue
         heights = [np.nan if error is None else error for error in errors]
         bars = axis.bar(place + shift, heights, 0.38, color=colour, label=name)
-        axis.bar_label(bars, [f"{h:.4f}" for h in heights], padding=2, fontsize=8)
+        axis.bar_label(bars, ["" if np.isnan(h) else error_text(h) for h in heights], padding=2, fontsize=8)
     _noise(axis, noise_floor)
     axis.set_xticks(place, [stage.label for stage in stages])
     axis.set_ylabel("mean |Δ sin θ|")
@@ -74,20 +75,20 @@ def _waterfall(axis: Axes, known: Sequence[tuple[str, float]], colour: str) -> N
     labels, errors = [label for label, _ in known], [error for _, error in known]
     axis.bar(0, errors[0], 0.75, color=colour)
     axis.annotate(
-        f"{errors[0]:.4f}", (0, errors[0]), (0, 3), textcoords="offset points", ha="center", fontsize=8
+        error_text(errors[0]), (0, errors[0]), (0, 3), textcoords="offset points", ha="center", fontsize=8
     )
     for place, (before, after) in enumerate(zip(errors, errors[1:], strict=False), start=1):
         falls = after <= before
         axis.bar(place, before - after, 0.75, bottom=after, color=DROP if falls else RISE)
         axis.plot([place - 1.375 + 0.75, place + 0.375], [before, before], color="#c3c9cf", linewidth=0.8)
-        text = f"{after - before:+.4f}".replace("-", "−")
+        text = change_text(after - before)
         axis.annotate(
             text, (place, max(before, after)), (0, 3), textcoords="offset points", ha="center", fontsize=8
         )
     end = len(errors)
     axis.bar(end, errors[-1], 0.75, color=colour)
     axis.annotate(
-        f"{errors[-1]:.4f}",
+        error_text(errors[-1]),
         (end, errors[-1]),
         (0, 3),
         textcoords="offset points",
@@ -104,7 +105,7 @@ def _noise(axis: Axes, noise_floor: float | None) -> None:
     if noise_floor is not None:
         axis.axhline(noise_floor, color=NOISE, linestyle="--", linewidth=1)
         axis.annotate(
-            f"noise floor {noise_floor:.4f}",
+            f"noise floor {error_text(noise_floor)}",
             (1.0, noise_floor),
             (0, 14),
             xycoords=("axes fraction", "data"),

@@ -68,8 +68,8 @@ def _swing_decay(c: Component) -> str:
     text = f"dies out {'faster' if c.value > 0 else 'slower'} than the model by {abs(c.value):.2g} 1/s"
     if c.detail and "measured_damping_ratio" in c.detail:
         text += (
-            f" (damping ratio {c.detail['measured_damping_ratio']:.2g} "
-            f"against {max(c.detail['simulated_damping_ratio'], 0.0):.2g})"
+            f" (damping ratio {round(c.detail['measured_damping_ratio'], 3):g} "
+            f"against {round(max(c.detail['simulated_damping_ratio'], 0.0), 3):g})"
         )
     return text
 

@@ -2,6 +2,7 @@
 
 import json
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -88,6 +89,20 @@ def test_unreadable_recording_is_skipped(folder, tmp_path, capsys):
     arguments = [str(broken), *_arguments(folder, "truth.yaml"), "--output", str(tmp_path)]
     assert compare.main(arguments) == 0
     assert capsys.readouterr().err.startswith(f"warning: Skipped: {broken}")
+
+
+def test_faults_of_the_set_up_come_first_and_once(folder, tmp_path, capsys):
+    """A flipped recording is named as an error on stderr, once, before it is fitted, and in the JSON file."""
+    recording = read_recording(folder / "run_3500.csv")
+    path = tmp_path / "flipped.csv"
+    write_recording(replace(recording, sin_theta=-recording.sin_theta), path)
+    arguments = [str(path), "--model", str(folder / "truth.yaml"), "--jobs", "1", "--output", str(tmp_path)]
+    assert fit.main([*arguments, "--json", str(tmp_path / "f.json")]) == 0
+    said = capsys.readouterr().err
+    assert said.startswith("error: flipped: sign flip or swapped channels")
+    assert said.count("the body first bends away") == 1
+    gate = json.loads((tmp_path / "f.json").read_text())["data_gate"]
+    assert gate[0]["fault"] == "sign flip or swapped channels"
 
 
 @pytest.mark.parametrize(

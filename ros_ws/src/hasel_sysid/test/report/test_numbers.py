@@ -1,7 +1,7 @@
 """Numbers as a reader wants them."""
 
 import pytest
-from hasel_sysid.report.numbers import percent, value_with_error
+from hasel_sysid.report.numbers import change_text, count_text, error_text, percent, value_with_error
 
 
 @pytest.mark.parametrize(
@@ -30,3 +30,10 @@ def test_percent():
         "0 %",
         "–",
     ]
+
+
+def test_errors_small_and_large():
+    """Errors have four decimals unless these would be zeros; changes have a sign, counts their noun."""
+    assert [error_text(error) for error in (0.0259, 0.0, 1.6e-5)] == ["0.0259", "0.0000", "1.6e-05"]
+    assert [change_text(change) for change in (-0.0938, 0.002)] == ["−0.0938", "+0.0020"]
+    assert [count_text(count, "run") for count in (1, 3)] == ["1 run", "3 runs"]

@@ -8,6 +8,7 @@ from plotly.subplots import make_subplots
 
 from hasel_sysid.report.content import Stage
 from hasel_sysid.report.figures.style import DROP, FITTED, NOISE, RISE, UNSEEN, styled
+from hasel_sysid.report.numbers import change_text, error_text
 
 
 def waterfall_figure(stages: Sequence[Stage], noise_floor: float | None) -> go.Figure:
@@ -15,7 +16,7 @@ def waterfall_figure(stages: Sequence[Stage], noise_floor: float | None) -> go.F
     groups = [("fitted runs", [s.error for s in stages], FITTED)]
     if any(stage.error_unseen is not None for stage in stages):
         groups.append(("unseen runs", [s.error_unseen for s in stages], UNSEEN))
-    floor = "" if noise_floor is None else f"; dashed: noise floor {noise_floor:.4f}"
+    floor = "" if noise_floor is None else f"; dashed: noise floor {error_text(noise_floor)}"
     figure = make_subplots(
         rows=1,
         cols=len(groups),
@@ -54,7 +55,6 @@ def _add_waterfall(
     )
     figure.add_trace(bars, row=1, col=column)
     tops = [errors[0], *np.maximum(errors[:-1], errors[1:]), errors[-1]]
-    texts = [f"{errors[0]:.4f}", *(f"{change:+.4f}" for change in changes), f"<b>{errors[-1]:.4f}</b>"]
+    texts = [error_text(errors[0]), *map(change_text, changes), f"<b>{error_text(errors[-1])}</b>"]
     for place, (top, text) in enumerate(zip(tops, texts, strict=True)):
-        text = text.replace("-", "−")
         figure.add_annotation(x=place, y=top, text=text, showarrow=False, yshift=10, row=1, col=column)
