@@ -93,6 +93,9 @@ static void set_interlock(void) {
 }
 
 static void tick(void) {
+  // Pins 2 and 3 are outputs; after any reset simavr polls them for external interrupts, at most of its time.
+  avr_extint_set_strict_lvl_trig(avr, EXTINT_IRQ_OUT_INT0, 0);
+  avr_extint_set_strict_lvl_trig(avr, EXTINT_IRQ_OUT_INT1, 0);
   bool is_live = false;
   for (int channel = 0; channel < CHANNELS; ++channel) {
     contacts[channel] = contact_of(channel);
@@ -130,9 +133,6 @@ static void feed_uart(void) {
 
 static void reset(void) {
   avr_reset(avr);
-  // Pins 2 and 3 are used as outputs; polled for external interrupts they would cost most of the time.
-  avr_extint_set_strict_lvl_trig(avr, EXTINT_IRQ_OUT_INT0, 0);
-  avr_extint_set_strict_lvl_trig(avr, EXTINT_IRQ_OUT_INT1, 0);
   avr_regbit_set(avr, avr->reset_flags.extrf);
   received_count = transmitted_count = 0;
   set_interlock();
