@@ -1,5 +1,8 @@
 """The baseline muscle: an amplitude per voltage, approached at a limited rate (the seed paper's sloped box)."""
 
+from functools import lru_cache
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from scipy.interpolate import PchipInterpolator
@@ -14,17 +17,34 @@ def target_contraction(voltage: np.ndarray, levels: np.ndarray, amplitudes: np.n
     """
     if len(levels) == 0:
         return np.zeros_like(voltage, dtype=float)
+    curve = _curve(tuple(levels), tuple(amplitudes))
     magnitude = np.abs(voltage)
-    if len(levels) < 3:
-        levels, amplitudes = np.concatenate([[0.0], levels]), np.concatenate([[0.0], amplitudes])
-    curve = PchipInterpolator(levels, amplitudes)
-    inside = curve(np.clip(magnitude, levels[0], levels[-1]))
-    beyond = np.maximum(magnitude - levels[-1], 0.0) * float(curve(levels[-1], 1))
-    if levels[0] == 0.0:
+    inside = curve.pchip(np.clip(magnitude, curve.lowest, levels[-1]))
+    beyond = np.maximum(magnitude - levels[-1], 0.0) * curve.last_slope
+    if curve.lowest == 0.0:
         return inside + beyond
-    threshold, exponent = _onset(levels[:3], amplitudes[:3])
-    share = np.clip((magnitude - threshold) / (levels[0] - threshold), 0.0, 1.0)
-    return inside * share**exponent + beyond
+    share = np.clip((magnitude - curve.threshold) / (curve.lowest - curve.threshold), 0.0, 1.0)
+    return inside * share**curve.exponent + beyond
+
+
+class _Curve(NamedTuple):
+    """What is known of the amplitudes once and for all: below `lowest` [V] the onset, above it the spline."""
+
+    pchip: PchipInterpolator
+    lowest: float
+    last_slope: float
+    threshold: float
+    exponent: float
+
+
+@lru_cache(maxsize=64)
+def _curve(levels: tuple[float, ...], amplitudes: tuple[float, ...]) -> _Curve:
+    """The running simulation asks for the same curve at every step."""
+    if len(levels) < 3:
+        levels, amplitudes = (0.0, *levels), (0.0, *amplitudes)
+    pchip = PchipInterpolator(levels, amplitudes)
+    onset = _onset(np.array(levels[:3]), np.array(amplitudes[:3])) if levels[0] > 0.0 else (0.0, 1.0)
+    return _Curve(pchip, levels[0], float(pchip(levels[-1], 1)), *onset)
 
 
 def _onset(levels: np.ndarray, amplitudes: np.ndarray) -> tuple[float, float]:

@@ -35,6 +35,8 @@ class AngleHistory:
 
     def ready(self) -> list[tuple[int, float]]:
         """Stamps [ns] and sin theta of the frames asked for that can be told by now."""
+        if self._effects and len(self._seen) < 2:
+            return []  # an effect needs a series; one instant is none
         newest = self._seen.time[-1] + 1e-9
         due = [frame for frame in self._waiting if frame[1] + self._ahead <= newest]
         if not due:

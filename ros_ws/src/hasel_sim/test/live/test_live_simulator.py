@@ -126,6 +126,16 @@ def test_a_shifted_camera_agrees_once_it_can_be_known(swimmer, shift, untold):
     assert np.abs(np.array(list(heard.values())) - expected).max() < 1e-6
 
 
+def test_the_catalogues_camera_agrees_from_the_first_frame(swimmer):
+    """Its spline needs more than the one instant that is known at first."""
+    model = swimmer.with_effects("camera_latency").with_values({"camera_latency.latency": 0.03})
+    stamps, voltage = frames(2.0, 0.5)
+    heard = live(LiveSimulator(model), stamps, voltage)
+    expected = whole(model, stamps, voltage)[: len(heard)]
+    assert len(heard) == len(stamps)
+    assert np.abs(np.array(list(heard.values())) - expected).max() < 1e-4
+
+
 def test_messages_out_of_order_leave_the_motion_alone(swimmer):
     """Late and repeated messages are answered by a sentence, and the rest of the run is as without them."""
     stamps, voltage = frames(2.0, 0.4)
