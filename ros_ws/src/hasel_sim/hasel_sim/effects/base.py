@@ -153,7 +153,7 @@ class ForceEffect(Effect):
     """A force on the body, per unit of what a site stands for and per unit depth.
 
     sites: "body" (per mass [N/kg]), "skin" (per skin length [N/m^2]) or "points" (force itself [N/m]).
-    depends_on: which of position, velocity, acceleration, tangent the force depends on.
+    depends_on: which of position, velocity, acceleration, tangent, contraction the force depends on.
     """
 
     place = "force"

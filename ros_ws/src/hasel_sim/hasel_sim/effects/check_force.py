@@ -17,10 +17,9 @@ def check_force(effect: ForceEffect, null: SimpleNamespace, typical: SimpleNames
     expect(
         effect.sites in _SITES, effect, f"acts at sites '{effect.sites}'", f"use one of {', '.join(_SITES)}"
     )
-    unknown = [name for name in effect.depends_on if name not in _QUANTITIES]
-    expect(
-        not unknown, effect, f"depends on {unknown}", f"name some of {', '.join(_QUANTITIES)} in depends_on"
-    )
+    known = (*_QUANTITIES, "contraction")
+    unknown = [name for name in effect.depends_on if name not in known]
+    expect(not unknown, effect, f"depends on {unknown}", f"name some of {', '.join(known)} in depends_on")
     at = _example(effect)
     if effect.sites == "points":
         markers = np.array([[0.005, 0.0], [0.094, 0.0], [0.19, 0.0]])
@@ -38,8 +37,9 @@ def check_force(effect: ForceEffect, null: SimpleNamespace, typical: SimpleNames
         "compute every row of the force from the same row of positions, velocities and so on only",
     )
     rng = np.random.default_rng(2)
-    for name in set(_QUANTITIES) - set(effect.depends_on):
-        moved = replace(at, **{name: getattr(at, name) + 0.1 * rng.standard_normal(shape)})
+    for name in set(known) - set(effect.depends_on):
+        value = getattr(at, name)
+        moved = replace(at, **{name: value + 0.1 * rng.standard_normal(value.shape)})
         expect(
             same(called(effect, "force", shape, moved, typical), on),
             effect,

@@ -1,5 +1,6 @@
 """A force effect with its values, bound to a mesh: forces, their derivatives, and their places in the matrix."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -8,6 +9,7 @@ from hasel_sim.effects.base import ForceEffect, SiteState
 from hasel_sim.mechanics.compiled import scatter_sites
 from hasel_sim.mesh.sites import Sites
 
+_CONTRACTION_DIFFERENCE = 1e-6
 _DIFFERENCE = {"position": 1e-7, "velocity": 1e-7, "acceleration": 1e-4, "tangent": 1e-6}
 
 
@@ -29,7 +31,9 @@ class ForceLaw:
         self.effect, self.values, self.sites = effect, values, sites
         self._gravity = np.array(gravity)
         self._reference, self._rest_tangent = sites.value(reference), sites.tangent(reference)
+        self._moved_by = tuple(name for name in effect.depends_on if name != "contraction")
         self._slopes: dict[str, np.ndarray] = {}
+        self._by_contraction = np.zeros((2, *self._reference.shape))
 
     def _state(self, position, velocity, acceleration, drive) -> SiteState:
         depends = self.effect.depends_on
@@ -57,10 +61,26 @@ class ForceLaw:
 
     def linearise(self, position, velocity, acceleration, drive) -> None:
         """Keep the derivatives at this state: one [n, 2, 2] array per quantity the effect depends on."""
-        names = self.effect.depends_on
-        if not names:
+        if not self.effect.depends_on:
             return
         state = self._state(position, velocity, acceleration, drive)
+        if "contraction" in self.effect.depends_on:
+            self._by_contraction = self._contraction_slope(state)
+        if self._moved_by:
+            self._differentiate(state)
+
+    def _contraction_slope(self, state: SiteState) -> np.ndarray:
+        out = np.empty((2, *self._reference.shape))
+        for muscle, step in enumerate(_CONTRACTION_DIFFERENCE * np.eye(2)):
+            more, less = (
+                self.effect.force(replace(state, contraction=contraction), self.values)
+                for contraction in (state.contraction + step, state.contraction - step)
+            )
+            out[muscle] = (more - less) / (2 * _CONTRACTION_DIFFERENCE)
+        return out
+
+    def _differentiate(self, state: SiteState) -> None:
+        names = self._moved_by
         n, copies = len(self._reference), 4 * len(names)
         fields = {
             name: np.tile(getattr(state, name), (copies, 1))
@@ -104,7 +124,7 @@ class ForceLaw:
         self, shift: np.ndarray, rate: np.ndarray, acceleration: np.ndarray, out: np.ndarray
     ) -> None:
         """Subtract the change of the nodal forces along many directions [columns, nodes, 2] from out."""
-        if not self.effect.depends_on:
+        if not self._moved_by:
             return
         moved = {
             "position": lambda: self.sites.value(shift),
@@ -112,9 +132,7 @@ class ForceLaw:
             "acceleration": lambda: self.sites.value(acceleration),
             "tangent": lambda: self.sites.tangent(shift),
         }
-        total = sum(
-            np.einsum("nij,cnj->cni", self._slopes[name], moved[name]()) for name in self.effect.depends_on
-        )
+        total = sum(np.einsum("nij,cnj->cni", self._slopes[name], moved[name]()) for name in self._moved_by)
         self.sites.scatter(-total, out)
 
     def add_pulled_back(self, weights: np.ndarray, out: np.ndarray) -> None:
@@ -134,3 +152,8 @@ class ForceLaw:
             row, interpolation = places[name]
             pulled = np.einsum("nij,ni->nj", self._slopes[name], here)
             np.subtract.at(out[row], s.nodes, interpolation[:, :, None] * pulled[:, None, :])
+
+    def add_contraction(self, out: np.ndarray) -> None:
+        """Subtract the change of the nodal forces by the contraction of each muscle from out [2, nodes, 2]."""
+        if "contraction" in self.effect.depends_on:
+            self.sites.scatter(-self._by_contraction, out)

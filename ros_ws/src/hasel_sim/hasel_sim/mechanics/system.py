@@ -209,4 +209,6 @@ class Linearisation:
                 P = np.zeros_like(self.F)
                 P[law.elements] = law.contraction_slope(self.F, self.rate, drive, muscle)
                 self.system.solid.add_force(P, out[muscle])
+        for law in self.system.forces:
+            law.add_contraction(out)
         return self.system.held_to_zero(out)

@@ -38,6 +38,22 @@ class MyDrag(ForceEffect):
         return (-p.c * np.abs(speed) * speed)[:, None] * normal
 """
 
+FIELD_FORCE = """
+import numpy as np
+from hasel_sim.effects.base import EffectParameter, ForceEffect
+
+
+class FieldForce(ForceEffect):
+    physics = "Charged skin is pulled towards the table's edge while a muscle is contracted."
+    equation = "f = (0, k (a_upper + a_lower^2)) x per mass"
+    parameters = (EffectParameter("k", "k", "1/s^2", 0.0, 0.0, 1e4, 1e3),)
+    depends_on = ("contraction",)
+
+    def force(self, at, p):
+        pull = p.k * (at.contraction[0] + at.contraction[1] ** 2) * at.reference[:, 0]
+        return np.stack([0 * pull, pull], axis=1)
+"""
+
 SLIP = """
 from hasel_sim.effects.base import EffectParameter, MaterialEffect
 from hasel_sim.mesh.mesh import Region
@@ -117,6 +133,18 @@ def test_an_own_effect_is_like_a_built_in_one(
     expected = (more - less) / (2 * step)
     assert np.abs(found.sin_theta - coarse_baseline).max() > 1e-4
     assert found.slopes[:, 0] == pytest.approx(expected, abs=1e-3 * np.abs(expected).max())
+
+
+def test_what_follows_the_contraction_is_differentiated_by_the_amplitude(
+    written, coarse_swimmer, sin_theta_of, short_boxes
+):
+    """A force that depends on the contraction adds to the sensitivity by the baseline's amplitude."""
+    model = coarse_swimmer.with_effects(written(FIELD_FORCE)).with_values({"FieldForce.k": 1e3})
+    name = "amplitude_5500"
+    found = simulate(model, short_boxes, [name]).slopes[:, 0]
+    value = model.values[name]
+    more, less = (sin_theta_of(model.with_values({name: value + step})) for step in (1e-6, -1e-6))
+    assert found == pytest.approx((more - less) / 2e-6, abs=1e-3 * np.abs(found).max())
 
 
 def test_own_drag_equals_the_built_in_one(written, coarse_swimmer, sin_theta_of):
@@ -199,6 +227,7 @@ def test_a_broken_effect_is_refused_with_what_to_change(said, written):
             "return signal[:5]",
             r"where .* is expected",
         ),
+        (FIELD_FORCE, '("contraction",)', '("position",)', "uses the contraction without saying so"),
         (SLIP, '("deformation", "rate")', '("deformation",)', "uses the rate without saying so"),
         (SLIP, "p.eta *", "1 + p.eta *", "adds stress at its null values"),
         (SLIP, "at.rate[:, 0, 0]", "at.rate[:, 0, 0].mean()", "depends on others|fails in first_piola"),
