@@ -106,20 +106,21 @@ def test_faults_of_the_set_up_come_first_and_once(folder, tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("run", "options", "said"),
     [
-        (lambda a: ["nowhere.csv", *a[3:]], "nowhere.csv"),
-        (lambda a: [*a, "--model", "swimer"], "the nearest known one is 'swimmer'"),
-        (lambda a: [*a, "--scheduler", "tcp://127.0.0.1:9"], "no Dask scheduler"),
+        ("nowhere.csv", [], "nowhere.csv"),
+        ("run_3500.csv", ["--model", "swimer"], "the nearest known one is 'swimmer'"),
+        ("run_3500.csv", ["--scheduler", "tcp://127.0.0.1:9"], "no Dask scheduler"),
+        ("run_3500.csv", ["--validate", "nowhere.mcap"], "nowhere.mcap"),
     ],
 )
-def test_bad_input_is_one_sentence(folder, tmp_path, capsys, change, said):
+def test_bad_input_is_one_sentence(folder, tmp_path, capsys, run, options, said):
     """A missing file, an unknown model and a dead scheduler give exit code 2 and one sentence."""
-    arguments = [*change(_arguments(folder, "truth.yaml")), "--output", str(tmp_path)]
-    if "nowhere.csv" in arguments:
-        arguments = ["nowhere.csv", "--output", str(tmp_path)]
-    assert compare.main(arguments) == 2
-    assert said in capsys.readouterr().err
+    assert compare.main([str(folder / run), *options, "--output", str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert said in error
+    assert "Traceback" not in error
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_header_names_the_model(folder, tmp_path, capsys):
