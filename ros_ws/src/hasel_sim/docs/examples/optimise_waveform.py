@@ -41,7 +41,8 @@ class BestWaveform:
         return (
             f"At {self.frequency:g} Hz the swing of sin theta rises from {self.angle_before:.4f} to "
             f"{self.angle_after:.4f} in {self.evaluations} gradients: upper muscle on at {upper:.2f} for "
-            f"{upper_for:.2f} of the period, lower at {lower:.2f} for {lower_for:.2f} (alternating boxes: {self.angle_box:.4f})."
+            f"{upper_for:.2f} of the period, lower at {lower:.2f} for {lower_for:.2f} (alternating boxes: "
+            f"{self.angle_box:.4f})."
         )
 
 

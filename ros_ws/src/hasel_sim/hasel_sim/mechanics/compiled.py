@@ -235,8 +235,8 @@ def scatter_directions(elastic, viscous, stress, elements, gradients, areas, shi
     """
     columns = shift.shape[0]
     local = np.empty((8, 2))
-    for c in range(columns):
-        for e in range(elements.shape[0]):
+    for e in range(elements.shape[0]):
+        for c in range(columns):
             local[:] = 0.0
             for g in range(elastic.shape[1]):
                 d0 = d1 = d2 = d3 = 0.0
@@ -334,8 +334,8 @@ def contraction_force(F, coefficients, muscle, elements, gradients, areas, force
 @njit(cache=True, fastmath=True)
 def mass_product(masses, elements, columns, out):
     """Add to out [columns, nodes, 2] the element masses [elements, 8, 8] times the nodal vectors."""
-    for c in range(columns.shape[0]):
-        for e in range(elements.shape[0]):
+    for e in range(elements.shape[0]):
+        for c in range(columns.shape[0]):
             for a in range(8):
                 x = y = 0.0
                 for b in range(8):
