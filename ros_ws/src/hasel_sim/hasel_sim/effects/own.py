@@ -8,13 +8,14 @@ from types import ModuleType
 
 from hasel_sim.effects.base import DriveEffect, Effect, ForceEffect, MaterialEffect, ObservationEffect
 from hasel_sim.effects.checks import check_effect
+from hasel_sim.effects.registry import catalogue
 from hasel_sim.errors import ModelError, nearest_name
 
 _PLACES = (DriveEffect, ForceEffect, MaterialEffect, ObservationEffect)
 
 
 def load_own_effect(path: Path, kind: str) -> Effect:
-    """The effect of class `kind` in a Python file, with the class's name as its id.
+    """The effect of class `kind` in a Python file; its id is the class's name unless it declares another.
 
     Raises ModelError when the file or class is missing, or when the effect fails a check; the message says what to
     change.
@@ -24,6 +25,11 @@ def load_own_effect(path: Path, kind: str) -> Effect:
             f"there is no file '{path}'; expected path/to/file.py:ClassName of an effect of your own: correct the path"
         )
     effect = rebuild_own_effect(str(path), kind, path.read_text())
+    if effect.id in catalogue() or not effect.id.isidentifier():
+        raise ModelError(
+            f"effect '{effect.source}' has the id '{effect.id}', which is taken or no plain name; expected one of its own: "
+            "leave id out or choose another"
+        )
     check_effect(effect)
     return effect
 
@@ -43,7 +49,7 @@ def rebuild_own_effect(path: str, kind: str, text: str) -> Effect:
         raise ModelError(
             f"class '{kind}' in '{path}' is no effect; expected a subclass of one of {names}: derive it from one"
         )
-    found.id, found.source, found.text = kind, f"{path}:{kind}", text
+    found.id, found.source, found.text = vars(found).get("id", kind), f"{path}:{kind}", text
     return found()
 
 

@@ -177,6 +177,7 @@ def test_it_works_in_other_processes_without_its_file(written, coarse_swimmer, s
 
 
 _CHANGES = {
+    "is taken or no plain name": ("    physics =", "    id = 'linear_drag'\n    physics ="),
     "has no physics": ('physics = "Drag along the skin\'s normal."', ""),
     "declares no parameters": ("parameters = (", "others = ("),
     "without unit": ('"kg/m^3"', '""'),
@@ -240,6 +241,13 @@ def test_other_places_are_checked_alike(text, before, after, said, written):
     assert before in text
     with pytest.raises(ModelError, match=said):
         find_effects((written(text.replace(before, after)),))
+
+
+def test_an_id_may_be_declared(written):
+    """A class may have an id other than its name."""
+    (effect,) = find_effects((written(DRAG.replace("    physics =", '    id = "skin_drag"\n    physics =')),))
+    assert effect.id == "skin_drag"
+    assert pickle.loads(pickle.dumps(effect)).id == "skin_drag"
 
 
 def test_missing_files_and_classes_are_named(written):
