@@ -7,6 +7,11 @@ from scipy.linalg import matmul_toeplitz
 from scipy.optimize import minimize
 from scipy.signal import lfilter
 
+_SLOW_SHARE = 3.0 / 120.0
+"""Frequencies below this share of the frame rate (3 Hz at 120 frames/s) are the body's, not the noise's."""
+_LONGEST = float(np.log(0.95 / 0.05))
+"""Logit of the largest correlation between neighbouring frames that still counts as noise."""
+
 
 @dataclass(frozen=True)
 class NoiseModel:
@@ -65,6 +70,9 @@ class NoiseModel:
 def estimate_noise(residual: np.ndarray, runs: np.ndarray, fitted: np.ndarray, source: str) -> NoiseModel:
     """Fit the noise to what a model leaves, by Whittle's likelihood of the periodograms of all runs.
 
+    Only frequencies above `_SLOW_SHARE` of the frame rate count, where a body of a few hertz leaves little; the slow
+    part follows from the correlation found there, so that what a model misses is not taken for noise.
+
     residual [frames]; fitted [frames, n]: directions already taken out of it, which lack the noise's power.
     """
     basis = np.linalg.qr(fitted)[0] if fitted.shape[1] else fitted
@@ -74,10 +82,11 @@ def estimate_noise(residual: np.ndarray, runs: np.ndarray, fitted: np.ndarray, s
         n = here.sum()
         if n < 16:
             continue
-        transform = np.fft.rfft(residual[here])[1:]
-        frequency.append(2 * np.pi * np.arange(1, len(transform) + 1) / n)
+        first = max(1, int(np.ceil(n * _SLOW_SHARE)))
+        transform = np.fft.rfft(residual[here])[first:]
+        frequency.append(2 * np.pi * np.arange(first, first + len(transform)) / n)
         power.append(np.abs(transform) ** 2 / n)
-        taken = (np.abs(np.fft.rfft(basis[here], axis=0)[1:]) ** 2).sum(axis=1) / n
+        taken = (np.abs(np.fft.rfft(basis[here], axis=0)[first:]) ** 2).sum(axis=1) / n
         left.append(np.clip(1 - taken, 0.05, 1.0))
     if not frequency:
         return NoiseModel(float(np.var(residual)), 0.0, 0.5, source)
@@ -90,7 +99,7 @@ def estimate_noise(residual: np.ndarray, runs: np.ndarray, fitted: np.ndarray, s
         expected = spectrum * remaining
         return float(np.sum(np.log(expected) + periodogram / expected))
 
-    bounds = [(level - 8, level + 3), (level - 8, level + 6), (-1.0, 4.0)]
+    bounds = [(level - 8, level + 3), (level - 8, level + 6), (-1.0, _LONGEST)]
     starts = ([level, level - 2, 2.0], [level - 2, level, 2.0], [level, level - 5, 0.0])
     best = min(
         (minimize(negative_likelihood, s, bounds=bounds, method="L-BFGS-B") for s in starts),

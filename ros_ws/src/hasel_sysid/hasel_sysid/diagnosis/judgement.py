@@ -80,7 +80,7 @@ def finding(context: Context, effect) -> Finding:
     else:
         residual, left = _beside_winner(context, seen)
         size, error = left.score(residual, context.noise, context.fit.evaluation.runs)
-        expected = {next(iter(units)): (size * seen.typical, abs(error * seen.typical))}
+        expected = {next(iter(units)): (seen.null + size * seen.size, abs(error * seen.size))}
     removed = context.removed(name)
     verdict, limit = _verdict(context, effect, seen, removed)
     return Finding(
@@ -93,7 +93,9 @@ def _beside_winner(context: Context, seen: Signature) -> tuple[np.ndarray, Signa
     evaluation = context.fit.evaluation if winner is None else context.finals[winner].evaluation
     basis = orthonormal(evaluation.jacobian)
     left = seen.change - basis @ (basis.T @ seen.change)
-    return evaluation.residual, Signature(seen.effect, seen.change, left, seen.columns, seen.typical)
+    return evaluation.residual, Signature(
+        seen.effect, seen.change, left, seen.columns, seen.null, seen.typical
+    )
 
 
 def _verdict(context: Context, effect, seen: Signature, removed: float) -> tuple[Verdict, float]:
@@ -101,7 +103,7 @@ def _verdict(context: Context, effect, seen: Signature, removed: float) -> tuple
     runs = context.fit.evaluation.runs
     size, error = left.score(residual, context.noise, runs)
     _, alone = seen.score(context.fit.evaluation.residual, context.noise, runs)
-    limit = _DETECTION * alone * abs(seen.typical)
+    limit = _DETECTION * alone * abs(seen.size)
     if effect.id == context.winner and removed >= _MATTERS:
         return Verdict.MISSING, limit
     first = next((p for p in effect.parameters if not p.scan), effect.parameters[0])

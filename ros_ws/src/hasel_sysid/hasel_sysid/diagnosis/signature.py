@@ -12,14 +12,20 @@ from hasel_sysid.noise import NoiseModel
 @dataclass(frozen=True)
 class Signature:
     """change [frames]: of the simulated series by the effect at its typical size; left [frames]: what the fitted
-    parameters cannot imitate; typical: value of the effect's first parameter there.
+    parameters cannot imitate; null, typical: value of the effect's first parameter without it and there.
     """
 
     effect: str
     change: np.ndarray
     left: np.ndarray
     columns: np.ndarray
+    null: float
     typical: float
+
+    @property
+    def size(self) -> float:
+        """How far the typical value is from the null."""
+        return self.typical - self.null
 
     @property
     def swallowed(self) -> float:
@@ -50,11 +56,17 @@ def signature(
     first = next((p for p in effect.parameters if not p.scan), effect.parameters[0])
     at_null = [i for i in own if trial.start.values[trial.names[i]] == _null(effect, trial.names[i])]
     for index in at_null:
-        change = change + trial.jacobian[:, index] * typical[trial.names[index]]
+        name = trial.names[index]
+        change = change + trial.jacobian[:, index] * (typical[name] - trial.start.values[name])
     basis = orthonormal(fitted)
     columns = np.column_stack([change, trial.jacobian[:, own]])
     return Signature(
-        effect.id, change, change - basis @ (basis.T @ change), columns, typical[f"{effect.id}.{first.name}"]
+        effect.id,
+        change,
+        change - basis @ (basis.T @ change),
+        columns,
+        first.null,
+        typical[f"{effect.id}.{first.name}"],
     )
 
 

@@ -14,6 +14,8 @@ from hasel_sysid.problem import Evaluation, Problem
 
 _MOST_CHANGE = 0.5
 """A single step changes no baseline parameter by more than this share: beyond, the derivatives say nothing."""
+_TOO_ROUGH = 0.15
+"""Share of the simulated motion by which a draft may be wrong."""
 
 
 @dataclass(frozen=True)
@@ -42,19 +44,24 @@ class Trials:
     """Tries effects on drafts of a fitted model.
 
     fitted: the model as fitted, evaluated with its free parameters. A draft's own error, the difference between the two
-    at the fitted values, is added to every trial: what matters is what the effect changes.
+    at the fitted values, is added to every trial: what matters is what the effect changes. A draft that is far off (a
+    long undamped swing, whose phase drifts) is not used at all.
     """
 
     def __init__(self, problem: Problem, fitted: Evaluation) -> None:
         self.problem, self.fitted = problem, fitted
-        self.base = problem.evaluate(draft(fitted.model), fitted.names)
+        self._model = draft(fitted.model)
+        self.base = problem.evaluate(self._model, fitted.names)
         self._correction = fitted.residual - self.base.residual
+        if np.linalg.norm(self._correction) > _TOO_ROUGH * np.linalg.norm(fitted.simulated()):
+            self._model, self.base = fitted.model, fitted
+            self._correction = np.zeros_like(fitted.residual)
 
     def first(self, starts: Sequence[Start]) -> list[Trial]:
         """Every effect at its start; those that cannot be simulated there are left out."""
         models = []
         for start in starts:
-            with_effect = draft(self.fitted.model).with_effects(start.effect.source or start.effect.id)
+            with_effect = self._model.with_effects(start.effect.source or start.effect.id)
             models.append((start, with_effect.with_values(start.values)))
         return self._evaluate(models)
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+import numpy as np
 from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict, diagnose
@@ -15,6 +16,8 @@ from hasel_sysid.problem import Problem
 _EXPLAINED = 0.9
 """Share of the baseline's error above the noise that accepted effects must remove to be an explanation."""
 _PARTLY = 0.6
+_ENOUGH = 0.01
+"""Less than this share of the error left is no reason to look for another effect."""
 _LEAST_GAIN = 0.03
 """An effect must lower the sum of squares by this share: less is not worth a parameter."""
 
@@ -51,6 +54,10 @@ def improve(
         stages.append(_stage(accepted.fit, model, validation))
         if _is_noise(accepted.fit, found):
             reason = f"What is left after adding {accepted.effect} is noise."
+            break
+        left = _left_over(stages)
+        if left < _ENOUGH:
+            reason = f"After adding {accepted.effect}, {left:.1%} of the squared error above the noise is left: enough."
             break
     if stages[-1].diagnosis is None and on_stage:
         on_stage(stages[-1])
@@ -119,14 +126,18 @@ def _is_noise(fit: FitResult, found: Diagnosis) -> bool:
     return fit.mean_absolute_error <= 1.03 * found.noise.mean_absolute
 
 
+def _left_over(stages: list[Stage]) -> float:
+    """Share of the baseline's sum of squares above the noise that the last stage leaves, 0 to 1."""
+    found = next(stage.diagnosis for stage in reversed(stages) if stage.diagnosis is not None)
+    base, left = (stage.fit.evaluation for stage in (stages[0], stages[-1]))
+    floor = len(base.residual) * found.noise.standard_deviation**2
+    return float(np.clip((left.sum_of_squares - floor) / max(base.sum_of_squares - floor, 1e-12), 0.0, 1.0))
+
+
 def _conclude(stages: list[Stage], reason: str) -> Improvement:
     first = stages[0].diagnosis
     last = next(stage.diagnosis for stage in reversed(stages) if stage.diagnosis is not None)
-    frames = len(stages[0].fit.evaluation.residual)
-    floor = frames * last.noise.standard_deviation**2
-    base, left = (stage.fit.evaluation.sum_of_squares for stage in (stages[0], stages[-1]))
-    excess = max(base - floor, 1e-12)
-    unexplained = min(1.0, max(0.0, (left - floor) / excess))
+    unexplained = _left_over(stages)
     added = stages[-1].effects
     if first.p_value >= SIGNIFICANT:
         status, unexplained = Status.NOTHING_MISSING, 0.0

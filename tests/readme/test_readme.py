@@ -1,0 +1,49 @@
+"""The README against the code: what it names exists, and what exists is named."""
+
+import re
+from pathlib import Path
+
+import pytest
+from hasel_sim.simulator_node import PARAMETERS as SIMULATOR
+from hasel_sysid.sysid_node import PARAMETERS as SYSID
+
+ROOT = Path(__file__).resolve().parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+SOURCES = "\n".join(
+    path.read_text(encoding="utf-8")
+    for path in sorted((ROOT / "ros_ws" / "src").rglob("*.py"))
+    if "test" not in path.relative_to(ROOT / "ros_ws" / "src").parts
+)
+
+
+@pytest.mark.parametrize("node, table", [("simulator", SIMULATOR), ("sysid", SYSID)])
+def test_parameters_are_those_of_the_nodes(node, table):
+    """Every parameter has its row with default, unit and meaning, and no row is about another."""
+    rows = re.findall(rf"^\| {node} \| `(\w+)` \| (\S+) \| (\S*) ?\| (.*) \|$", README, flags=re.M)
+    expected = [
+        (p.name, "none" if p.default == [""] else f"`{p.default}`", p.unit or "", p.description)
+        for p in table
+    ]
+    assert rows == expected
+
+
+def test_topics_and_services_exist():
+    """Every /hasel/… name of the README is a name in the code or made there from one."""
+    made = {"/hasel/arm", "/hasel/disarm", "/hasel/emergency_stop", "/hasel/clear_fault"}
+    for name in sorted(set(re.findall(r"`(/hasel/[a-z_/]+)`", README)) - made):
+        assert f'"{name}"' in SOURCES, name
+    for name in made:
+        assert f'"{name.rpartition("/")[2]}"' in SOURCES, name
+
+
+def test_executables_exist():
+    """Every `ros2 run` and `bin/ros2-run` line names an executable that a package installs."""
+    for package, executable in re.findall(r"(?:ros2 run|ros2-run) (hasel_\w+) (\w+)", README):
+        setup = (ROOT / "ros_ws" / "src" / package / "setup.py").read_text(encoding="utf-8")
+        assert f'"{executable} = ' in setup, (package, executable)
+
+
+def test_links_lead_somewhere():
+    """Every relative link and picture is a file of the repository."""
+    for target in re.findall(r"\]\(([^)#:]+)\)", README):
+        assert (ROOT / target).exists(), target
