@@ -27,8 +27,8 @@ def load_own_effect(path: Path, kind: str) -> Effect:
     effect = rebuild_own_effect(str(path), kind, path.read_text())
     if effect.id in catalogue() or not effect.id.isidentifier():
         raise ModelError(
-            f"effect '{effect.source}' has the id '{effect.id}', which is taken or no plain name; expected one of its own: "
-            "leave id out or choose another"
+            f"effect '{effect.source}' has the id '{effect.id}', which is taken or no plain name; expected one "
+            "of its own: leave id out or choose another"
         )
     check_effect(effect)
     return effect

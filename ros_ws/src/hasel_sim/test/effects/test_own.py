@@ -198,6 +198,7 @@ _CHANGES = {
 }
 
 
+@pytest.mark.filterwarnings("ignore:(divide|invalid):RuntimeWarning")
 @pytest.mark.parametrize("said", _CHANGES)
 def test_a_broken_effect_is_refused_with_what_to_change(said, written):
     """Null that is not null, no response, wrong shapes, hidden dependencies …: one sentence each."""
