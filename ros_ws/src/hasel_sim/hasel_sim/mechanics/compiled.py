@@ -227,42 +227,32 @@ def scatter_matrix(elastic, viscous, masses, weights, elements, gradients, areas
 
 
 @njit(cache=True, fastmath=True)
-def scatter_directions(elastic, viscous, stress, elements, gradients, areas, shift, rate, force):
+def scatter_directions(moduli, stress, elements, gradients, areas, directions, force):
     """Add to force [columns, nodes, 2] the change of the nodal forces along many directions at once.
 
-    shift, rate: directions of the nodal positions and velocities [columns, nodes, 2]; stress: change of the first Piola
-    stress that does not come from them, [columns, elements, points, 4], or an empty first axis for none.
+    moduli: [elements, points, 4, 4], by F or by its rate; directions: of the nodal positions or velocities
+    [columns, nodes, 2]; stress: change of the first Piola stress that does not come from them,
+    [columns, elements, points, 4], or an empty first axis for none.
     """
-    columns = shift.shape[0]
-    local = np.empty((8, 2))
+    local, here = np.empty((8, 2)), np.empty((8, 2))
     for e in range(elements.shape[0]):
-        for c in range(columns):
+        for c in range(directions.shape[0]):
             local[:] = 0.0
-            for g in range(elastic.shape[1]):
+            for a in range(8):
+                here[a, 0], here[a, 1] = directions[c, elements[e, a], 0], directions[c, elements[e, a], 1]
+            for g in range(moduli.shape[1]):
                 d0 = d1 = d2 = d3 = 0.0
-                r0 = r1 = r2 = r3 = 0.0
                 for a in range(8):
-                    node = elements[e, a]
                     dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
-                    ux, uy = shift[c, node, 0], shift[c, node, 1]
-                    vx, vy = rate[c, node, 0], rate[c, node, 1]
-                    d0 += ux * dx
-                    d1 += ux * dy
-                    d2 += uy * dx
-                    d3 += uy * dy
-                    r0 += vx * dx
-                    r1 += vx * dy
-                    r2 += vy * dx
-                    r3 += vy * dy
-                A, B, s = elastic[e, g], viscous[e, g], areas[e, g]
+                    d0 += here[a, 0] * dx
+                    d1 += here[a, 0] * dy
+                    d2 += here[a, 1] * dx
+                    d3 += here[a, 1] * dy
+                A, s = moduli[e, g], areas[e, g]
                 p0 = A[0, 0] * d0 + A[0, 1] * d1 + A[0, 2] * d2 + A[0, 3] * d3
                 p1 = A[1, 0] * d0 + A[1, 1] * d1 + A[1, 2] * d2 + A[1, 3] * d3
                 p2 = A[2, 0] * d0 + A[2, 1] * d1 + A[2, 2] * d2 + A[2, 3] * d3
                 p3 = A[3, 0] * d0 + A[3, 1] * d1 + A[3, 2] * d2 + A[3, 3] * d3
-                p0 += B[0, 0] * r0 + B[0, 1] * r1 + B[0, 2] * r2 + B[0, 3] * r3
-                p1 += B[1, 0] * r0 + B[1, 1] * r1 + B[1, 2] * r2 + B[1, 3] * r3
-                p2 += B[2, 0] * r0 + B[2, 1] * r1 + B[2, 2] * r2 + B[2, 3] * r3
-                p3 += B[3, 0] * r0 + B[3, 1] * r1 + B[3, 2] * r2 + B[3, 3] * r3
                 if stress.shape[0] > 0:
                     p0 += stress[c, e, g, 0]
                     p1 += stress[c, e, g, 1]

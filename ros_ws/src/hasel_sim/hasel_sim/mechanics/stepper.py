@@ -138,12 +138,15 @@ class Stepper:
         shift = slopes.position + c.position_v * slopes.velocity + c.position_a * slopes.acceleration
         rate = slopes.velocity + c.velocity_a * slopes.acceleration
         stress = None if slopes.branch is None else self._history_stress(line, slopes, c.at)
-        right = line.along(shift, rate, c.acceleration_a * slopes.acceleration, stress)
+        # K shift is the matrix times shift / c.position, less what that brings of damping and inertia
+        instead = shift / c.position
+        inertia = c.acceleration_a * slopes.acceleration - c.acceleration * instead
+        right = line.along(None, rate - c.velocity * instead, inertia, stress)
         right += np.tensordot(contraction_slopes, line.by_contraction(drive), 1)
         for column, parameter in enumerate(parameters):
             parameter.add(motion, drive, line, state, c.at, right[column])
         self.system.held_to_zero(right)
-        acceleration = -self.factorise(line, c).solve(right)
+        acceleration = -instead - self.factorise(line, c).solve(right)
         out = StateSlopes(
             slopes.position
             + c.step * slopes.velocity

@@ -173,18 +173,27 @@ class Linearisation:
         return self
 
     def along(
-        self, shift: np.ndarray, rate: np.ndarray, acceleration: np.ndarray, stress: np.ndarray | None = None
+        self,
+        shift: np.ndarray | None,
+        rate: np.ndarray,
+        acceleration: np.ndarray,
+        stress: np.ndarray | None = None,
     ) -> np.ndarray:
         """Change of the residual along directions of the motion, all [columns, nodes, 2].
 
-        stress: a further change of the first Piola stress, [columns, elements, points, 4].
+        shift: None for no change of the positions; stress: a further change of the first Piola stress,
+        [columns, elements, points, 4].
         """
         s = self.system.solid
         out = self.system.mass.product(acceleration)
-        none = np.empty((0, *self.elastic.shape[:3])) if stress is None else stress
-        compiled.scatter_directions(
-            self.elastic, self.viscous, none, s.elements, s.gradients, s.areas, shift, rate, out
-        )
+        none = np.empty((0, *self.elastic.shape[:3]))
+        further = none if stress is None else stress
+        places = s.elements, s.gradients, s.areas
+        compiled.scatter_directions(self.viscous, further, *places, rate, out)
+        if shift is None:
+            shift = np.zeros_like(rate)
+        else:
+            compiled.scatter_directions(self.elastic, none, *places, shift, out)
         share = self._load_factor
         for law in self.system.forces:
             law.add_directions(share * shift, share * rate, share * acceleration, out)
