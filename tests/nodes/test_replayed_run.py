@@ -1,6 +1,5 @@
 """Simulator, identification and replay as three processes on real DDS, against `simulate` on the same file."""
 
-import os
 from pathlib import Path
 
 import numpy as np
@@ -32,23 +31,8 @@ def model_file(tmp_path) -> Path:
 
 
 @pytest.fixture
-def domain() -> int:
-    """A ROS domain that no other test uses at the same time."""
-    return 101 + os.getpid() % 100
-
-
-@pytest.fixture
-def listener(domain):
-    """A node that hears everything."""
-    listener = Listener(domain)
-    yield listener
-    listener.close()
-
-
-@pytest.fixture
-def stack(tmp_path, domain, listener, model_file):
+def stack(tmp_path, environment, listener, model_file):
     """Simulator and identification, ready and connected to each other."""
-    environment = {"ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
     with Processes(tmp_path, environment) as stack:
         model = ("--ros-args", "-p", f"model:={model_file}")
         stack.start("hasel_sim", "simulator", *model)

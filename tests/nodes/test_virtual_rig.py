@@ -1,49 +1,38 @@
 """Supply, driver, body and camera without hardware, started as a user does."""
 
-import os
-
 import numpy as np
 import pytest
 from hasel_bringup.demo.processes import Processes
 from hasel_interfaces.msg import Actuation, SupplyState
 from std_srvs.srv import Trigger
 
-from tests.nodes.listener import Listener, stamp_ns
+from tests.nodes.listener import stamp_ns
 
 
 @pytest.mark.timeout(150)
-def test_an_armed_virtual_rig_bends_what_the_camera_sees(tmp_path):
+def test_an_armed_virtual_rig_bends_what_the_camera_sees(tmp_path, environment, listener):
     """The command goes over the serial protocol to the board and back as a state; the measured angle follows it."""
-    domain = 101 + (os.getpid() + 50) % 100
-    listener = Listener(domain)
-    environment = {"ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
-    try:
-        with Processes(tmp_path, environment) as processes:
-            hidden = "hidden:=[quadratic_drag.coefficient=0.25]"
-            processes.start("hasel_bringup", "virtual_rig", "--ros-args", "-p", hidden)
-            # two seconds: longer than the driver waits for a latched emergency stop
-            listener.until(
-                lambda: min(len(listener.measured), len(listener.states)) > 200, 60.0, processes.check
-            )
-            rest = np.array([angle.sin_theta for angle in listener.measured])
-            assert 1e-3 < rest.std() < 5e-3
-            assert {state.mode for state in listener.states} == {SupplyState.STANDBY}
+    with Processes(tmp_path, environment) as processes:
+        hidden = "hidden:=[quadratic_drag.coefficient=0.25]"
+        processes.start("hasel_bringup", "virtual_rig", "--ros-args", "-p", hidden)
+        # two seconds: longer than the driver waits for a latched emergency stop
+        listener.until(lambda: min(len(listener.measured), len(listener.states)) > 200, 60.0, processes.check)
+        rest = np.array([angle.sin_theta for angle in listener.measured])
+        assert 1e-3 < rest.std() < 5e-3
+        assert {state.mode for state in listener.states} == {SupplyState.STANDBY}
 
-            armed = listener.call(Trigger, "/hasel/arm", 20.0, processes.check)
-            assert armed.success, armed.message
-            command = listener.node.create_publisher(Actuation, "/hasel/command", 1)
+        armed = listener.call(Trigger, "/hasel/arm", 20.0, processes.check)
+        assert armed.success, armed.message
+        command = listener.node.create_publisher(Actuation, "/hasel/command", 1)
 
-            def drive() -> None:
-                processes.check()
-                command.publish(Actuation(voltage=[4000.0, 0.0]))
+        def drive() -> None:
+            processes.check()
+            command.publish(Actuation(voltage=[4000.0, 0.0]))
 
-            listener.forget()
-            listener.until(lambda: listener.measured and listener.measured[-1].sin_theta > 0.1, 30.0, drive)
-            assert max(state.commanded_voltage[0] for state in listener.states) == pytest.approx(4000.0)
-            stamps = {stamp_ns(state) for state in listener.states}
-            assert sum(stamp_ns(angle) in stamps for angle in listener.measured) > 0.9 * len(
-                listener.measured
-            )
-            assert processes.stop("virtual_rig") == 0
-    finally:
-        listener.close()
+        listener.forget()
+        listener.until(lambda: listener.measured and listener.measured[-1].sin_theta > 0.1, 30.0, drive)
+        assert max(state.commanded_voltage[0] for state in listener.states) == pytest.approx(4000.0)
+        stamps = {stamp_ns(state) for state in listener.states}
+        answered = sum(stamp_ns(angle) in stamps for angle in listener.measured)
+        assert answered > 0.9 * len(listener.measured)
+        assert processes.stop("virtual_rig") == 0

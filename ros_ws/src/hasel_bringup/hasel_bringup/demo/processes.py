@@ -51,6 +51,10 @@ class Processes:
         """The file with what an executable printed."""
         return self._folder / f"{name}.log"
 
+    def process_id(self, name: str) -> int:
+        """Number of a running process."""
+        return self._running[name].pid
+
     def check(self) -> None:
         """Raise BringupError when one has failed."""
         for name, process in self._running.items():
