@@ -71,7 +71,8 @@ def estimate_noise(residual: np.ndarray, runs: np.ndarray, fitted: np.ndarray, s
     """Fit the noise to what a model leaves, by Whittle's likelihood of the periodograms of all runs.
 
     Only frequencies above `_SLOW_SHARE` of the frame rate count, where a body of a few hertz leaves little; the slow
-    part follows from the correlation found there, so that what a model misses is not taken for noise.
+    part follows from the correlation found there, so that what a model misses is not taken for noise. No more is
+    called noise than is there.
 
     residual [frames]; fitted [frames, n]: directions already taken out of it, which lack the noise's power.
     """
@@ -106,4 +107,7 @@ def estimate_noise(residual: np.ndarray, runs: np.ndarray, fitted: np.ndarray, s
         key=lambda r: r.fun,
     )
     white, coloured, rho = np.exp(best.x[0]), np.exp(best.x[1]), 1 / (1 + np.exp(-best.x[2]))
-    return NoiseModel(float(white), float(coloured), float(rho), source)
+    most = residual @ residual / max(len(residual) - fitted.shape[1], 1)
+    return NoiseModel(
+        float(min(white, most)), float(np.clip(most - white, 0.0, coloured)), float(rho), source
+    )
