@@ -46,15 +46,21 @@ class Context:
 
     @property
     def winner(self) -> str | None:
-        """The effect whose full fit is best, if what it removes is not noise."""
-        if self.chance >= SIGNIFICANT or not self.finals:
+        """The effect whose full fit is best, if what it removes is not noise and its values are not on a bound."""
+        physical = [effect for effect, final in self.finals.items() if not on_own_bound(effect, final)]
+        if self.chance >= SIGNIFICANT or not physical:
             return None
-        return min(self.finals, key=lambda effect: self.squares[effect])
+        return min(physical, key=lambda effect: self.squares[effect])
 
     def removed(self, effect: str) -> float:
         """Share of the excess over the noise that an effect removes, 0 to 1."""
         drop = self.base - self.squares.get(effect, self.base)
         return float(np.clip(drop / self.excess, 0.0, 1.0))
+
+
+def on_own_bound(effect: str, fit: FitResult) -> bool:
+    """Whether a fit had to stop at the edge of the plausible range of one of the effect's own parameters."""
+    return any(name.startswith(f"{effect}.") for name in fit.at_bound)
 
 
 def expected_squares(fitted: np.ndarray, noise: NoiseModel, runs: np.ndarray) -> float:

@@ -10,6 +10,7 @@ from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict, diagnose
 from hasel_sysid.diagnosis.judgement import SIGNIFICANT
 from hasel_sysid.diagnosis.left_out import left_out_squares
 from hasel_sysid.fit import FitResult, fit_least_squares
+from hasel_sysid.improve.exchange import exchanged
 from hasel_sysid.improve.result import Improvement, Stage, Status
 from hasel_sysid.problem import Problem
 
@@ -51,8 +52,9 @@ def improve(
         accepted, reason = _accepted(stages[-1].fit, found)
         if accepted is None:
             break
-        stages.append(_stage(accepted.fit, model, validation))
-        if _is_noise(accepted.fit, found):
+        refit = exchanged(problem, stages, accepted)
+        stages.append(_stage(refit, model, validation))
+        if _is_noise(refit, found):
             reason = f"What is left after adding {accepted.effect} is noise."
             break
         left = _left_over(stages)
