@@ -8,7 +8,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from hasel_recording import RecordingError, read_recording
-from hasel_sim.model import load_model, save_model
 from hasel_sysid.command_line import fit, improve
 from rich.console import Console
 from rich.markup import escape
@@ -18,7 +17,6 @@ from hasel_bringup.errors import BringupError
 
 _DATA = Path("data") / "unseen_rig" / "quadratic_drag"
 _REPLAYED = "val_5200V_2.5Hz.csv"
-_OF_RUBBER = ("soft_modulus", "material_damping")
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -96,13 +94,12 @@ class Demo:
                 )
 
     def _beam(self) -> None:
-        """The beam's model is a bare elastic one: give it the stiffness and the damping of its rubber to fit."""
+        """The beam's model is a bare elastic one: what its rubber does besides is to be found."""
         seen, unseen = map(str, self.beam)
-        folder = self.output / "beam"
-        folder.mkdir(exist_ok=True)
-        model = folder / "beam_with_rubber.yaml"
-        save_model(load_model("beam").with_effects(*_OF_RUBBER), model)
-        _call(fit, [seen, "--validate", unseen, "--model", str(model), "--output", str(folder)])
+        _call(
+            improve,
+            [seen, "--validate", unseen, "--model", "beam", "--output", str(self.output / "beam")],
+        )
 
 
 def _files(folder: Path, pattern: str) -> list[Path]:
