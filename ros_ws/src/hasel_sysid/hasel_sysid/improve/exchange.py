@@ -15,8 +15,8 @@ from hasel_sysid.problem import Problem
 def exchanged(problem: Problem, stages: Sequence[Stage], accepted: Finding) -> FitResult:
     """The accepted fit, or a better one in which the effect added last gives way to one that looked alike.
 
-    Two things wrong at once make the first choice a guess: what a stiffness is wrong by, a damping law may imitate. Only
-    effects that the diagnosis before could not tell from the first are tried, each refitted with the new one.
+    Two things wrong at once make the first choice a guess: what a stiffness is wrong by, a damping law may imitate.
+    Only effects that the diagnosis before could not tell from the first are tried, each refitted with the new one.
     """
     best = accepted.fit
     if len(stages) < 2:
