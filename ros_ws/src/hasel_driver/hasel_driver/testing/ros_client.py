@@ -10,6 +10,7 @@ import rclpy
 from hasel_interfaces.msg import Actuation, SupplyState
 from lifecycle_msgs.srv import ChangeState
 from rclpy.duration import Duration
+from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
@@ -29,14 +30,16 @@ class RosClient:
     """One for a whole test run; `states` collects `/hasel/state`."""
 
     def __init__(self) -> None:
-        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)  # those are the test runner's
-        self.node = rclpy.create_node("user")
+        # A context of its own: other tests of the same process make theirs. The signal handlers are the test runner's.
+        self._context = Context()
+        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        self.node = rclpy.create_node("user", context=self._context)
         self.states: list[SupplyState] = []
         self.node.create_subscription(SupplyState, "/hasel/state", self.states.append, 200)
         self.commands = self.node.create_publisher(Actuation, "/hasel/command", 1)
         self._stop = None
         self._clients: dict[str, Any] = {}
-        self._executor = SingleThreadedExecutor()
+        self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
         self._thread = threading.Thread(target=self._spin, daemon=True)
         self._thread.start()
@@ -50,7 +53,7 @@ class RosClient:
         self._executor.shutdown()
         self._thread.join(timeout=5.0)
         self.node.destroy_node()
-        rclpy.try_shutdown()
+        rclpy.try_shutdown(context=self._context)
 
     def request(self, kind: type, name: str, request: Any) -> Any:
         """Call a service and wait for its answer."""
