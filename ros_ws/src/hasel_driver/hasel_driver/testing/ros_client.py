@@ -9,8 +9,8 @@ from typing import Any
 import rclpy
 from hasel_interfaces.msg import Actuation, SupplyState
 from lifecycle_msgs.srv import ChangeState
-from rclpy.duration import Duration
 from rclpy.context import Context
+from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
