@@ -24,7 +24,7 @@ def load_own_effect(path: Path, kind: str) -> Effect:
         raise ModelError(
             f"there is no file '{path}'; expected path/to/file.py:ClassName of an effect of your own: correct the path"
         )
-    effect = rebuild_own_effect(str(path), kind, path.read_text())
+    effect = rebuild_own_effect(str(path.resolve()), kind, path.read_text())
     if effect.id in catalogue() or not effect.id.isidentifier():
         raise ModelError(
             f"effect '{effect.source}' has the id '{effect.id}', which is taken or no plain name; expected one "

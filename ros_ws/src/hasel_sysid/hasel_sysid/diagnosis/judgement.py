@@ -59,8 +59,18 @@ class Context:
 
 
 def on_own_bound(effect: str, fit: FitResult) -> bool:
-    """Whether a fit had to stop at the edge of the plausible range of one of the effect's own parameters."""
-    return any(name.startswith(f"{effect}.") for name in fit.at_bound)
+    """Whether a fit had to stop at the edge of the plausible range of one of the effect's own parameters.
+
+    A part of the effect that is not there (at its null) or that nothing shows does not count.
+    """
+    kind = next(e for e in fit.model.effects if e.id == effect)
+    names = {f"{effect}.{p.name}": p.null for p in kind.parameters}
+    return any(
+        name in names
+        and name not in fit.undetermined
+        and not np.isclose(fit.model.values[name], names[name], atol=1e-6)
+        for name in fit.at_bound
+    )
 
 
 def expected_squares(fitted: np.ndarray, noise: NoiseModel, runs: np.ndarray) -> float:
@@ -77,7 +87,9 @@ def finding(context: Context, effect) -> Finding:
     units = {f"{name}.{p.name}": p.unit for p in effect.parameters}
     seen = context.signatures.get(name)
     if seen is None:
-        return Finding(name, Verdict.INCONCLUSIVE, 0.0, 0.0, {}, units, 1.0, float("inf"))
+        return Finding(
+            name, Verdict.INCONCLUSIVE, 0.0, 0.0, {}, units, 1.0, float("inf"), source=effect.source
+        )
     if name in context.finals:
         model = context.finals[name].model
         expected = {
@@ -89,8 +101,9 @@ def finding(context: Context, effect) -> Finding:
         expected = {next(iter(units)): (seen.null + size * seen.size, abs(error * seen.size))}
     removed = context.removed(name)
     verdict, limit = _verdict(context, effect, seen, removed)
+    final = context.finals.get(name)
     return Finding(
-        name, verdict, 0.0, removed, expected, units, seen.swallowed, limit, context.finals.get(name)
+        name, verdict, 0.0, removed, expected, units, seen.swallowed, limit, final, source=effect.source
     )
 
 

@@ -23,7 +23,8 @@ class Finding:
 
     expected: its values in SI units (name: value, standard error); error_removed: share of the error above the noise
     that it explains, 0 to 1; swallowed: share of its signature that the fitted parameters imitate; visible_above: the
-    smallest size that these recordings would have shown, in the unit of its first parameter.
+    smallest size that these recordings would have shown, in the unit of its first parameter; source: where a user's own
+    effect comes from.
     """
 
     effect: str
@@ -35,6 +36,7 @@ class Finding:
     swallowed: float
     visible_above: float
     fit: FitResult | None = None
+    source: str | None = None
 
     def __str__(self) -> str:
         first = next(iter(self.expected), None)

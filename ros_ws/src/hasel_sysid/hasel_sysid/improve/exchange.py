@@ -41,8 +41,9 @@ def exchanged(problem: Problem, stages: Sequence[Stage], accepted: Finding) -> F
 
 def _with(model: Model, diagnosis: Diagnosis, effect: str) -> Model:
     """The model with an effect, at the values that its diagnosis fitted, else at a typical size."""
-    extended = model.with_effects(effect)
-    fitted = diagnosis.finding(effect).fit
+    finding = diagnosis.finding(effect)
+    extended = model.with_effects(finding.source or effect)
+    fitted = finding.fit
     kind = next(e for e in extended.effects if e.id == effect)
     names = [f"{effect}.{p.name}" for p in kind.parameters]
     values = dict(zip(names, kind.typical().values(), strict=True))
