@@ -42,13 +42,15 @@ class Finding:
         first = next(iter(self.expected), None)
         unit = "" if first is None or self.units[first] == "1" else f" {self.units[first]}"
         value = "" if first is None else f" of {self.expected[first][0]:.3g}{unit}"
+        share = f"{self.error_removed:.0%} of the error above the noise"
         if self.verdict is Verdict.MISSING:
+            what = "is missing" if self.probability > 0.5 else "or an effect that looks like it is missing"
             return (
-                f"{self.effect} is missing (probability {self.probability:.0%}): a size{value} removes "
-                f"{self.error_removed:.0%} of the error above the noise."
+                f"{self.effect} {what} (probability {self.probability:.0%}): a size{value} removes {share}."
             )
         if self.verdict is Verdict.MISSING_IF_SIZE_MATTERS:
-            share = f"{self.error_removed:.0%} of the error"
+            if self.error_removed > 0.5:
+                return f"{self.effect} could stand in its place: it would remove {share}."
             return f"{self.effect} may be there with a size{value}, but removes only {share}."
         if self.verdict is Verdict.ABSENT:
             return f"{self.effect} is absent: above {self.visible_above:.2g}{unit} it would have been seen."
