@@ -48,7 +48,7 @@ def diagnose(
     squares.update({effect: final.evaluation.sum_of_squares for effect, final in finals.items()})
     lowest = min([base.sum_of_squares, *(final.evaluation.sum_of_squares for final in finals.values())])
     floor = judgement.expected_squares(base.jacobian, noise, base.runs)
-    columns = np.column_stack([base.jacobian, regressors(base, problem.experiments)])
+    columns = np.column_stack([base.jacobian, regressors(base)])
     learned = unexplained_by(columns, base.residual)
     chance = p_value(base.sum_of_squares - lowest, by_noise)
     context = judgement.Context(fit, finals, signatures, squares, noise, floor, chance)
@@ -98,6 +98,6 @@ def _noise(fit: FitResult, finals: dict[str, FitResult]) -> NoiseModel:
     """Noise from what neither the best model nor a learned model of its residual explains."""
     best = min([fit, *finals.values()], key=lambda result: result.evaluation.sum_of_squares)
     evaluation = best.evaluation
-    columns = np.column_stack([evaluation.jacobian, regressors(evaluation, None)])
+    columns = np.column_stack([evaluation.jacobian, regressors(evaluation)])
     left = unexplained_by(columns, evaluation.residual)
     return estimate_noise(left, evaluation.runs, columns, "what the best model and a learned residual leave")

@@ -11,7 +11,7 @@ from hasel_sysid.problem import Evaluation
 _LAGS_S = (0.0, 0.03, 0.1, 0.3)
 
 
-def regressors(evaluation: Evaluation, experiments) -> np.ndarray:
+def regressors(evaluation: Evaluation) -> np.ndarray:
     """Features of every frame, the mean of every run removed and scaled to unit length, [frames, features]."""
     parts = []
     for number, simulation in enumerate(evaluation.simulations):

@@ -40,7 +40,7 @@ def improve(
     validation: runs that are only ever compared with, never fitted or chosen by. only: names of the candidate effects
     (default: the whole catalogue). on_stage: called with every stage as soon as it is known, to write its model file.
     """
-    report = _Reporter(progress, most_effects)
+    report = _Reporter(progress)
     fit = fit_least_squares(problem, model, report.part("fit", 0.0, 0.15))
     stages = [_stage(fit, model, validation)]
     reason = ""
@@ -69,8 +69,8 @@ def improve(
 class _Reporter:
     """Maps the progress of the parts to that of the whole."""
 
-    def __init__(self, progress: Progress | None, most_effects: int) -> None:
-        self._progress, self._most = progress, most_effects
+    def __init__(self, progress: Progress | None) -> None:
+        self._progress = progress
 
     def share(self, number: int) -> tuple[float, float]:
         """Where the diagnosis of one stage begins and ends."""
