@@ -28,12 +28,23 @@ class MarkerRows:
 
     def __call__(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Positions [m] and lines across [..., 3, 2] for nodal positions [..., nodes, 2]."""
-        where, across = self.slopes(position)
-        return where + self._offset, across + self._up
+        return self.interpolated(self.local(position))
 
     def slopes(self, change: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The same for changes of the nodal positions (fixed markers do not change)."""
-        local = change[..., self._nodes, :]
+        return self.interpolated_slopes(self.local(change))
+
+    def local(self, field: np.ndarray) -> np.ndarray:
+        """What of a nodal field [..., nodes, 2] the markers see, [..., 3, 8, 2]: all that a series needs to keep."""
+        return field[..., self._nodes, :]
+
+    def interpolated(self, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Positions [m] and lines across [..., 3, 2] from local nodal positions."""
+        where, across = self.interpolated_slopes(local)
+        return where + self._offset, across + self._up
+
+    def interpolated_slopes(self, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The same from changes of the local nodal positions."""
         return (
             np.einsum("mk,...mkd->...md", self._shape, local),
             np.einsum("mk,...mkd->...md", self._across, local),

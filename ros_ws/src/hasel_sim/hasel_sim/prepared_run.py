@@ -7,9 +7,9 @@ from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.voltage import VoltageSchedule
 from hasel_sim.effects.base import DriveEffect, EffectParameter, ObservationEffect
 from hasel_sim.errors import SimulationError
+from hasel_sim.mechanics.motion import DriveState
 from hasel_sim.mechanics.stepper import Stepper
 from hasel_sim.mechanics.steps import StepPlan, plan_steps
-from hasel_sim.mechanics.system import DriveState
 from hasel_sim.model import Model
 from hasel_sim.observation import MarkerRows
 from hasel_sim.run import Run

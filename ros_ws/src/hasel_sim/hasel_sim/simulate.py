@@ -34,8 +34,7 @@ def simulate(model: Model, run: Run, slopes_by: Sequence[str] = (), keep_shapes:
     state, slopes = initial_state(
         stepper.system, prepared.start_drive, prepared.load_factor, moving, prepared.held_shape
     )
-    where, across = [[part] for part in rows(state.position)]
-    d_where, d_across = [[part] for part in rows.slopes(slopes.position)]
+    seen, d_seen = [rows.local(state.position)], [rows.local(slopes.position)]
     shapes = [state.position]
     drives = prepared.drives(prepared.contraction(plan.balance_times))
     for step, (drive, c) in enumerate(zip(drives, plan.coefficients, strict=True)):
@@ -44,16 +43,15 @@ def simulate(model: Model, run: Run, slopes_by: Sequence[str] = (), keep_shapes:
             slopes = stepper.step_slopes(
                 state, after, motion, drive, c, slopes, moving, contraction_slopes[step]
             )
-            for kept, new in zip((d_where, d_across), rows.slopes(slopes.position), strict=True):
-                kept.append(new)
+            d_seen.append(rows.local(slopes.position))
         state = after
-        for kept, new in zip((where, across), rows(state.position), strict=True):
-            kept.append(new)
+        seen.append(rows.local(state.position))
         if keep_shapes:
             shapes.append(state.position)
-    markers, lines = np.array(where), np.array(across)
+    markers, lines = rows.interpolated(np.array(seen))
     values = model.effect_values()
-    derivatives = _observed_slopes(prepared, markers, lines, np.array(d_where), np.array(d_across), moves)
+    d_markers, d_lines = rows.interpolated_slopes(np.array(d_seen))
+    derivatives = _observed_slopes(prepared, markers, lines, d_markers, d_lines, moves)
     return Simulation(
         run,
         prepared.at_frames(observe(plan.boundaries, markers, lines, prepared.observed_by, values)),

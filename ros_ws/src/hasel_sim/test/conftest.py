@@ -7,8 +7,8 @@ import pytest
 from hasel_sim.build import Builder
 from hasel_sim.drive.voltage import VoltageSchedule
 from hasel_sim.effects.base import EffectParameter, ForceEffect
+from hasel_sim.mechanics.motion import DriveState
 from hasel_sim.mechanics.statics import equilibrium
-from hasel_sim.mechanics.system import DriveState
 from hasel_sim.model import Model, Parameter, load_model
 from hasel_sim.model.description import Description
 from hasel_sim.run import Run

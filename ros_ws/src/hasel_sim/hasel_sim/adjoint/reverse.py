@@ -11,11 +11,12 @@ import numpy as np
 from hasel_sim.adjoint.weights import StateWeights, green_pulled_back, history_pulled_back
 from hasel_sim.mechanics.generalised_alpha import StepCoefficients
 from hasel_sim.mechanics.initial import start_of_motion
+from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.residual_slopes import NoSlope, ResidualSlope, SolidSlope
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.statics import equilibrium_multiplier
 from hasel_sim.mechanics.stepper import Stepper, balance_motion
-from hasel_sim.mechanics.system import DriveState, Linearisation, Memory, Motion, System
+from hasel_sim.mechanics.system import Linearisation, System
 
 
 def reverse_step(

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from hasel_sim.mechanics.initial import initial_state
+from hasel_sim.mechanics.motion import DriveState
 from hasel_sim.mechanics.state import State
-from hasel_sim.mechanics.system import DriveState
 from hasel_sim.observation import observe
 from hasel_sim.prepared_run import PreparedRun
 

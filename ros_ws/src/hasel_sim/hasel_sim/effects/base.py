@@ -116,9 +116,9 @@ class SiteState:
     """Motion and drive at n places; arrays are [n, 2] unless said.
 
     position [m], velocity [m/s], acceleration [m/s^2], tangent: derivative of the position along the skin [1];
-    reference: position at rest [m]; rest_tangent: tangent at rest [1]; measure [n]: mass [kg per m depth], skin length
-    [m] or 1; voltage [V] and contraction [1]: of the upper and lower muscle, shape [2]; time [s]; gravity [m/s^2],
-    shape [2].
+    reference: position at rest [m]; rest_normal: outward unit normal of the skin at rest; measure [n]: mass [kg per m
+    depth], skin length [m] or 1; voltage [V] and contraction [1]: of the upper and lower muscle, shape [2]; time [s];
+    gravity [m/s^2], shape [2].
     """
 
     position: np.ndarray
@@ -126,7 +126,7 @@ class SiteState:
     acceleration: np.ndarray
     tangent: np.ndarray
     reference: np.ndarray
-    rest_tangent: np.ndarray
+    rest_normal: np.ndarray
     measure: np.ndarray
     voltage: np.ndarray
     contraction: np.ndarray
@@ -136,17 +136,15 @@ class SiteState:
     @property
     def normal(self) -> np.ndarray:
         """Outward unit normal of the skin as it is now, [n, 2]; a force that uses it depends on the tangent."""
-        return _normal(self.tangent)
-
-    @property
-    def rest_normal(self) -> np.ndarray:
-        """Outward unit normal of the skin at rest, [n, 2]."""
-        return _normal(self.rest_tangent)
+        return normal(self.tangent)
 
 
-def _normal(tangent: np.ndarray) -> np.ndarray:
+def normal(tangent: np.ndarray) -> np.ndarray:
+    """Outward unit normal [n, 2] of a skin with these tangents [n, 2]."""
     length = np.hypot(tangent[:, 0], tangent[:, 1])
-    return np.stack([tangent[:, 1], -tangent[:, 0]], axis=1) / length[:, None]
+    out = np.empty_like(tangent)
+    out[:, 0], out[:, 1] = tangent[:, 1] / length, -tangent[:, 0] / length
+    return out
 
 
 class ForceEffect(Effect):

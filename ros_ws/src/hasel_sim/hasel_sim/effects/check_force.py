@@ -58,7 +58,7 @@ def _example(effect: ForceEffect) -> SiteState:
         acceleration=2.0 * rng.standard_normal((n, 2)),
         tangent=along + 0.1 * rng.standard_normal((n, 2)),
         reference=reference,
-        rest_tangent=along,
+        rest_normal=along @ np.array([[0.0, -1.0], [1.0, 0.0]]),
         measure=np.full(n, 0.01),
         voltage=np.array([5000.0, -3000.0]),
         contraction=np.array([0.05, 0.02]),
@@ -68,5 +68,5 @@ def _example(effect: ForceEffect) -> SiteState:
 
 
 def _rows(at: SiteState, count: int) -> SiteState:
-    names = (*_QUANTITIES, "reference", "rest_tangent", "measure")
+    names = (*_QUANTITIES, "reference", "rest_normal", "measure")
     return replace(at, **{name: getattr(at, name)[:count] for name in names})

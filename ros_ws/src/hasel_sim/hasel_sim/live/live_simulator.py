@@ -10,10 +10,10 @@ from hasel_sim.live.angle_history import AngleHistory
 from hasel_sim.live.drive_history import DriveHistory
 from hasel_sim.live.stamp_order import Arrival, StampOrder
 from hasel_sim.mechanics.initial import initial_state
+from hasel_sim.mechanics.motion import DriveState
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.stepper import Stepper
 from hasel_sim.mechanics.steps import plan_steps
-from hasel_sim.mechanics.system import DriveState
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.model import Model
 from hasel_sim.observation import MarkerRows

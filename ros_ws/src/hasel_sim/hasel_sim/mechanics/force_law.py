@@ -5,8 +5,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from hasel_sim.effects.base import ForceEffect, SiteState
+from hasel_sim.effects.base import ForceEffect, SiteState, normal
 from hasel_sim.mechanics.compiled import scatter_sites
+from hasel_sim.mechanics.motion import DriveState, Motion
 from hasel_sim.mesh.sites import Sites
 
 _CONTRACTION_DIFFERENCE = 1e-6
@@ -30,21 +31,36 @@ class ForceLaw:
     ) -> None:
         self.effect, self.values, self.sites = effect, values, sites
         self._gravity = np.array(gravity)
-        self._reference, self._rest_tangent = sites.value(reference), sites.tangent(reference)
+        self._reference = sites.value(reference)
+        on_skin = effect.sites == "skin"
+        self._rest_normal = normal(sites.tangent(reference)) if on_skin else np.zeros_like(self._reference)
         self._moved_by = tuple(name for name in effect.depends_on if name != "contraction")
+        self._copies = 4 * len(self._moved_by)
+        self._unmoved = {
+            "reference": repeated(self._reference, self._copies),
+            "rest_normal": repeated(self._rest_normal, self._copies),
+            "measure": repeated(sites.measure, self._copies),
+        }
         self._slopes: dict[str, np.ndarray] = {}
         self._by_contraction = np.zeros((2, *self._reference.shape))
+        self._last: tuple[Motion, DriveState, SiteState] | None = None
 
-    def _state(self, position, velocity, acceleration, drive) -> SiteState:
+    def state(self, motion: Motion, drive: DriveState) -> SiteState:
+        """Motion and drive at the sites; kept for the last motion, which is asked for several times."""
+        if self._last is None or self._last[0] is not motion or self._last[1] is not drive:
+            self._last = motion, drive, self._state(motion, drive)
+        return self._last[2]
+
+    def _state(self, motion: Motion, drive: DriveState) -> SiteState:
         depends = self.effect.depends_on
         nothing = np.zeros_like(self._reference)
         return SiteState(
-            position=self.sites.value(position),
-            velocity=self.sites.value(velocity) if "velocity" in depends else nothing,
-            acceleration=self.sites.value(acceleration) if "acceleration" in depends else nothing,
-            tangent=self.sites.tangent(position) if self.effect.sites == "skin" else nothing,
+            position=self.sites.value(motion.position),
+            velocity=self.sites.value(motion.velocity) if "velocity" in depends else nothing,
+            acceleration=self.sites.value(motion.acceleration) if "acceleration" in depends else nothing,
+            tangent=self.sites.tangent(motion.position) if self.effect.sites == "skin" else nothing,
             reference=self._reference,
-            rest_tangent=self._rest_tangent,
+            rest_normal=self._rest_normal,
             measure=self.sites.measure,
             voltage=drive.voltage,
             contraction=drive.contraction,
@@ -52,18 +68,15 @@ class ForceLaw:
             gravity=self._gravity,
         )
 
-    def add_force(
-        self, position, velocity, acceleration, drive, out: np.ndarray, factor: float = 1.0
-    ) -> None:
+    def add_force(self, motion: Motion, drive: DriveState, out: np.ndarray, factor: float = 1.0) -> None:
         """Add factor times the nodal forces to out [nodes, 2]."""
-        state = self._state(position, velocity, acceleration, drive)
-        self.sites.scatter(factor * self.effect.force(state, self.values), out)
+        self.sites.scatter(factor * self.effect.force(self.state(motion, drive), self.values), out)
 
-    def linearise(self, position, velocity, acceleration, drive) -> None:
+    def linearise(self, motion: Motion, drive: DriveState) -> None:
         """Keep the derivatives at this state: one [n, 2, 2] array per quantity the effect depends on."""
         if not self.effect.depends_on:
             return
-        state = self._state(position, velocity, acceleration, drive)
+        state = self.state(motion, drive)
         if "contraction" in self.effect.depends_on:
             self._by_contraction = self._contraction_slope(state)
         if self._moved_by:
@@ -81,11 +94,8 @@ class ForceLaw:
 
     def _differentiate(self, state: SiteState) -> None:
         names = self._moved_by
-        n, copies = len(self._reference), 4 * len(names)
-        fields = {
-            name: np.tile(getattr(state, name), (copies, 1))
-            for name in ("position", "velocity", "acceleration", "tangent", "reference", "rest_tangent")
-        }
+        n = len(self._reference)
+        fields = {name: repeated(getattr(state, name), self._copies) for name in _DIFFERENCE}
         for index, name in enumerate(names):
             for component in range(2):
                 start = (4 * index + 2 * component) * n
@@ -93,7 +103,7 @@ class ForceLaw:
                 fields[name][start + n : start + 2 * n, component] -= _DIFFERENCE[name]
         batch = SiteState(
             **fields,
-            measure=np.tile(state.measure, copies),
+            **self._unmoved,
             voltage=state.voltage,
             contraction=state.contraction,
             time=state.time,
@@ -157,3 +167,10 @@ class ForceLaw:
         """Subtract the change of the nodal forces by the contraction of each muscle from out [2, nodes, 2]."""
         if "contraction" in self.effect.depends_on:
             self.sites.scatter(-self._by_contraction, out)
+
+
+def repeated(rows: np.ndarray, copies: int) -> np.ndarray:
+    """Rows [n, ...] as often as asked, one copy after the other, [copies n, ...]."""
+    out = np.empty((copies, *rows.shape), dtype=rows.dtype)
+    out[:] = rows
+    return out.reshape(-1, *rows.shape[1:])

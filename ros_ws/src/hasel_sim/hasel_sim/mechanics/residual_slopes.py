@@ -5,10 +5,11 @@ from typing import Protocol
 import numpy as np
 
 from hasel_sim.mechanics.force_law import ForceLaw
+from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.solid import Solid
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.stress_law import StressLaw
-from hasel_sim.mechanics.system import DriveState, Linearisation, Memory, Motion, System
+from hasel_sim.mechanics.system import Linearisation, System
 
 
 class ResidualSlope(Protocol):
@@ -45,9 +46,8 @@ class ForceSlope:
 
     def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
         """Subtract the derivative of the force, which stands on the right-hand side."""
-        arguments = motion.position, motion.velocity, motion.acceleration, drive, out
-        self._more.add_force(*arguments, -load_factor / self._width)
-        self._less.add_force(*arguments, load_factor / self._width)
+        self._more.add_force(motion, drive, out, -load_factor / self._width)
+        self._less.add_force(motion, drive, out, load_factor / self._width)
 
 
 class StressSlope:

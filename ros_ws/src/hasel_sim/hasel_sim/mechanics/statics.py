@@ -4,7 +4,8 @@ import numpy as np
 
 from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.banded import BandMatrix
-from hasel_sim.mechanics.system import DriveState, Linearisation, Memory, Motion, System
+from hasel_sim.mechanics.motion import DriveState, Memory, Motion
+from hasel_sim.mechanics.system import Linearisation, System
 
 _ANCHOR = 1e-3
 """Weight of the mass matrix [1/s^2] that anchors a free body; internal forces cannot push against it."""

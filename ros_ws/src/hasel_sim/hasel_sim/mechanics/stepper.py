@@ -6,9 +6,10 @@ from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.banded import BandFactors, BandMatrix
 from hasel_sim.mechanics.branches import green_stress_direction
 from hasel_sim.mechanics.generalised_alpha import StepCoefficients
+from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.residual_slopes import ResidualSlope, SolidSlope
 from hasel_sim.mechanics.state import State, StateSlopes
-from hasel_sim.mechanics.system import DriveState, Linearisation, Memory, Motion, System
+from hasel_sim.mechanics.system import Linearisation, System
 
 _MOST_ITERATIONS = 25
 _SLOW = 0.1
@@ -142,7 +143,7 @@ class Stepper:
         instead = shift / c.position
         inertia = c.acceleration_a * slopes.acceleration - c.acceleration * instead
         right = line.along(None, rate - c.velocity * instead, inertia, stress)
-        right += np.tensordot(contraction_slopes, line.by_contraction(drive), 1)
+        right += (contraction_slopes @ line.by_contraction(drive).reshape(2, -1)).reshape(right.shape)
         for column, parameter in enumerate(parameters):
             parameter.add(motion, drive, line, state, c.at, right[column])
         self.system.held_to_zero(right)

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from hasel_sim.effects.base import MaterialEffect, MaterialPoints
+from hasel_sim.mechanics.force_law import repeated
 
 _DIFFERENCE = {"deformation": 1e-6, "rate": 1e-4}
 
@@ -32,7 +33,7 @@ class StressLaw:
         ).reshape(here.shape)
 
     def _evaluate(self, F: np.ndarray, rate: np.ndarray, drive, points: int, copies: int) -> np.ndarray:
-        muscle = np.tile(np.repeat(self._muscle, points), copies)
+        muscle = repeated(np.repeat(self._muscle, points), copies)
         contraction, voltage = (
             np.concatenate([[0.0], of_both])[muscle] for of_both in (drive.contraction, drive.voltage)
         )
@@ -47,7 +48,7 @@ class StressLaw:
         fields = {"deformation": deformation[self.elements], "rate": rate[self.elements]}
         shape = fields["deformation"].shape
         n, copies = shape[0] * shape[1], 8 * len(names)
-        batch = {name: np.tile(field.reshape(n, 4), (copies, 1)) for name, field in fields.items()}
+        batch = {name: repeated(field.reshape(n, 4), copies) for name, field in fields.items()}
         for index, name in enumerate(names):
             moved = batch[name].reshape(len(names), 4, 2, n, 4)[index]
             for component in range(4):

@@ -1,46 +1,15 @@
 """The mechanical system: solid, inertia, loads and force effects, as one residual with its derivatives."""
 
-from dataclasses import dataclass, replace
-
 import numpy as np
 
 from hasel_sim.mechanics import compiled
 from hasel_sim.mechanics.banded import BandMatrix
 from hasel_sim.mechanics.force_law import ForceLaw
 from hasel_sim.mechanics.inertia import Mass
+from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.solid import Solid
 from hasel_sim.mechanics.stress_law import StressLaw
 from hasel_sim.mesh.mesh import Mesh
-
-
-@dataclass(frozen=True)
-class DriveState:
-    """Voltage [V] and contraction [1] of the upper and lower muscle, shape [2], at a time [s]."""
-
-    voltage: np.ndarray
-    contraction: np.ndarray
-    time: float
-
-    def with_contraction(self, contraction: np.ndarray) -> "DriveState":
-        """The same instant with another contraction."""
-        return replace(self, contraction=contraction)
-
-
-@dataclass(frozen=True)
-class Motion:
-    """Nodal positions [m], velocities [m/s] and accelerations [m/s^2], each [nodes, 2]."""
-
-    position: np.ndarray
-    velocity: np.ndarray
-    acceleration: np.ndarray
-
-
-@dataclass(frozen=True)
-class Memory:
-    """What the internal branches carry over a step: their history [elements, points, 3] and the time since [s]."""
-
-    history: np.ndarray | None = None
-    step: float = 0.0
 
 
 class System:
@@ -72,7 +41,7 @@ class System:
         out -= load_factor * self.weight
         self.solid.add_force(self._first_piola(motion, drive, memory)[1], out)
         for law in self.forces:
-            law.add_force(motion.position, motion.velocity, motion.acceleration, drive, out, -load_factor)
+            law.add_force(motion, drive, out, -load_factor)
         out[: self.held] = 0.0
         return out
 
@@ -112,7 +81,7 @@ class System:
         for law in self.stresses:
             law.add_moduli(F, rate, drive, elastic, viscous)
         for law in self.forces:
-            law.linearise(motion.position, motion.velocity, motion.acceleration, drive)
+            law.linearise(motion, drive)
         return Linearisation(self, elastic, viscous, F, rate, load_factor)
 
     def held_to_zero(self, columns: np.ndarray) -> np.ndarray:

@@ -11,7 +11,7 @@ from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.voltage import VoltageSchedule
 from hasel_sim.effects.registry import catalogue, find_effects
 from hasel_sim.errors import ModelError
-from hasel_sim.mechanics.system import DriveState, Memory, Motion
+from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.model import load_model, save_model
 from hasel_sim.parallel import executor, simulate_all
 from hasel_sim.run import Run

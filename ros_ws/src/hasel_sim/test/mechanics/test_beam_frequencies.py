@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sim.build import Builder
-from hasel_sim.mechanics.system import Memory, Motion
+from hasel_sim.mechanics.motion import Memory, Motion
 from scipy.linalg import eigh
 
 LENGTH, HEIGHT, MODULUS, DENSITY, RATIO = 0.1, 0.1 / 60, 1e5, 1000.0, 0.3

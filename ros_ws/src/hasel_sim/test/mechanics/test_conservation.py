@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from hasel_sim.build import Builder
 from hasel_sim.mechanics.generalised_alpha import step_coefficients
+from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.stepper import Stepper
-from hasel_sim.mechanics.system import DriveState, Memory, Motion
 from scipy.linalg import eigh
 
 NONE = np.zeros(2)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sim.build import Builder
-from hasel_sim.mechanics.system import Memory, Motion
+from hasel_sim.mechanics.motion import Memory, Motion
 
 
 def _bending_energy(model, still, curvature: float) -> float:
