@@ -25,12 +25,13 @@ from hasel_sysid.command_line.shown import announce, show
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.compare.compare import comparison_of
 from hasel_sysid.dataset import Experiment, prepared
-from hasel_sysid.improve import Improvement, Stage, improve
+from hasel_sysid.improve import Improvement, Stage, Status, improve
 from hasel_sysid.improve.ledger import Ledger
 from hasel_sysid.problem import Problem
 from hasel_sysid.report.from_improvement import improvement_content
 from hasel_sysid.report.pictures import stages_picture, waterfall_picture
 from hasel_sysid.report.write import write_report
+from hasel_sysid.suggest import Suggestion, in_doubt, suggest
 
 MODEL_FILE = "improved_model.yaml"
 
@@ -79,12 +80,22 @@ def _improve(options: argparse.Namespace) -> None:
                 on_stage=keep,
             )
             stages = [_comparison(stage, experiments, unseen, pool, label) for stage in found.stages]
+            suggestions = _next_runs(found, pool)
     except KeyboardInterrupt:
         if written:
             print(f"wrote the stages so far ({len(written)}), see {ledger.path}", file=sys.stderr)
         raise
     show([stages[0]], said)
-    _finish(options, found, start, stages)
+    _finish(options, found, start, stages, suggestions)
+
+
+def _next_runs(found: Improvement, pool: Executor) -> list[Suggestion]:
+    """The runs that would best tell apart what is still in doubt, at no more voltage than was used already."""
+    candidates = in_doubt(found.diagnosis, found.missing)
+    if found.status is Status.NOTHING_MISSING or len(candidates) < 2:
+        return []
+    highest = max(found.model.levels, default=0.0)
+    return suggest(pool, candidates, found.diagnosis.noise, highest, brief=True)
 
 
 def _comparison(
@@ -98,13 +109,19 @@ def _comparison(
 
 
 def _finish(
-    options: argparse.Namespace, found: Improvement, start: Comparison, stages: Sequence[Comparison]
+    options: argparse.Namespace,
+    found: Improvement,
+    start: Comparison,
+    stages: Sequence[Comparison],
+    suggestions: Sequence[Suggestion],
 ) -> None:
     folder: Path = options.output
     print(found.diagnosis)
     print(found)
+    if suggestions:
+        print(f"Measure next: {suggestions[0]}")
     save_model(found.model, folder / MODEL_FILE)
-    content = improvement_content(found, stages, start)
+    content = improvement_content(found, stages, start, suggestions)
     report = write_report(content, folder)
     waterfall_picture(content.stages, content.noise_floor, folder / "waterfall.png")
     stages_picture(content.stages, content.noise_floor, folder / "error_by_stage.png")
@@ -113,6 +130,7 @@ def _finish(
             "where_it_fails": stages[0].where.sentences(),
             "data_gate": [finding.to_json() for finding in stages[0].set_up],
             "start": start.to_json(),
+            "next_runs": [suggestion.to_json() for suggestion in suggestions],
         }
         write_json({**found.to_json(), **details}, options.json)
     print(f"Wrote {folder / MODEL_FILE} and {report}.")

@@ -80,10 +80,7 @@ def _suggest(options: argparse.Namespace) -> None:
 
 def _write(best: Suggestion, options: argparse.Namespace) -> None:
     if options.json:
-        pairs = [{"effects": list(pair), "difference": size} for pair, size in best.pairs.items()]
-        write_json(
-            {"run": best.manoeuvre.goal(), "difference": best.difference, "pairs": pairs}, options.json
-        )
+        write_json(best.to_json(), options.json)
     if best.manoeuvre.load_factor is not None:
         return
     options.output.mkdir(parents=True, exist_ok=True)

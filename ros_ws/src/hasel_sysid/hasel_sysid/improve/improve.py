@@ -104,10 +104,7 @@ def _accepted(fit: FitResult, found: Diagnosis) -> tuple[Finding | None, str]:
             f"The {name.replace('_', ' ')} explains {numerics[name]:.0%} of what is left: refine it first.",
         )
     if not candidates:
-        return None, (
-            f"None of the listed effects explains what is left: the best removes {found.explained:.0%} of the error "
-            f"above the noise, a learned model of the residual {found.ceiling:.0%}."
-        )
+        return None, _none_convinces(found)
     best = candidates[0]
     gain = 1 - best.fit.evaluation.sum_of_squares / fit.evaluation.sum_of_squares
     if gain < _LEAST_GAIN:
@@ -121,6 +118,20 @@ def _accepted(fit: FitResult, found: Diagnosis) -> tuple[Finding | None, str]:
             f"{best.effect} fits better but predicts runs left out of the fit worse: it is not accepted.",
         )
     return best, ""
+
+
+def _none_convinces(found: Diagnosis) -> str:
+    """Why no effect is accepted although something is missing."""
+    learned = f"a learned model of the residual {found.ceiling:.0%}"
+    if found.explained < _EXPLAINED:
+        return (
+            f"None of the listed effects explains what is left: the best removes {found.explained:.0%} of the error "
+            f"above the noise, {learned}."
+        )
+    return (
+        f"None of the listed effects explains what is left with a plausible value: one removes {found.explained:.0%} "
+        f"of the error above the noise, but only at the edge of its range; {learned}."
+    )
 
 
 def _is_noise(fit: FitResult, found: Diagnosis) -> bool:

@@ -67,14 +67,18 @@ def _triangle(phase: np.ndarray) -> np.ndarray:
     return 1 - 4 * np.abs(((phase + 0.25) % 1.0) - 0.5)
 
 
-def manoeuvres(levels: np.ndarray, highest: float) -> list[Manoeuvre]:
-    """All combinations within the safe maximum [V]; levels: voltages whose amplitudes are known [V], none: passive."""
+def manoeuvres(levels: np.ndarray, highest: float, brief: bool = False) -> list[Manoeuvre]:
+    """All combinations within the safe maximum [V]; levels: voltages whose amplitudes are known [V], none: passive.
+
+    brief: boxes at the highest of these voltages only.
+    """
     if len(levels) == 0:
         return [Manoeuvre(0.0, 0.0, 0, "none", "both", factor) for factor in _LOAD_FACTORS]
     voltages = sorted({float(v) for v in (levels[0], levels[-1], min(highest, levels[-1])) if v <= highest})
+    waveforms = ("box",) if brief else ("box", "triangle")
     return [
         Manoeuvre(voltage, rate, max(1, min(_PERIODS, int(_LONGEST_S * rate))), waveform, muscles)
         for voltage, rate, waveform, muscles in product(
-            voltages, _RATES_HZ, ("box", "triangle"), ("both", "upper")
+            voltages[-1:] if brief else voltages, _RATES_HZ, waveforms, ("both", "upper")
         )
     ]

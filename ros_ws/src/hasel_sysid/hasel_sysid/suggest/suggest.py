@@ -1,6 +1,6 @@
 """Which experiment would make the remaining explanations differ most, in units of the noise."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from itertools import combinations
@@ -29,6 +29,11 @@ class Suggestion:
     difference: float
     pairs: dict[tuple[str, str], float]
 
+    def to_json(self) -> dict:
+        """For machines: the run as a RunExperiment goal, and the differences in units of the noise."""
+        pairs = [{"effects": list(pair), "difference": size} for pair, size in self.pairs.items()]
+        return {"run": self.manoeuvre.goal(), "difference": self.difference, "pairs": pairs}
+
     def __str__(self) -> str:
         names = sorted({name for pair in self.pairs for name in pair})
         return f"{self.manoeuvre}: {', '.join(names)} would differ by {self.difference:.1f} times the noise."
@@ -48,20 +53,34 @@ def rivals(diagnosis: Diagnosis) -> dict[str, Model]:
     return fitted
 
 
+def in_doubt(diagnosis: Diagnosis, accepted: Sequence[str]) -> dict[str, Model]:
+    """The refitted models that these recordings cannot tell from the first accepted effect's, itself among them.
+
+    Where nothing was accepted, all that were refitted; fewer than two leave nothing to tell apart.
+    """
+    fitted = {finding.effect: finding.fit.model for finding in diagnosis.findings if finding.fit is not None}
+    if not accepted:
+        return fitted
+    group = next((group for group in diagnosis.groups if accepted[0] in group), ())
+    return {effect: model for effect, model in fitted.items() if effect in group}
+
+
 def suggest(
     pool: Executor,
     candidates: dict[str, Model],
     noise: NoiseModel,
     highest: float,
     progress: Progress | None = None,
+    brief: bool = False,
 ) -> list[Suggestion]:
     """Rank all safe experiments, best first.
 
-    candidates: fitted models by the effect that each adds; highest: largest voltage allowed [V]. An experiment is as
-    good as it is for the pair of explanations that it separates least.
+    candidates: fitted models by the effect that each adds; highest: largest voltage allowed [V]; brief: only a few
+    experiments, at the highest voltage. An experiment is as good as it is for the pair of explanations that it
+    separates least.
     """
     levels = next(iter(candidates.values())).levels
-    library = manoeuvres(levels, highest)
+    library = manoeuvres(levels, highest, brief)
     if not library:
         raise SysidError(
             f"no experiment is possible: the highest voltage allowed is {highest:g} V and the lowest known one "

@@ -1,0 +1,67 @@
+"""Which run would tell the remaining explanations apart."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hasel_sim.model import load_model
+from hasel_sim.parallel import executor
+from hasel_sim.simulate import simulate
+from hasel_sysid.errors import SysidError
+from hasel_sysid.noise import NoiseModel
+from hasel_sysid.suggest import in_doubt, rivals, suggest
+
+NOISE = NoiseModel(white=9e-6, coloured=0.0, correlation=0.5)
+
+
+def finding(effect, fitted=True):
+    """A finding with or without a refitted model, of which only the name matters here."""
+    return SimpleNamespace(effect=effect, fit=SimpleNamespace(model=f"with {effect}") if fitted else None)
+
+
+DIAGNOSIS = SimpleNamespace(
+    findings=[
+        finding("linear_drag"),
+        finding("quadratic_drag"),
+        finding("pre_bend"),
+        finding("tether", False),
+    ],
+    groups=[("linear_drag", "quadratic_drag", "tether")],
+)
+
+
+def test_in_doubt_is_what_looks_like_the_accepted_effect():
+    """Only refitted members of its group; with nothing accepted, all that were refitted."""
+    assert set(in_doubt(DIAGNOSIS, ["quadratic_drag"])) == {"linear_drag", "quadratic_drag"}
+    assert set(in_doubt(DIAGNOSIS, ["pre_bend"])) == set()
+    assert set(in_doubt(DIAGNOSIS, [])) == {"linear_drag", "quadratic_drag", "pre_bend"}
+
+
+def test_one_explanation_leaves_nothing_to_suggest():
+    """A sentence says so, and how to ask all the same."""
+    with pytest.raises(SysidError, match="fewer than two explanations"):
+        rivals(SimpleNamespace(findings=[finding("linear_drag")]))
+
+
+@pytest.fixture(scope="module")
+def lags():
+    """Two models that a slow drive hardly tells apart."""
+    model = load_model("swimmer").with_levels(np.array([3500.0, 5500.0]))
+    model = model.with_values({"amplitude_3500": 0.027, "amplitude_5500": 0.062, "slope": 0.26})
+    return {
+        "transport_delay": model.with_effects("transport_delay").with_values({"transport_delay.delay": 0.03}),
+        "none": model,
+    }
+
+
+def test_the_best_run_separates_them_most(lags):
+    """Ranked by the difference, within the safe maximum, and a full simulation confirms what the draft promises."""
+    with executor(1) as pool:
+        ranked = suggest(pool, lags, NOISE, 5500.0, brief=True)
+    differences = [suggestion.difference for suggestion in ranked]
+    assert differences == sorted(differences, reverse=True)
+    best = ranked[0]
+    assert best.manoeuvre.voltage == 5500.0
+    one, other = (simulate(model, best.manoeuvre.run()).sin_theta for model in lags.values())
+    assert best.difference == pytest.approx(np.std(one - other) / NOISE.standard_deviation, rel=0.2)
+    assert best.to_json()["pairs"][0]["difference"] == best.difference
