@@ -140,7 +140,9 @@ class HaselSupply(Supply):
         if reply.sequence is None:
             raise SupplyFaultError(FaultCode.GARBAGE, f"the board answered {text}")
         pending = self._pending.pop(reply.sequence, None)
-        if pending is None:
+        if not reply.accepted and reply.words[0] == "SEQUENCE":
+            raise SupplyFaultError(FaultCode.SEQUENCE, f"the board answered {text}")
+        if pending is None or not _answers(reply, pending.words):
             raise SupplyFaultError(
                 FaultCode.TWO_MASTERS, f"the board answered {text}, which was not asked here"
             )
@@ -163,3 +165,10 @@ class HaselSupply(Supply):
             measured_v=(float(report.measured[0]), float(report.measured[1])),
             current_a=(report.current[0] * 1e-6, report.current[1] * 1e-6),
         )
+
+
+def _answers(reply: protocol.Reply, command: tuple[str, ...]) -> bool:
+    """Whether `reply` speaks of `command`, and not of one that another master numbered alike."""
+    if not reply.accepted:
+        return reply.words[1:] == command
+    return reply.words[0] == (command[1] if command[0] == "SET" else command[0])
