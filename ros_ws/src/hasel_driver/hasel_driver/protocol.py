@@ -9,11 +9,12 @@ from hasel_driver.mode import Mode
 
 PROTOCOL_VERSION = 1
 MAXIMUM_LINE_LENGTH = 96
+MOST_WORDS = 10  # of a command
 SEQUENCE_MODULUS = 256
 IDENTITY = ("hasel-supply", "1.0", "protocol", str(PROTOCOL_VERSION))
 
-_COMMAND = re.compile(r">(\d{3}) (.+)")
-_REPLY = re.compile(r"<(\d{3}|---) (OK|ERR) (.+)")
+_COMMAND = re.compile(r">(\d{3}) (.*\S.*)")
+_REPLY = re.compile(r"<(\d{3}|---) (OK|ERR) (.*\S.*)")
 _TELEMETRY = re.compile(
     r"#t=(\d{1,10}) s=([A-Z]+) g=([01]) f=(\d{1,3})"
     r" v=(-?\d{1,5}),(-?\d{1,5}) m=(-?\d{1,5}),(-?\d{1,5}) i=(\d{1,5}),(\d{1,5})"
@@ -96,9 +97,10 @@ def parse_command(line: bytes) -> Command:
     """A host's line, as the board reads it."""
     text = decode(line)
     match = _COMMAND.fullmatch(text)
-    if match is None or int(match[1]) >= SEQUENCE_MODULUS:
+    words = tuple(match[2].split()) if match else ()
+    if match is None or int(match[1]) >= SEQUENCE_MODULUS or len(words) > MOST_WORDS:
         raise ProtocolError(f"{text!r} is not a command, '>nnn WORDS' was expected")
-    return Command(int(match[1]), tuple(match[2].split()))
+    return Command(int(match[1]), words)
 
 
 def parse_device_line(line: bytes) -> Line:

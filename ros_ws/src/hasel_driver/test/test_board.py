@@ -114,6 +114,18 @@ def test_a_garbled_command_is_a_fault_while_armed(board, rig):
     assert board.report().fault_code == 6
 
 
+@pytest.mark.parametrize("text", [">002", "GET VOLTAGE", ">002" + 11 * " A", ">256 PING", ">002  "])
+def test_a_line_that_is_no_command_is_a_fault_while_armed(board, rig, text):
+    """A right checksum does not make a command: whoever sends this is not the driver."""
+    board.ask("ARM")
+    board.ask("SET", "VOLTAGE", 3000, 3000)
+    rig.await_live(True)
+    board.send(protocol.encode(text))
+    assert board.reply() == (False, "SYNTAX")
+    rig.await_live(False)
+    assert board.report().fault_code == 6
+
+
 def test_random_bytes_neither_arm_nor_hang_the_board(board, rig):
     """After any rubbish the board is dead, grounded and answers."""
     generator = random.Random(1)

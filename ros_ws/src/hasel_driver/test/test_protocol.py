@@ -81,6 +81,14 @@ def test_a_right_checksum_alone_does_not_make_a_line(text):
             continue
 
 
+@pytest.mark.parametrize("text", [">001  ", "<001 OK  ", "<001 ERR  ", "! ", ">256 PING", ">001" + 11 * " A"])
+def test_lines_without_sense_are_protocol_errors(text):
+    """Nothing but spaces, a number that is none, and too many words: refused in spite of a right checksum."""
+    for parse in (protocol.parse_command, protocol.parse_device_line):
+        with pytest.raises(ProtocolError):
+            parse(protocol.encode(text).rstrip(b"\n"))
+
+
 @given(TELEMETRY, st.data())
 def test_one_or_two_flipped_bits_are_found(report, data):
     """The checksum finds every error of one or two bits, and so does a cut."""
