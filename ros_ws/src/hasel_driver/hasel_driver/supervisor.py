@@ -20,6 +20,7 @@ STALE_S = 0.2
 TRANSITION_S = 0.3  # time the board has to follow a request
 STOP_REPEAT_S = 0.05
 FIRST_READING_S = 0.5
+SETTLING_S = 0.05  # after which a report tells what a voltage asked for has done
 REOPEN_S = 0.03  # lets the other end notice that the port was closed
 
 
@@ -37,6 +38,7 @@ class Supervisor:
         self._stop_sent_s = -math.inf
         self._command_expires_s: float | None = None
         self._experiment_running = False
+        self._driven_s = -math.inf  # when a voltage was last asked for; infinite while a waveform runs
 
     @property
     def maximum_voltage_v(self) -> float:
@@ -83,7 +85,7 @@ class Supervisor:
             return Status(now_s, Mode.FAULT, self.fault, None, UNKNOWN, UNKNOWN, UNKNOWN)
         mode = Mode.FAULT if self.fault else reading.mode
         values = (reading.commanded_v, reading.measured_v, reading.current_a)
-        return Status(reading.time_s, mode, self.fault, reading.grounded, *values)
+        return Status(reading.time_s, mode, self.fault, self._grounded(reading), *values)
 
     def arm(self) -> None:
         """Ask the supply to arm. Raises RefusedError unless STANDBY is proven."""
@@ -99,7 +101,7 @@ class Supervisor:
         """Ask the supply for STANDBY; allowed in every state."""
         self._armed_wanted = False
         self._requested_s = self._clock()
-        self._command_expires_s, self._experiment_running = None, False
+        self._end_drive()
         if self.connected:
             self._guard(self._supply.disarm)
 
@@ -108,7 +110,7 @@ class Supervisor:
         if self.fault is None or fault.code is FaultCode.EMERGENCY_STOP:
             self.fault = fault
         self._armed_wanted = False
-        self._command_expires_s, self._experiment_running = None, False
+        self._end_drive()
         if fault.code is FaultCode.LINK_LOST:
             self.name = None
             self._supply.close()
@@ -146,7 +148,7 @@ class Supervisor:
             self.rejected_commands += 1
             return
         self._command_expires_s = self._clock() + COMMAND_TIMEOUT_S - max(age_s, 0.0)
-        self._guard(lambda: self._supply.set_voltage(applied))
+        self._drive(applied)
 
     def begin_experiment(self) -> None:
         """From here on commands from outside are a second master. Raises RefusedError unless armed at 0 V."""
@@ -161,6 +163,7 @@ class Supervisor:
     def start(self, waveform: Waveform) -> None:
         """Run the experiment's waveform on the board."""
         if self._experiment_running:
+            self._driven_s = math.inf
             self._guard(lambda: self._supply.start(waveform))
 
     def hold(self, voltage_v: Voltages) -> None:
@@ -168,11 +171,11 @@ class Supervisor:
         if self._experiment_running:
             applied = clip(voltage_v, self.maximum_voltage_v, self._supply.capabilities.bipolar)
             self._command_expires_s = self._clock() + COMMAND_TIMEOUT_S
-            self._guard(lambda: self._supply.set_voltage(applied))
+            self._drive(applied)
 
     def end_experiment(self) -> None:
         """0 V now, still armed."""
-        self._experiment_running, self._command_expires_s = False, None
+        self._end_drive()
         if self._armed_wanted:
             self._guard(lambda: self._supply.set_voltage((0.0, 0.0)))
 
@@ -213,6 +216,20 @@ class Supervisor:
             time.sleep(0.002)
         raise PortError(f"{name} did not report its state: check the line, and reset the board.")
 
+    def _drive(self, voltage_v: Voltages) -> None:
+        if any(voltage_v):
+            self._driven_s = self._clock()
+        self._guard(lambda: self._supply.set_voltage(voltage_v))
+
+    def _end_drive(self) -> None:
+        self._command_expires_s, self._experiment_running = None, False
+        self._driven_s = min(self._driven_s, self._clock())
+
+    def _grounded(self, reading: Reading) -> bool | None:
+        """What a report proves now: one of an armed supply nothing, if a voltage was asked for since."""
+        outdated = reading.time_s < self._driven_s + SETTLING_S
+        return None if reading.grounded and reading.mode.may_be_live and outdated else reading.grounded
+
     def _judge(self, reading: Reading, now_s: float) -> None:
         if reading.fault is not None:
             self._latch_board_fault(reading.fault)
@@ -229,7 +246,7 @@ class Supervisor:
     def _latch_board_fault(self, fault: Fault) -> None:
         self.fault = self.fault or fault
         self._armed_wanted = False
-        self._command_expires_s, self._experiment_running = None, False
+        self._end_drive()
 
     def _watch(self, now_s: float) -> None:
         if self.fault is None and self._fresh_reading(now_s) is None:

@@ -146,6 +146,37 @@ def test_old_reports_are_no_knowledge(case):
     assert all(math.isnan(value) for value in (*status.commanded_v, *status.measured_v, *status.current_a))
 
 
+@pytest.mark.parametrize("drive", ["command", "waveform", "hold"])
+def test_a_report_from_before_the_voltage_proves_nothing(case, drive):
+    """A supply that falls silent as it is driven is not called grounded by what it reported before."""
+    supervisor = case.supervisor
+    case.arm()
+    assert supervisor.status().output == "grounded"
+    case.supply.silent = True
+    if drive == "command":
+        supervisor.command((1000.0, 0.0))
+    else:
+        supervisor.begin_experiment()
+        supervisor.start(Waveform("box", 1000.0, 1.0, 1)) if drive == "waveform" else supervisor.hold(
+            (9.0, 0.0)
+        )
+    assert supervisor.status().output == "unknown"
+    case.supply.deaf = True
+    supervisor.fail(Fault(FaultCode.EMERGENCY_STOP))
+    case.pass_time(0.1)
+    assert supervisor.status().output == "unknown"
+
+
+def test_a_report_from_after_the_voltage_proves_again(case):
+    """Once the voltage has expired, the supply's next reports count."""
+    case.arm()
+    case.supervisor.command((1000.0, 0.0))
+    case.pass_time(0.1)
+    assert case.supervisor.status().output == "live"
+    case.pass_time(0.2)
+    assert str(case.supervisor.status()) == "ARMED, output grounded"
+
+
 def test_no_heartbeat_for_a_supply_that_does_not_stop(case):
     """A supply that stays live in spite of a stop gets no more heartbeats, so that its own timeout works."""
     case.arm()
