@@ -6,9 +6,8 @@ import time
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_interfaces.msg import SupplyState
-from rclpy._rclpy_pybind11 import RCLError
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
-from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.executors import MultiThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 
 from hasel_driver.backends import make_supply
@@ -19,6 +18,7 @@ from hasel_driver.faults import Fault, FaultCode
 from hasel_driver.limits import Voltages
 from hasel_driver.messages import to_diagnostics, to_supply_state
 from hasel_driver.node_parameters import declare, values
+from hasel_driver.spinning import quiet_at_shutdown, spin
 from hasel_driver.status import Status
 from hasel_driver.supervisor import Supervisor
 from hasel_driver.supply_thread import SupplyThread
@@ -129,7 +129,8 @@ class DriverNode(LifecycleNode):
 
     def _publish(self, status: Status) -> None:
         message = to_supply_state(status)
-        self._state.publish(message)
+        with quiet_at_shutdown():
+            self._state.publish(message)
         self.experiments.record_state(message)
 
     def _on_heartbeat(self) -> None:
@@ -215,15 +216,12 @@ def main() -> None:
     node = DriverNode()
     executor = MultiThreadedExecutor(num_threads=4)
     executor.add_node(node)
-    if node.get_parameter("autostart").value:
-        autostart(node)
     try:
-        while rclpy.ok():
-            try:
-                executor.spin()
-            except RCLError as error:
-                node.report_illegal_transition(error)
-    except (KeyboardInterrupt, ExternalShutdownException):
+        with quiet_at_shutdown():
+            if node.get_parameter("autostart").value:
+                autostart(node)
+            spin(executor, node.report_illegal_transition)
+    except KeyboardInterrupt:
         pass
     finally:
         node.close()

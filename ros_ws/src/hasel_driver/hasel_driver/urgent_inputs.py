@@ -3,16 +3,16 @@
 import threading
 import time
 from collections.abc import Callable
-from contextlib import suppress
 
 import rclpy
 from hasel_interfaces.msg import Actuation
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import Bool
 
 from hasel_driver.limits import Voltages
+from hasel_driver.spinning import quiet_at_shutdown
 
 ALIVE_PERIOD_S = 0.05
 NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
@@ -49,7 +49,7 @@ class UrgentInputs:
         self._node.destroy_node()
 
     def _spin(self) -> None:
-        with suppress(ExternalShutdownException):
+        with quiet_at_shutdown():
             self._executor.spin()
 
     def _take_command(self, command: Actuation) -> None:
