@@ -30,7 +30,7 @@ def latencies(client: RosClient, rig: Rig, count: int) -> np.ndarray:
         published_s[number] = time.monotonic()
         client.command((float(number), 0.0))
     time.sleep(0.1)
-    return np.array([time_s - published_s[number] for time_s, number in rig.wire if number in published_s])
+    return np.array([time_s - published_s[upper] for time_s, upper, _ in rig.wire if upper in published_s])
 
 
 def command_rate(client: RosClient, rig: Rig, duration_s: float) -> float:

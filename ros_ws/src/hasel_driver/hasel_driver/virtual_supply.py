@@ -20,8 +20,8 @@ from hasel_driver.virtual_board import VirtualBoard
 from hasel_driver.virtual_muscle import VirtualMuscle
 
 LIVE_V = 50.0  # extra-low-voltage bound used in the tests' question "is the output dead?"
-MOST_CATCH_UP_MS = 100
-_SET_VOLTAGE = re.compile(rb"SET VOLTAGE (-?\d+)")
+LATE_MS, MOST_CATCH_UP_MS = 50, 100
+_SET_VOLTAGE = re.compile(rb"SET VOLTAGE (-?\d+) (-?\d+)")
 INPUTS = {
     "silence": "send nothing to the host until `recover`",
     "deaf": "hear nothing from the host until `recover`",
@@ -35,7 +35,7 @@ INPUTS = {
     "unplug": "pull the cable",
     "replug": "put it back, under a new path (printed, and linked)",
     "recover": "undo the above but reset and unplug",
-    "trace": "print `wire`, the time and the upper voltage of each SET VOLTAGE from now on",
+    "trace": "print `wire`, the time and the voltages of each SET VOLTAGE from now on",
     "output": "print true voltages [V], ground contacts and highest magnitudes so far [V]",
     "quit": "end",
     "help": "print this list",
@@ -86,14 +86,16 @@ class VirtualSupply:
             data = data[:-3] + bytes([data[-3] ^ 1]) + data[-2:]
         if self._tracing:
             now_s = time.monotonic()
-            for voltage in _SET_VOLTAGE.findall(data):
-                self._tell(f"wire {now_s:.6f} {voltage.decode()}")
+            for upper, lower in _SET_VOLTAGE.findall(data):
+                self._tell(f"wire {now_s:.6f} {upper.decode()} {lower.decode()}")
         if not self._faults & {"deaf", "stuck"}:
             self.board.receive(data)
 
     def _advance(self) -> None:
         due_ms = int((time.monotonic() - self._ticked_s) * 1e3)
         self._ticked_s += due_ms * 1e-3
+        if due_ms > LATE_MS:
+            self._tell(f"late {due_ms * 1e-3:.3f}")
         for _ in range(min(due_ms, MOST_CATCH_UP_MS)):
             self.board.tick()
             self._watch_output()

@@ -1,6 +1,7 @@
 // Runs the sketch in simavr in real time, with two muscles on its pins and its serial port on a
 // pseudo-terminal. Standard input and output speak as those of `virtual_supply` do, and `contacts` tells how
-// often a source overlapped with the other or with ground, and the shortest gap between them [us].
+// often a source overlapped with the other or with ground, and the shortest gap between them [us]. `late` [s]
+// tells that the machine did not keep up with real time.
 #define _GNU_SOURCE
 #include <math.h>
 #include <poll.h>
@@ -19,19 +20,20 @@
 #include "port.h"
 #include "sim_avr.h"
 #include "sim_elf.h"
+#include "trace.h"
 
 enum { CHANNELS = 2, FREQUENCY_HZ = 16000000, TICK_CYCLES = 16000, BYTE_CYCLES = 1389 };
 enum { DDRB = 0x24, PORTB, DDRD = 0x2A, PORTD, TCCR1A = 0x80, OCR1A = 0x88, OCR1B = 0x8A };
 static const double LIVE_V = 50.0;
 static const uint32_t HANG_ADDRESS = 0x7F00;
-static const uint64_t MOST_LAG_CYCLES = FREQUENCY_HZ / 10;
+static const uint64_t LATE_CYCLES = FREQUENCY_HZ / 20, MOST_LAG_CYCLES = FREQUENCY_HZ / 10;
 
 static avr_t* avr;
 static avr_irq_t *analogue_irqs, *uart_irqs;
 static struct port port;
 static struct muscle muscles[CHANNELS];
 static double peaks_v[CHANNELS];
-static bool live, silent, deaf, noise, truncate_next, interlock_open, uart_full, host_present;
+static bool live, silent, deaf, noise, truncate_next, interlock_open, uart_full, host_present, tracing;
 static char received[4096];
 static size_t received_count;
 static char transmitted[4096];
@@ -147,6 +149,7 @@ static void exchange(void) {
     received[received_count + count - 3] ^= 1;
     noise = false;
   }
+  if (tracing) trace_commands(received + received_count, count, now_s());
   if (!deaf) received_count += count;
   if (truncate_next && transmitted_count > 1) {
     transmitted_count /= 2;
@@ -195,6 +198,7 @@ static bool obey(const char* word) {
   else if (!strcmp(word, "garbage")) send_garbage();
   else if (!strcmp(word, "unplug")) port_unplug(&port);
   else if (!strcmp(word, "replug")) port_unplug(&port), port_plug(&port);
+  else if (!strcmp(word, "trace")) tracing = true;
   else if (!strcmp(word, "output")) print_output();
   else if (!strcmp(word, "contacts")) printf("contacts %u %.0f\n", overlaps, shortest_gap / (FREQUENCY_HZ * 1e-6));
   else printf("unknown input %s\n", word);
@@ -274,6 +278,10 @@ int main(int count, char** arguments) {
   while (obey_input()) {
     exchange();
     uint64_t target = epoch_cycle + (uint64_t)((now_s() - epoch_s) * FREQUENCY_HZ);
+    if (target > avr->cycle + LATE_CYCLES) {
+      printf("late %.3f\n", (double)(target - avr->cycle) / FREQUENCY_HZ);
+      fflush(stdout);
+    }
     if (target > avr->cycle + MOST_LAG_CYCLES) {
       epoch_s = now_s();
       epoch_cycle = avr->cycle;

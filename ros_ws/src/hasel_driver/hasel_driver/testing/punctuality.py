@@ -8,7 +8,7 @@ TOLERANCE_S = 0.05
 
 
 class Punctuality:
-    """Measures in the background how late a thread is woken."""
+    """Measures in the background how late a thread is woken; others may add what they were late."""
 
     def __init__(self) -> None:
         self._late: list[tuple[float, float]] = []  # (when, how late) [s]
@@ -20,7 +20,11 @@ class Punctuality:
             time.sleep(PERIOD_S)
             awake_s = time.monotonic()
             if awake_s - asleep_s > PERIOD_S + TOLERANCE_S:
-                self._late.append((awake_s, awake_s - asleep_s - PERIOD_S))
+                self.note(awake_s - asleep_s - PERIOD_S)
+
+    def note(self, late_s: float) -> None:
+        """Something was late just now, by `late_s` [s]."""
+        self._late.append((time.monotonic(), late_s))
 
     def worst_since(self, begin_s: float) -> float:
         """Longest delay beyond the tolerance since `begin_s` (monotonic) [s]; 0 if there was none."""

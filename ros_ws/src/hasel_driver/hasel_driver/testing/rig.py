@@ -5,20 +5,25 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Callable
 
 VIRTUAL_SUPPLY = [sys.executable, "-m", "hasel_driver.virtual_supply"]
 
 
 class Rig:
-    """Starts `command`, which speaks as `virtual_supply` does on its standard input and output."""
+    """Starts `command`, which speaks as `virtual_supply` does on its standard input and output.
 
-    def __init__(self, command: list[str]) -> None:
+    `on_late` is told by how much the supply fell behind real time [s].
+    """
+
+    def __init__(self, command: list[str], on_late: Callable[[float], None] = lambda _: None) -> None:
+        self._on_late = on_late
         self._process = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1
         )
         self._answers: queue.Queue[list[str]] = queue.Queue()
         self._ports: queue.Queue[str] = queue.Queue()
-        self.wire: list[tuple[float, int]] = []  # (monotonic time [s], upper voltage [V]) after `trace`
+        self.wire: list[tuple[float, int, int]] = []  # (monotonic time [s], voltages [V]) after `trace`
         self.changes: list[tuple[float, bool]] = []  # (monotonic time [s], live)
         threading.Thread(target=self._listen, daemon=True).start()
         self.port = self._ports.get(timeout=10)
@@ -29,7 +34,9 @@ class Rig:
             if words[:1] in (["live"], ["dead"]):
                 self.changes.append((float(words[1]), words[0] == "live"))
             elif words[:1] == ["wire"]:
-                self.wire.append((float(words[1]), int(words[2])))
+                self.wire.append((float(words[1]), int(words[2]), int(words[3])))
+            elif words[:1] == ["late"]:
+                self._on_late(float(words[1]))
             elif words[:1] == ["port"]:
                 self._ports.put(words[1])
             elif words[:1] in (["output"], ["contacts"]):
@@ -63,10 +70,11 @@ class Rig:
             time.sleep(0.002)
         raise AssertionError(f"the output did not become {'live' if live else 'dead'} in {timeout_s} s")
 
-    def was_live_throughout(self, begin_s: float, end_s: float) -> bool:
-        """Whether the output was live from `begin_s` to `end_s` (monotonic) [s]."""
-        before = [live for time_s, live in self.changes if time_s <= begin_s]
-        within = [live for time_s, live in self.changes if begin_s < time_s <= end_s]
+    def refutes_dead_at(self, time_s: float, margin_s: float = 0.05) -> bool:
+        """Whether the output was live from `margin_s` before to `margin_s` after `time_s` (monotonic) [s]."""
+        begin_s, end_s = time_s - margin_s, time_s + margin_s
+        before = [live for change_s, live in self.changes if change_s <= begin_s]
+        within = [live for change_s, live in self.changes if begin_s < change_s <= end_s]
         return bool(before) and before[-1] and all(within)
 
     def close(self) -> None:
