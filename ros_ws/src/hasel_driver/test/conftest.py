@@ -1,15 +1,22 @@
 """Supplies to test against, the virtual one and the firmware in simavr, and drivers on them."""
 
+import random
 import shutil
 import subprocess
 import time
 from pathlib import Path
 
 import pytest
-from _pytest.runner import runtestprotocol
 from hasel_driver.testing.bench import Bench
 from hasel_driver.testing.conversation import Conversation
-from hasel_driver.testing.punctuality import Punctuality
+from hasel_driver.testing.hooks import (
+    GROUNDING_TIMES_S,
+    PUNCTUALITY,
+    pytest_configure,  # noqa: F401
+    pytest_generate_tests,  # noqa: F401
+    pytest_runtest_protocol,  # noqa: F401
+    pytest_terminal_summary,  # noqa: F401
+)
 from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Rig
 
 FIRMWARE = Path(__file__).parents[1] / "firmware"
@@ -19,26 +26,7 @@ NEEDED_FILES = {
     "libsimavr-dev": "/usr/include/simavr/sim_avr.h",
 }
 NEEDED_PROGRAMS = {"gcc-avr": "avr-g++", "gcc": "cc", "make": "make"}
-ATTEMPTS = 3
-PUNCTUALITY = Punctuality()
-
-
-def pytest_runtest_protocol(item, nextitem):
-    """Repeat a failed test against the clock if the machine itself was late meanwhile, and only then."""
-    if not {"rig", "virtual_rig", "firmware_rig", "shared_rig"} & set(item.fixturenames):
-        return None
-    item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
-    for attempt in range(1, ATTEMPTS + 1):
-        began_s = time.monotonic()
-        reports = runtestprotocol(item, nextitem=nextitem, log=False)
-        failed = any(report.failed for report in reports)
-        if not failed or attempt == ATTEMPTS or not PUNCTUALITY.worst_since(began_s):
-            break
-        item._initrequest()
-    for report in reports:
-        item.ihook.pytest_runtest_logreport(report=report)
-    item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
-    return True
+GROUNDED_WITHIN_S = 0.5
 
 
 @pytest.fixture(scope="session")
@@ -68,7 +56,7 @@ def rig_command(request) -> list[str]:
 @pytest.fixture
 def rig(rig_command):
     """A supply of each kind."""
-    rig = Rig(rig_command)
+    rig = Rig(rig_command, PUNCTUALITY.note)
     yield rig
     rig.close()
 
@@ -76,7 +64,7 @@ def rig(rig_command):
 @pytest.fixture
 def virtual_rig():
     """A virtual supply."""
-    rig = Rig(VIRTUAL_SUPPLY)
+    rig = Rig(VIRTUAL_SUPPLY, PUNCTUALITY.note)
     yield rig
     rig.close()
 
@@ -84,7 +72,7 @@ def virtual_rig():
 @pytest.fixture
 def firmware_rig(firmware_command):
     """The firmware in simavr."""
-    rig = Rig(firmware_command)
+    rig = Rig(firmware_command, PUNCTUALITY.note)
     yield rig
     rig.close()
 
@@ -95,6 +83,18 @@ def bench(rig):
     bench = Bench(rig)
     yield bench
     bench.close()
+
+
+@pytest.fixture
+def grounded_in_time(request):
+    """Asserts that a rig's output is dead within 500 ms of a moment (monotonic) [s]."""
+    times_s = GROUNDING_TIMES_S.setdefault(request.node.name, [])
+
+    def check(rig: Rig, since_s: float) -> None:
+        times_s.append(rig.await_live(False) - since_s)
+        assert times_s[-1] < GROUNDED_WITHIN_S
+
+    return check
 
 
 @pytest.fixture
@@ -149,7 +149,7 @@ def start_driver(ros):
 @pytest.fixture(scope="module")
 def shared_rig(rig_command):
     """A supply of each kind for all of a module's tests."""
-    rig = Rig(rig_command)
+    rig = Rig(rig_command, PUNCTUALITY.note)
     yield rig
     rig.close()
 
@@ -172,3 +172,28 @@ def driver(shared_process, shared_rig, ros):
     shared_process.to_standby()
     shared_rig.changes.clear()
     return shared_process
+
+
+@pytest.fixture
+def provoke(driver, shared_rig, ros, grounded_in_time):
+    """One fault while commands come: grounded in time, latched, truthful, and not brought back by more of them.
+
+    Its `how` may return the moment (monotonic) [s] of the fault, where that is not the begin.
+    """
+    from hasel_driver.mode import Mode
+
+    def inject(how, code) -> None:
+        driver.arm()
+        with ros.commanding():
+            ros.wait(lambda: shared_rig.live)
+            time.sleep(random.uniform(0.0, 0.03))  # meet the commands and the heartbeat at any phase
+            at_s = time.monotonic()
+            at_s = how() or at_s
+            grounded_in_time(shared_rig, at_s)
+            ros.wait(lambda: ros.state.fault_code == code)
+            assert not ros.trigger("arm").success
+            time.sleep(0.1)
+            assert (ros.state.mode, shared_rig.live) == (Mode.FAULT, False)
+        assert ros.false_claims(shared_rig, at_s) == []
+
+    return inject

@@ -177,7 +177,7 @@ def test_waveform_on_the_board_is_the_documented_one(board, shape, polarity, mus
     board.ask("ARM")
     before_us = board.report().time_us
     board.ask("START")
-    reports = board.listen(waveform.duration_s + 0.1)
+    reports = board.listen(waveform.duration_s + 0.3)
     assert ("WAVEFORM", "DONE") in [event.words for event in board.events]
     assert reports[-1].mode is Mode.ARMED
 
@@ -186,8 +186,8 @@ def test_waveform_on_the_board_is_the_documented_one(board, shape, polarity, mus
         errors = sorted(max(abs(a - b) for a, b in zip(*pair, strict=True)) for pair in pairs)
         return errors[int(0.9 * len(errors))]  # a report at a jump may fall on either side
 
-    # The start is known to some milliseconds: it must exist, and fit all reports at once.
-    assert min(deviation(before_us + 1000 * ms) for ms in range(-2, 40)) < 3000 * 0.02
+    # The start is known as well as this machine keeps time: it must exist, and fit all reports at once.
+    assert min(deviation(before_us + 1000 * ms) for ms in range(-2, 150)) < 3000 * 0.02
     assert max(abs(v) for r in reports for v in r.voltage) > 2500
 
 

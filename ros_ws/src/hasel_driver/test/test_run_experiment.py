@@ -1,11 +1,13 @@
 """The action: progress, recording, its completeness, and every way to end early."""
 
+import random
 import time
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hasel_driver.faults import FaultCode
 from hasel_interfaces.action import RunExperiment
 from hasel_interfaces.msg import BendingAngle
 from hasel_recording.mcap_file import read_file
@@ -87,17 +89,29 @@ def test_cancel_grounds_and_keeps_what_was_recorded(driver, shared_rig, ros, run
     ros.await_mode(ARMED)
 
 
-def test_emergency_stop_during_the_waveform(driver, shared_rig, ros, run):
-    """The stop grounds, the goal is aborted and says why."""
-    driver.arm()
-    _, _, end = run(periods=100)
-    shared_rig.await_live(True)
-    at_s = time.monotonic()
-    assert ros.trigger("emergency_stop").success
-    assert shared_rig.await_live(False) - at_s < 0.5
-    status, result = end()
-    assert (status, "emergency stop" in result.message.lower()) == (ABORTED, True)
-    ros.await_mode(FAULT)
+@pytest.mark.rounds(2, 25)
+@pytest.mark.parametrize("way", ["service", "topic"])
+def test_emergency_stop_during_the_waveform(driver, shared_rig, ros, run, grounded_in_time, way, rounds):
+    """The stop grounds at any phase, the goal is aborted and says why, and the waveform does not come back."""
+    for _ in range(rounds):
+        driver.arm()
+        _, _, end = run(periods=100)
+        shared_rig.await_live(True)
+        time.sleep(random.uniform(0.0, 0.5))
+        at_s = time.monotonic()
+        if way == "service":
+            assert ros.trigger("emergency_stop").success
+        else:
+            ros.emergency_stop_topic(True)
+        grounded_in_time(shared_rig, at_s)
+        status, result = end()
+        assert (status, "emergency stop" in result.message.lower()) == (ABORTED, True)
+        assert not ros.trigger("arm").success
+        assert (ros.await_mode(FAULT).fault_code, shared_rig.live) == (FaultCode.EMERGENCY_STOP, False)
+        assert ros.false_claims(shared_rig, at_s) == []
+        if way == "topic":
+            ros.emergency_stop_topic(False)
+        ros.wait(lambda: ros.trigger("clear_fault").success)
 
 
 def test_a_command_during_the_waveform_is_a_second_master(driver, shared_rig, ros, run):

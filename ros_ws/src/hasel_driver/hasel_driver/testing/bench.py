@@ -68,13 +68,22 @@ class Bench:
             time.sleep(0.01)
         return True
 
-    def false_claims(self, margin_s: float = 0.05) -> list[str]:
-        """Statuses that called the output grounded, or claimed STANDBY, while it was live in truth."""
+    def wait_until(self, condition: Callable[[], bool], timeout_s: float = 2.0) -> bool:
+        """Wait without a command until `condition()`; whether it came true."""
+        end_s = time.monotonic() + timeout_s
+        while not condition():
+            if time.monotonic() > end_s:
+                return False
+            time.sleep(0.002)
+        return True
+
+    def false_claims(self) -> list[str]:
+        """Statuses that called the output grounded, or claimed STANDBY or ARMED, while it was live in truth."""
         return [
             str(status)
             for status in list(self.statuses)
-            if (status.grounded or status.mode is Mode.STANDBY)
-            and self.rig.was_live_throughout(status.time_s - margin_s, status.time_s + margin_s)
+            if (status.grounded or status.mode in (Mode.STANDBY, Mode.ARMED))
+            and self.rig.refutes_dead_at(status.time_s)
         ]
 
     def close(self) -> None:

@@ -24,7 +24,8 @@ class DriverProcess:
             text=True,
         )
         self.log: list[str] = []
-        threading.Thread(target=lambda: self.log.extend(self.process.stdout), daemon=True).start()
+        self._reader = threading.Thread(target=lambda: self.log.extend(self.process.stdout), daemon=True)
+        self._reader.start()
 
     def arm(self) -> None:
         """From STANDBY; waits for the discovery time, and for publishers that are about to leave."""
@@ -55,3 +56,4 @@ class DriverProcess:
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
+        self._reader.join(timeout=5.0)

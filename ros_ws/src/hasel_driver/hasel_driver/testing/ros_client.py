@@ -2,8 +2,9 @@
 
 import threading
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from typing import Any
 
 import rclpy
@@ -18,16 +19,19 @@ from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
 from hasel_driver.limits import Voltages
+from hasel_driver.messages import OUTPUT_WORDS
 from hasel_driver.mode import Mode
+from hasel_driver.testing.rig import Rig
 
 LATCHED = QoSProfile(
     depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
 )
 ANSWER_TIMEOUT_S = 4.0
+COMMAND_PERIOD_S = 0.02
 
 
 class RosClient:
-    """One for a whole test run; `states` collects `/hasel/state`."""
+    """One for a whole test run; `states` collects `/hasel/state` and may be cleared, `heard` keeps the last."""
 
     def __init__(self) -> None:
         # A context of its own: other tests of the same process make theirs. The signal handlers are the test runner's.
@@ -35,7 +39,8 @@ class RosClient:
         rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
         self.node = rclpy.create_node("user", context=self._context)
         self.states: list[SupplyState] = []
-        self.node.create_subscription(SupplyState, "/hasel/state", self.states.append, 200)
+        self.heard: deque[SupplyState] = deque(maxlen=10_000)
+        self.node.create_subscription(SupplyState, "/hasel/state", self._take_state, 200)
         self.commands = self.node.create_publisher(Actuation, "/hasel/command", 1)
         self._stop = None
         self._clients: dict[str, Any] = {}
@@ -48,6 +53,10 @@ class RosClient:
         with suppress(ExternalShutdownException):
             self._executor.spin()
 
+    def _take_state(self, state: SupplyState) -> None:
+        self.states.append(state)
+        self.heard.append(state)
+
     def close(self) -> None:
         """Leave the graph."""
         self._executor.shutdown()
@@ -55,11 +64,14 @@ class RosClient:
         self.node.destroy_node()
         rclpy.try_shutdown(context=self._context)
 
-    def request(self, kind: type, name: str, request: Any) -> Any:
-        """Call a service and wait for its answer."""
+    def _client(self, kind: type, name: str) -> Any:
         if name not in self._clients:
             self._clients[name] = self.node.create_client(kind, name)
-        client = self._clients[name]
+        return self._clients[name]
+
+    def request(self, kind: type, name: str, request: Any) -> Any:
+        """Call a service and wait for its answer."""
+        client = self._client(kind, name)
         for _ in range(3):
             if client.wait_for_service(10.0):
                 future = client.call_async(request)
@@ -81,7 +93,7 @@ class RosClient:
 
     def illegal_transition(self, identifier: int) -> None:
         """Request a transition that will never be answered."""
-        client = self.node.create_client(ChangeState, "/hasel_driver/change_state")
+        client = self._client(ChangeState, "/hasel_driver/change_state")
         if not client.wait_for_service(5.0):
             raise AssertionError("there is no lifecycle service")
         request = ChangeState.Request()
@@ -94,6 +106,23 @@ class RosClient:
         message.header.stamp = (self.node.get_clock().now() - Duration(seconds=age_s)).to_msg()
         self.commands.publish(message)
 
+    @contextmanager
+    def commanding(self, voltage_v: Voltages = (3000.0, -2000.0)) -> Iterator[None]:
+        """Command at 50 Hz in the background."""
+        ended = threading.Event()
+
+        def publish() -> None:
+            while not ended.wait(COMMAND_PERIOD_S):
+                self.command(voltage_v)
+
+        thread = threading.Thread(target=publish, daemon=True)
+        thread.start()
+        try:
+            yield
+        finally:
+            ended.set()
+            thread.join()
+
     def drive(
         self,
         until: Callable[[], bool],
@@ -101,12 +130,8 @@ class RosClient:
         timeout_s: float = 3.0,
     ) -> None:
         """Command at 50 Hz until `until()`."""
-        end_s = time.monotonic() + timeout_s
-        while not until():
-            if time.monotonic() > end_s:
-                raise AssertionError(f"nothing came of the commands, the last state is {self.states[-1:]}")
-            self.command(voltage_v)
-            time.sleep(0.02)
+        with self.commanding(voltage_v):
+            self.wait(until, timeout_s)
 
     def emergency_stop_topic(self, stop: bool) -> None:
         """Publish on the latched topic."""
@@ -133,8 +158,22 @@ class RosClient:
                 raise AssertionError(f"waited {timeout_s} s in vain, the last state is {self.states[-1:]}")
             time.sleep(0.005)
 
+    def false_claims(self, rig: Rig, since_s: float) -> list[str]:
+        """States stamped after `since_s` (monotonic) [s] that claim no voltage while the output was live in truth."""
+        offset_s = time.time() - time.monotonic()
+        claims = [(_stamp_s(state) - offset_s, state) for state in list(self.heard) if _claims_dead(state)]
+        return [str(state) for time_s, state in claims if time_s >= since_s and rig.refutes_dead_at(time_s)]
+
     def await_mode(self, mode: Mode, timeout_s: float = 10.0) -> SupplyState:
         """Until a state published from now on has this mode; returns it."""
         self.states.clear()
         self.wait(lambda: bool(self.states) and self.states[-1].mode == mode, timeout_s)
         return self.states[-1]
+
+
+def _stamp_s(state: SupplyState) -> float:
+    return state.header.stamp.sec + state.header.stamp.nanosec * 1e-9
+
+
+def _claims_dead(state: SupplyState) -> bool:
+    return state.mode in (Mode.STANDBY, Mode.ARMED) or OUTPUT_WORDS["grounded"] in state.fault_text
