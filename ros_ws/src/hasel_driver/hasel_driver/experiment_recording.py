@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from hasel_recording.errors import RecordingError
 from hasel_recording.mcap_file import McapFile, read_file
 from hasel_recording.mcap_recorder import McapRecorder
 from hasel_recording.topics import STATE, TOPIC_TYPES
@@ -26,6 +27,8 @@ class ExperimentRecording:
     path: Path
     plan: ExperimentPlan
     required_topics: tuple[str, ...] = ()
+    problem: str | None = None  # why nothing more can be written
+    _closed: bool = False
     _recorder: McapRecorder = field(init=False)
     _last_ns: dict[str, int] = field(default_factory=dict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
@@ -48,15 +51,24 @@ class ExperimentRecording:
         )
 
     def write(self, topic: str, message: Any) -> None:
-        """Append a message at its header's stamp; one not later than the last of its topic is dropped."""
+        """Append a message at its header's stamp; one not later than the last of its topic is dropped.
+
+        A full disk is kept as `problem` and not raised: whoever writes has a supply to watch.
+        """
         stamp_ns = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
         with self._lock:
-            if stamp_ns > self._last_ns.get(topic, -1):
-                self._last_ns[topic] = stamp_ns
+            if self._closed or self.problem or stamp_ns <= self._last_ns.get(topic, -1):
+                return
+            self._last_ns[topic] = stamp_ns
+            try:
                 self._recorder.write(topic, message, stamp_ns)
+            except (OSError, RecordingError) as error:
+                self.problem = str(error)
 
     def close(self) -> None:
-        """Finish the file."""
+        """Finish the file; what is written afterwards is dropped. Raises RecordingError."""
+        with self._lock:
+            self._closed = True
         self._recorder.close()
 
     def missing(self, duration_s: float) -> list[str]:

@@ -1,8 +1,10 @@
 """The action `/hasel/run_experiment`: runs a plan, records it, and vouches for the recording."""
 
 import importlib
+import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 
@@ -17,6 +19,7 @@ from rclpy.node import Node
 from hasel_driver.errors import DriverError, RefusedError
 from hasel_driver.experiment import Experiment, ExperimentPlan
 from hasel_driver.experiment_recording import ExperimentRecording
+from hasel_driver.spinning import quiet_at_shutdown
 from hasel_driver.supply_thread import SupplyThread
 from hasel_driver.waveform import Waveform
 
@@ -31,6 +34,7 @@ class ExperimentServer:
         self._experiment: Experiment | None = None
         self._recording: ExperimentRecording | None = None
         self._watched: list = []
+        self._busy = threading.Lock()
         self._server = ActionServer(
             node,
             RunExperiment,
@@ -79,33 +83,41 @@ class ExperimentServer:
         return write
 
     def _accept(self, _: RunExperiment.Goal) -> GoalResponse:
-        return GoalResponse.REJECT if self._experiment is not None else GoalResponse.ACCEPT
+        return GoalResponse.REJECT if self._busy.locked() else GoalResponse.ACCEPT
 
     def _execute(self, goal_handle) -> RunExperiment.Result:
         result = RunExperiment.Result()
         try:
-            plan = _plan(goal_handle.request)
-            path = self._path(goal_handle.request)
-            experiment = self._run(plan, path, goal_handle)
-            result.recording = str(path)
-            problems = [experiment.failure] if experiment.failure else []
-            problems += self._recording_problems(experiment)
+            with self._alone():
+                plan = _plan(goal_handle.request)
+                path = self._path(goal_handle.request)
+                problems = self._run(plan, path, goal_handle)
+                result.recording = str(path)
         except (DriverError, RecordingError, OSError) as error:
             problems = [str(error)]
-        finally:
-            self._experiment = self._recording = None
         result.success = not problems
         result.message = "; ".join(problems) or f"Recorded {plan.duration_s:.2f} s in {path}."
-        if goal_handle.is_cancel_requested:
-            goal_handle.canceled()
-        elif result.success:
-            goal_handle.succeed()
-        else:
+        if problems:
             self._node.get_logger().error(f"The experiment failed: {result.message}")
-            goal_handle.abort()
+        with quiet_at_shutdown():
+            _conclude(goal_handle, result.success)
         return result
 
-    def _run(self, plan: ExperimentPlan, path: Path, goal_handle) -> Experiment:
+    @contextmanager
+    def _alone(self) -> Iterator[None]:
+        if not self._busy.acquire(blocking=False):
+            raise RefusedError("Another experiment is running: wait for its end, or cancel it.")
+        try:
+            yield
+        finally:
+            self._experiment = None
+            recording, self._recording = self._recording, None
+            self._busy.release()
+            if recording is not None:
+                recording.close()
+
+    def _run(self, plan: ExperimentPlan, path: Path, goal_handle) -> list[str]:
+        """What went wrong, in words; nothing if the run and its recording are complete."""
         thread = self._thread()
         if thread is None:
             raise RefusedError("The port is closed: configure the node (lifecycle) first.")
@@ -113,26 +125,24 @@ class ExperimentServer:
         experiment = Experiment(plan, thread.supervisor, time.monotonic)
         thread.call(experiment.begin).result(timeout=5.0)
         try:
-            self._recording = ExperimentRecording(path, plan, topics)
+            recording = self._recording = ExperimentRecording(path, plan, topics)
         except (OSError, RecordingError):
             thread.call(experiment.cancel)
             raise
         self._experiment = experiment
         while not experiment.finished:
-            if goal_handle.is_cancel_requested:
+            if goal_handle.is_cancel_requested or recording.problem:
                 thread.call(experiment.cancel)
             if not thread.is_alive():
                 raise RefusedError("The supply's thread has ended; the board grounds itself.")
-            goal_handle.publish_feedback(_feedback(experiment))
+            with quiet_at_shutdown():
+                goal_handle.publish_feedback(_feedback(experiment))
             time.sleep(FEEDBACK_PERIOD_S)
-        return experiment
-
-    def _recording_problems(self, experiment: Experiment) -> list[str]:
-        recording = self._recording
-        self._recording = None
+        if recording.problem:
+            raise RecordingError(recording.problem)
         recording.close()
         if experiment.failure:
-            return []
+            return [experiment.failure]
         return [f"the recording lacks: {text}" for text in recording.missing(experiment.elapsed_s)]
 
     def _path(self, goal: RunExperiment.Goal) -> Path:
@@ -147,6 +157,15 @@ class ExperimentServer:
 def _message_class(type_name: str) -> type:
     package, kind, name = type_name.split("/")
     return getattr(importlib.import_module(f"{package}.{kind}"), name)
+
+
+def _conclude(goal_handle, success: bool) -> None:
+    if goal_handle.is_cancel_requested:
+        goal_handle.canceled()
+    elif success:
+        goal_handle.succeed()
+    else:
+        goal_handle.abort()
 
 
 def _plan(goal: RunExperiment.Goal) -> ExperimentPlan:

@@ -127,17 +127,6 @@ def test_two_masters(driver, provoke, ros, rounds):
             assert (answer.success, "More than one node publishes" in answer.message) == (False, True)
 
 
-def test_a_second_driver_cannot_open_the_port(start_driver, virtual_rig, ros):
-    """The first has it alone and goes on; the second says what is wrong."""
-    first = start_driver(virtual_rig.port)
-    first.arm()
-    with ros.commanding():
-        ros.wait(lambda: virtual_rig.live)
-        second = start_driver(virtual_rig.port)
-        ros.wait(lambda: any("another program has it open" in line for line in second.log), 10.0)
-        assert virtual_rig.live
-
-
 def test_parameters_are_checked(driver, ros):
     """A value out of range, or a change while the port is open, is refused with its reason."""
     from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue

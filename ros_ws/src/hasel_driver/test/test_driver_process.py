@@ -69,6 +69,34 @@ def test_ended_node(start_driver, virtual_rig, ros, grounded_in_time, number, ro
 
 
 @pytest.mark.rounds(1, 15)
+def test_ended_during_an_experiment(start_driver, virtual_rig, ros, tmp_path, grounded_in_time, rounds):
+    """Ctrl-C in the middle of a run grounds, and what was recorded can be read."""
+    from hasel_interfaces.action import RunExperiment
+    from hasel_recording.mcap_file import read_file
+    from rclpy.action import ActionClient
+
+    client = ActionClient(ros.node, RunExperiment, "/hasel/run_experiment")
+    for index in range(rounds):
+        path = tmp_path / f"{index}.mcap"
+        driver = start_driver(virtual_rig.port)
+        driver.arm()
+        assert client.wait_for_server(10.0)
+        client.send_goal_async(
+            RunExperiment.Goal(voltage=3000.0, frequency=1.0, periods=100, output=str(path))
+        )
+        ros.wait(lambda: virtual_rig.live)
+        time.sleep(random.uniform(0.2, 0.4))
+        ended_s = time.monotonic()
+        driver.process.send_signal(signal.SIGINT)
+        grounded_in_time(virtual_rig, ended_s)
+        assert driver.process.wait(5.0) == 0
+        driver.close()
+        assert "Traceback" not in "".join(driver.log)
+        assert len(read_file(path).messages["/hasel/state"]) > 5
+    client.destroy()
+
+
+@pytest.mark.rounds(1, 15)
 def test_pulled_cable(start_driver, virtual_rig, ros, tmp_path, grounded_in_time, rounds):
     """State and diagnostics say that nothing is known; only clear_fault connects again, to STANDBY."""
     link = tmp_path / "supply"
@@ -96,6 +124,17 @@ def test_pulled_cable(start_driver, virtual_rig, ros, tmp_path, grounded_in_time
             ros.await_mode(STANDBY)
             assert not virtual_rig.live
         assert ros.false_claims(virtual_rig, pulled_s) == []
+
+
+def test_a_second_driver_cannot_open_the_port(start_driver, virtual_rig, ros):
+    """The first has it alone and goes on; the second says what is wrong."""
+    first = start_driver(virtual_rig.port)
+    first.arm()
+    with ros.commanding():
+        ros.wait(lambda: virtual_rig.live)
+        second = start_driver(virtual_rig.port)
+        ros.wait(lambda: any("another program has it open" in line for line in second.log), 10.0)
+        assert virtual_rig.live
 
 
 def test_missing_port_is_said_in_one_sentence(start_driver, ros):

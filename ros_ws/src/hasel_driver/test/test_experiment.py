@@ -1,6 +1,7 @@
 """Experiments and the completeness of their recordings, without ROS or hardware."""
 
 import math
+import re
 from types import SimpleNamespace
 
 import pytest
@@ -9,6 +10,7 @@ from hasel_driver.experiment import Experiment, ExperimentPlan
 from hasel_driver.experiment_recording import ExperimentRecording
 from hasel_driver.mode import Mode
 from hasel_driver.waveform import Waveform
+from hasel_recording.errors import RecordingError
 
 STATE, MEASURED = "/hasel/state", "/hasel/bending/measured"
 PLAN = ExperimentPlan(Waveform("box", 3000.0, 2.0, 3, polarity="alternating"), rest_s=0.5)
@@ -112,6 +114,34 @@ def record(tmp_path):
         return recording.missing(PLAN.duration_s)
 
     return write
+
+
+def test_a_full_disk_is_kept_as_the_problem(tmp_path):
+    """Writing goes on without an error for whoever writes; closing tells it."""
+    pytest.importorskip("hasel_interfaces", reason="the workspace is not built")
+    from hasel_interfaces.msg import SupplyState
+
+    path = tmp_path / "run.mcap"
+    path.symlink_to("/dev/full")
+    recording, message = ExperimentRecording(path, PLAN), SupplyState()
+    while recording.problem is None:
+        message.header.stamp.sec += 1
+        recording.write(STATE, message)
+    recording.write(STATE, message)
+    assert re.search("space|written", recording.problem)
+    with pytest.raises(RecordingError, match="could not be finished"):
+        recording.close()
+
+
+def test_what_comes_after_the_end_is_dropped(tmp_path):
+    """The last state may cross the end of the run."""
+    pytest.importorskip("hasel_interfaces", reason="the workspace is not built")
+    from hasel_interfaces.msg import SupplyState
+
+    recording = ExperimentRecording(tmp_path / "run.mcap", PLAN)
+    recording.close()
+    recording.write(STATE, SupplyState())
+    assert recording.missing(PLAN.duration_s) == [f"no message of {STATE}"]
 
 
 def test_a_complete_recording_lacks_nothing(record):

@@ -1,6 +1,7 @@
 """The action: progress, recording, its completeness, and every way to end early."""
 
 import random
+import re
 import time
 from itertools import pairwise
 from pathlib import Path
@@ -137,6 +138,28 @@ def test_fails_when_the_recording_lacks_a_topic(driver, ros, run):
         ros.node.destroy_publisher(publisher)
     assert (status, result.success) == (ABORTED, False)
     assert "no message of /hasel/bending/measured" in result.message
+
+
+def test_a_full_disk_ends_the_run(driver, shared_rig, ros, run, tmp_path):
+    """It is told, the output goes to zero, and the driver lives on."""
+    path = tmp_path / "full.mcap"
+    path.symlink_to("/dev/full")
+    driver.arm()
+    _, _, end = run(periods=1000, output=str(path))
+    status, result = end()
+    assert (status, result.success) == (ABORTED, False)
+    assert re.search("written|finished", result.message)
+    ros.await_mode(ARMED)
+    assert not shared_rig.live
+
+
+def test_one_experiment_at_a_time(driver, ros, run):
+    """A second goal is rejected while one runs, and does not disturb it."""
+    driver.arm()
+    first, second = run(rest_time=1.0), run()
+    assert (first[0].accepted, second[0].accepted) == (True, False)
+    status, result = first[-1]()
+    assert (status, result.success) == (SUCCEEDED, True), result.message
 
 
 REFUSALS = {

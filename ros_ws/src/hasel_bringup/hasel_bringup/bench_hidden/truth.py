@@ -17,7 +17,7 @@ class TruthNumerics:
     mesh_density: float
     quadrature_order: int
     steps_per_second: float = 960.0
-    spectral_radius: float = 1.0
+    spectral_radius: float = 0.8
 
     def applied(self, model: Model) -> Model:
         """The model on this discretisation."""

@@ -86,7 +86,12 @@ class Stepper:
                 line = self.system.linearise(motion, drive, memory)
                 if iteration == 0 and self._stress is not None:
                     line.with_initial_stress(self.system.second_piola(motion, drive, memory), self._stress)
-                self.factorise(line, c)
+                try:
+                    self.factorise(line, c)
+                except (
+                    SimulationError
+                ):  # a guess that turns an element inside out says nothing of the next guess
+                    return None
             correction = self._factors.solve(self.system.residual(motion, drive, memory)[None])[0]
             acceleration -= correction
             size = c.end_position * float(np.abs(correction).max())

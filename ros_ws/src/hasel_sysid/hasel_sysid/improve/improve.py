@@ -17,8 +17,10 @@ from hasel_sysid.problem import Problem
 _EXPLAINED = 0.9
 """Share of the baseline's error above the noise that accepted effects must remove to be an explanation."""
 _PARTLY = 0.6
-_ENOUGH = 0.01
+_ENOUGH = 0.03
 """Less than this share of the error left is no reason to look for another effect."""
+_NOISE = 1.03
+"""A mean error up to this many times the noise's is noise."""
 _LEAST_GAIN = 0.03
 """An effect must lower the sum of squares by this share: less is not worth a parameter."""
 
@@ -49,7 +51,7 @@ def improve(
         stages[-1] = replace(stages[-1], diagnosis=found)
         if on_stage:
             on_stage(stages[-1])
-        accepted, reason = _accepted(stages[-1].fit, found)
+        accepted, reason = _accepted(stages[-1], found)
         if accepted is None:
             break
         refit = exchanged(problem, stages, accepted)
@@ -59,7 +61,9 @@ def improve(
             break
         left = _left_over(stages)
         if left < _ENOUGH:
-            reason = f"After adding {accepted.effect}, {left:.1%} of the squared error above the noise is left: enough."
+            reason = (
+                f"After adding {accepted.effect}, {left:.1%} of the error above the noise is left: enough."
+            )
             break
     if stages[-1].diagnosis is None and on_stage:
         on_stage(stages[-1])
@@ -91,11 +95,13 @@ def _stage(fit: FitResult, first: Model, validation: Problem | None) -> Stage:
     return Stage(added, fit, error)
 
 
-def _accepted(fit: FitResult, found: Diagnosis) -> tuple[Finding | None, str]:
-    """The finding to act on, or None and the reason."""
+def _accepted(stage: Stage, found: Diagnosis) -> tuple[Finding | None, str]:
+    """The finding to act on after a stage, or None and the reason."""
+    fit, added = stage.fit, stage.effects
     candidates = [f for f in found.findings if f.verdict is Verdict.MISSING and f.fit is not None]
     if found.p_value >= SIGNIFICANT:
-        return None, f"Nothing is missing: noise alone looks like this in {found.p_value:.0%} of cases."
+        what = "What is left is noise" if added else "Nothing is missing"
+        return None, f"{what}: noise alone looks like this in {found.p_value:.0%} of cases."
     numerics = {name: share for name, share in found.suspects.items() if share > max(0.5, found.explained)}
     if numerics:
         name = max(numerics, key=numerics.get)
@@ -136,15 +142,18 @@ def _none_convinces(found: Diagnosis) -> str:
 
 def _is_noise(fit: FitResult, found: Diagnosis) -> bool:
     """Whether what is left is no more than the noise of the diagnosis before."""
-    return fit.mean_absolute_error <= 1.03 * found.noise.mean_absolute
+    return fit.mean_absolute_error <= _NOISE * found.noise.mean_absolute
 
 
 def _left_over(stages: list[Stage]) -> float:
-    """Share of the baseline's sum of squares above the noise that the last stage leaves, 0 to 1."""
+    """Share of the baseline's mean error above the noise that the last stage leaves, 0 to 1.
+
+    Of the mean |Δ sin θ|, not of its square, which would call a law of the wrong shape an explanation.
+    """
     found = next(stage.diagnosis for stage in reversed(stages) if stage.diagnosis is not None)
-    base, left = (stage.fit.evaluation for stage in (stages[0], stages[-1]))
-    floor = len(base.residual) * found.noise.standard_deviation**2
-    return float(np.clip((left.sum_of_squares - floor) / max(base.sum_of_squares - floor, 1e-12), 0.0, 1.0))
+    base, left = (stage.fit.mean_absolute_error for stage in (stages[0], stages[-1]))
+    floor = _NOISE * found.noise.mean_absolute
+    return float(np.clip((left - floor) / max(base - floor, 1e-12), 0.0, 1.0))
 
 
 def _conclude(stages: list[Stage], reason: str) -> Improvement:
@@ -152,12 +161,13 @@ def _conclude(stages: list[Stage], reason: str) -> Improvement:
     last = next(stage.diagnosis for stage in reversed(stages) if stage.diagnosis is not None)
     unexplained = _left_over(stages)
     added = stages[-1].effects
+    rest = stages[-1].diagnosis
     if first.p_value >= SIGNIFICANT:
         status, unexplained = Status.NOTHING_MISSING, 0.0
     elif not added:
         nothing = reason.startswith("Nothing that matters")
         status = Status.NOTHING_MISSING if nothing else Status.UNEXPLAINED
-    elif unexplained <= 1 - _EXPLAINED:
+    elif unexplained <= 1 - _EXPLAINED or (rest is not None and rest.p_value >= SIGNIFICANT):
         status = Status.EXPLAINED
     else:
         status = Status.PARTLY_EXPLAINED if unexplained <= 1 - _PARTLY else Status.UNEXPLAINED

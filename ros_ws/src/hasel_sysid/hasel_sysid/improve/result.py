@@ -44,8 +44,8 @@ class Stage:
 class Improvement:
     """All stages and what they come to.
 
-    stages: baseline first; missing: effects found missing; unexplained_fraction: of the baseline's error above the
-    noise, in squares; reason: why the improvement stopped, in a sentence.
+    stages: baseline first; missing: effects found missing; unexplained_fraction: of the baseline's mean
+    |Δ sin θ| above the noise; reason: why the improvement stopped, in a sentence.
     """
 
     stages: list[Stage]

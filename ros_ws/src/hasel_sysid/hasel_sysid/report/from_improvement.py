@@ -83,7 +83,7 @@ def _key_numbers(improvement: Improvement, comparisons: Sequence[Comparison]) ->
         KeyNumber(error_text(improvement.noise_floor), "noise floor", "what a perfect model would leave")
     )
     explained = percent(1 - improvement.unexplained_fraction)
-    numbers.append(KeyNumber(explained, "explained", "of the squared error above the noise"))
+    numbers.append(KeyNumber(explained, "explained", "of the error above the noise"))
     return tuple(numbers)
 
 
@@ -117,7 +117,7 @@ def _values(comparison: Comparison, effect: str) -> str:
 
 def _remains(improvement: Improvement) -> tuple[str, ...]:
     last = improvement.stages[-1].diagnosis
-    left = f"{improvement.unexplained_fraction:.0%} of the baseline's squared error above the noise is left."
+    left = f"{improvement.unexplained_fraction:.0%} of the baseline's error above the noise is left."
     return (left, *(() if last is None else what_remains(last)))
 
 
