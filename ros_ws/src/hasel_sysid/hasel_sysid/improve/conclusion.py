@@ -1,0 +1,47 @@
+"""What the stages of an improvement come to."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hasel_sysid.diagnosis.judgement import SIGNIFICANT
+from hasel_sysid.improve.result import Improvement, Stage, Status
+
+EXPLAINED = 0.9
+"""Share of the baseline's error above the noise that accepted effects must remove to be an explanation."""
+_PARTLY = 0.6
+NOISE = 1.03
+"""A mean error up to this many times the noise's is noise."""
+
+
+def left_over(stages: Sequence[Stage]) -> float:
+    """Share of the baseline's mean error above the noise that the last stage leaves, 0 to 1.
+
+    Of the mean |Δ sin θ|, not of its square, which would call a law of the wrong shape an explanation.
+    """
+    found = next(stage.diagnosis for stage in reversed(stages) if stage.diagnosis is not None)
+    base, left = (stage.fit.mean_absolute_error for stage in (stages[0], stages[-1]))
+    floor = NOISE * found.noise.mean_absolute
+    return float(np.clip((left - floor) / max(base - floor, 1e-12), 0.0, 1.0))
+
+
+def conclude(stages: Sequence[Stage], reason: str, negligible: bool = False) -> Improvement:
+    """The verdict on all stages, baseline first.
+
+    reason: why the last one is the last; negligible: whether all that could be added would hardly matter.
+    """
+    first = stages[0].diagnosis
+    last = next(stage.diagnosis for stage in reversed(stages) if stage.diagnosis is not None)
+    unexplained = left_over(stages)
+    added = stages[-1].effects
+    rest = stages[-1].diagnosis
+    if first.p_value >= SIGNIFICANT:
+        status, unexplained = Status.NOTHING_MISSING, 0.0
+    elif not added:
+        status = Status.NOTHING_MISSING if negligible else Status.UNEXPLAINED
+    elif unexplained <= 1 - EXPLAINED or (rest is not None and rest.p_value >= SIGNIFICANT):
+        status = Status.EXPLAINED
+    else:
+        status = Status.PARTLY_EXPLAINED if unexplained <= 1 - _PARTLY else Status.UNEXPLAINED
+    missing = added if status in (Status.EXPLAINED, Status.PARTLY_EXPLAINED) else ()
+    return Improvement(list(stages), status, missing, unexplained, last.noise.mean_absolute, reason)

@@ -1,0 +1,60 @@
+"""Whether a diagnosis gives reason to add an effect."""
+
+from dataclasses import dataclass
+
+from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict
+from hasel_sysid.diagnosis.judgement import SIGNIFICANT
+from hasel_sysid.diagnosis.left_out import left_out_squares
+from hasel_sysid.improve.conclusion import EXPLAINED
+from hasel_sysid.improve.result import Stage
+
+_LEAST_GAIN = 0.03
+"""An effect must lower the sum of squares by this share: less is not worth a parameter."""
+
+
+@dataclass(frozen=True)
+class Decision:
+    """accepted: what to add, or None and the reason; negligible: whether what could be added would hardly matter."""
+
+    accepted: Finding | None
+    reason: str = ""
+    negligible: bool = False
+
+
+def decide(stage: Stage, found: Diagnosis) -> Decision:
+    """What to do after a stage whose left-over error has been diagnosed."""
+    if found.p_value >= SIGNIFICANT:
+        what = "What is left is noise" if stage.effects else "Nothing is missing"
+        return Decision(None, f"{what}: noise alone looks like this in {found.p_value:.0%} of cases.")
+    numerics = {name: share for name, share in found.suspects.items() if share > max(0.5, found.explained)}
+    if numerics:
+        name = max(numerics, key=numerics.get)
+        what = f"The {name.replace('_', ' ')} explains {numerics[name]:.0%} of what is left"
+        return Decision(None, f"{what}: refine it first.")
+    candidates = [f for f in found.findings if f.verdict is Verdict.MISSING and f.fit is not None]
+    if not candidates:
+        return Decision(None, _none_convinces(found))
+    best, before = candidates[0], stage.fit.evaluation
+    after = best.fit.evaluation
+    gain = 1 - after.sum_of_squares / before.sum_of_squares
+    if gain < _LEAST_GAIN:
+        what = f"{best.effect} would lower the squared error by {gain:.1%}"
+        return Decision(None, f"Nothing that matters is missing: {what}.", negligible=True)
+    if left_out_squares(after) >= left_out_squares(before):
+        what = f"{best.effect} fits better but predicts runs left out of the fit worse"
+        return Decision(None, f"{what}: it is not accepted.")
+    return Decision(best)
+
+
+def _none_convinces(found: Diagnosis) -> str:
+    """Why no effect is accepted although something is missing."""
+    learned = f"a learned model of the residual {found.ceiling:.0%}"
+    if found.explained < EXPLAINED:
+        return (
+            f"None of the listed effects explains what is left: the best removes {found.explained:.0%} of the error "
+            f"above the noise, {learned}."
+        )
+    return (
+        f"None of the listed effects explains what is left with a plausible value: one removes {found.explained:.0%} "
+        f"of the error above the noise, but only at the edge of its range; {learned}."
+    )

@@ -1,0 +1,49 @@
+"""What the stages of an improvement come to."""
+
+from types import SimpleNamespace
+
+import pytest
+from hasel_sysid.improve import Stage, Status
+from hasel_sysid.improve.conclusion import conclude, left_over
+
+FLOOR = 0.0024
+SOMETHING, NOISE = 0.002, 0.6
+
+
+def stage(error, *effects, chance=None):
+    """A stage with a mean error; chance: of noise alone looking like what it leaves, None if nobody looked."""
+    diagnosis = chance and SimpleNamespace(p_value=chance, noise=SimpleNamespace(mean_absolute=FLOOR))
+    return Stage(effects, SimpleNamespace(mean_absolute_error=error), None, diagnosis)
+
+
+@pytest.mark.parametrize(
+    ("stages", "status", "missing"),
+    [
+        ([stage(0.0025, chance=NOISE)], Status.NOTHING_MISSING, ()),
+        ([stage(0.0444, chance=SOMETHING)], Status.UNEXPLAINED, ()),
+        ([stage(0.0444, chance=SOMETHING), stage(0.0025, "drag")], Status.EXPLAINED, ("drag",)),
+        ([stage(0.0444, chance=SOMETHING), stage(0.0040, "drag")], Status.EXPLAINED, ("drag",)),
+        # 98 % of the squared error, but what is left is three times the noise
+        ([stage(0.0444, chance=SOMETHING), stage(0.0077, "drag")], Status.PARTLY_EXPLAINED, ("drag",)),
+        ([stage(0.0444, chance=SOMETHING), stage(0.0280, "drag")], Status.UNEXPLAINED, ()),
+        # a weak effect: the share left is no more than the uncertainty of the noise
+        ([stage(0.0030, chance=SOMETHING), stage(0.0026, "a", chance=NOISE)], Status.EXPLAINED, ("a",)),
+        (
+            [stage(0.0030, chance=SOMETHING), stage(0.0026, "a", chance=SOMETHING)],
+            Status.PARTLY_EXPLAINED,
+            ("a",),
+        ),
+    ],
+)
+def test_status_follows_from_the_mean_error_above_the_noise(stages, status, missing):
+    """Explained is what removes nine tenths of it, or leaves what is found to be noise."""
+    found = conclude(stages, "why")
+    assert (found.status, found.missing) == (status, missing)
+
+
+def test_left_over_is_a_share_of_the_baselines_error_above_the_noise():
+    """One for the baseline, none at the noise, in proportion between."""
+    first = stage(0.0424, chance=SOMETHING)
+    assert left_over([first]) == 1.0
+    assert left_over([first, stage(FLOOR, "a")]) == 0.0
+    assert left_over([first, stage(0.0224, "a")]) == pytest.approx(0.5, abs=0.01)
