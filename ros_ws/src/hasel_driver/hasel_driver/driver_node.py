@@ -162,7 +162,8 @@ class DriverNode(LifecycleNode):
     # What the services ask for
 
     def _check_arming(self) -> None:
-        if not self._lifecycle_active:
+        thread = self._thread
+        if not self._lifecycle_active or thread is None:
             raise RefusedError("The node is not active: activate it (lifecycle) first.")
         if self._stop_asserted:
             raise RefusedError("The emergency stop topic says true: publish false, then clear the fault.")
@@ -175,8 +176,7 @@ class DriverNode(LifecycleNode):
             )
         if self.count_publishers("/hasel/command") > 1:
             raise RefusedError("More than one node publishes /hasel/command: stop all but one, then arm.")
-        deadman = self._thread.supervisor.capabilities.deadman
-        if not deadman and not self.get_parameter("accept_no_deadman").value:
+        if not thread.supervisor.capabilities.deadman and not self.get_parameter("accept_no_deadman").value:
             raise RefusedError(
                 "This supply stays live when its host dies:"
                 " set the parameter accept_no_deadman if that is acceptable."

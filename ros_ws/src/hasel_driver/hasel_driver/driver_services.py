@@ -48,9 +48,13 @@ class DriverServices:
     def arm(self) -> str:
         """STANDBY to ARMED."""
         thread = self._require_thread()
-        self._check_arming()
         supervisor = thread.supervisor
-        _result(thread.call(supervisor.arm))
+
+        def arm_if_allowed() -> None:  # in the thread, so that no stop or deactivation comes between
+            self._check_arming()
+            supervisor.arm()
+
+        _result(thread.call(arm_if_allowed))
         decided = thread.expect(
             lambda: supervisor.status().mode is Mode.ARMED or not supervisor.armed, PROOF_TIMEOUT_S
         )

@@ -11,6 +11,7 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from typing import Any
 
+from hasel_driver.errors import RefusedError
 from hasel_driver.faults import Fault, FaultCode
 from hasel_driver.status import Status
 from hasel_driver.supervisor import Supervisor
@@ -19,6 +20,7 @@ from hasel_driver.supply import Supply
 LOOP_PERIOD_S = 0.01
 STATUS_PERIOD_S = 0.1  # when no readings come
 HOST_STALL_S = 0.3
+ENDED = "The supply's thread has ended: clean up and configure the node."
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,7 @@ class SupplyThread(threading.Thread):
         os.set_blocking(self._wake_writer, False)
         self._host_alive_s: dict[str, float] = {}
         self._stopping = False
+        self._ended = threading.Event()
         self._status_s = 0.0
 
     def call(self, request: Callable[[], Any]) -> Future:
@@ -56,13 +59,16 @@ class SupplyThread(threading.Thread):
         future: Future = Future()
         self._requests.put((request, future))
         self._wake()
+        if self._ended.is_set():
+            self._refuse_requests()
         return future
 
     def expect(self, condition: Callable[[], bool], timeout_s: float) -> Future:
         """A future that becomes True once `condition` holds, False after `timeout_s`."""
         future: Future = Future()
         deadline_s = time.monotonic() + timeout_s
-        self.call(lambda: self._expectations.append(_Expectation(condition, deadline_s, future)))
+        begun = self.call(lambda: self._expectations.append(_Expectation(condition, deadline_s, future)))
+        begun.add_done_callback(lambda done: done.exception() and future.set_exception(done.exception()))
         return future
 
     def host_is_alive(self, part: str) -> None:
@@ -84,11 +90,19 @@ class SupplyThread(threading.Thread):
         finally:
             self.supervisor.disconnect()
             os.close(self._wake_reader)
-            self._wake_reader = -1
+            self._ended.set()
+            self._refuse_requests()
+            for expectation in self._expectations:
+                expectation.future.set_exception(RefusedError(ENDED))
 
     def _wake(self) -> None:
         with contextlib.suppress(BlockingIOError, BrokenPipeError):  # awake already, or ended
             os.write(self._wake_writer, b"w")
+
+    def _refuse_requests(self) -> None:
+        with contextlib.suppress(queue.Empty):
+            while True:
+                self._requests.get_nowait()[1].set_exception(RefusedError(ENDED))
 
     def _wait(self) -> None:
         descriptors = [self._wake_reader, *self._supply.descriptors()]
