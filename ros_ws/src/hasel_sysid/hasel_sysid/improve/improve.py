@@ -14,7 +14,7 @@ from hasel_sysid.improve.result import Improvement, Stage
 from hasel_sysid.problem import Problem
 
 _ENOUGH = 0.03
-"""Less than this share of the error left is no reason to look for another effect."""
+"""With one run none can be left out to test a small effect: then less than this share of the error left is enough."""
 
 Progress = Callable[[str, float], None]
 OnStage = Callable[[Stage], None]
@@ -53,9 +53,10 @@ def improve(
             reason = f"What is left after adding {accepted.effect} is noise."
             break
         left = left_over(stages)
-        if left < _ENOUGH:
+        if left < _ENOUGH and len(problem.experiments) == 1:
             reason = (
-                f"After adding {accepted.effect}, {left:.1%} of the error above the noise is left: enough."
+                f"After adding {accepted.effect}, {left:.1%} of the error above the noise is left: with one run, "
+                "too little to find another effect in."
             )
             break
     if stages[-1].diagnosis is None and on_stage:
