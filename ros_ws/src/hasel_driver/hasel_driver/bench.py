@@ -58,46 +58,56 @@ def grounding_times(client: RosClient, rig: Rig, count: int) -> list[float]:
     return times_s
 
 
-def report(name: str, values_s: Sequence[float], bar_s: float, percentile: float) -> str:
-    """One line: median, high percentile or maximum, and the bar."""
+def report(name: str, values_s: Sequence[float], bar_s: float, percentile: float) -> tuple[str, bool]:
+    """One line with median, high percentile or maximum, and the bar; and whether it is met."""
     high_s = float(np.percentile(values_s, percentile))
     label = "maximum" if percentile == 100 else f"{percentile:g}th percentile"
-    verdict = "met" if high_s <= bar_s else "MISSED"
-    return (
+    met = high_s <= bar_s
+    line = (
         f"{name}: median {1e3 * float(np.median(values_s)):.2f} ms, {label} {1e3 * high_s:.2f} ms"
-        f" (bar {1e3 * bar_s:g} ms: {verdict}; n = {len(values_s)})"
+        f" (bar {1e3 * bar_s:g} ms: {'met' if met else 'MISSED'}; n = {len(values_s)})"
     )
+    return line, met
 
 
-def main() -> None:
-    """Command line."""
-    parser = argparse.ArgumentParser(prog="bench", description=__doc__.splitlines()[0])
-    parser.add_argument("--commands", type=int, default=1000, help="commands for the latency")
-    parser.add_argument("--kills", type=int, default=5, help="nodes to be killed")
-    arguments = parser.parse_args()
-    client, rig = RosClient(), Rig(VIRTUAL_SUPPLY)
+def measure(client: RosClient, rig: Rig, commands: int, kills: int) -> bool:
+    """Measure and print; whether every bar is met."""
     driver = DriverProcess(client, rig.port)
     try:
         driver.arm()
         rig.say("trace")
-        measured_s = latencies(client, rig, arguments.commands)
+        measured_s = latencies(client, rig, commands)
         rate_hz = command_rate(client, rig, FLAT_OUT_S)
-        driver.close()
-        print(report("driver, command to wire", measured_s, LATENCY_BAR_S, 99))
-        length = len(protocol.encode_command(0, "SET", "VOLTAGE", 6000, -6000))
-        print(
-            f"driver, command rate: {rate_hz:.0f} /s; a line of {length} characters takes"
-            f" {10e3 * length / BAUD:.1f} ms more at {BAUD} baud, which carries {BAUD / 10 / length:.0f} /s"
-        )
-        grounded_s = grounding_times(client, rig, arguments.kills)
-        print(report("driver, node killed to output grounded", grounded_s, GROUNDED_BAR_S, 100))
-    except AssertionError as failure:
-        sys.exit(f"The measurement failed: {failure}; try again on a machine with less to do.")
     finally:
         driver.close()
+    latency, fast = report("driver, command to wire", measured_s, LATENCY_BAR_S, 99)
+    length = len(protocol.encode_command(0, "SET", "VOLTAGE", 6000, -6000))
+    print(
+        f"{latency}\ndriver, command rate: {rate_hz:.0f} /s; a line of {length} characters takes"
+        f" {10e3 * length / BAUD:.1f} ms more at {BAUD} baud, which carries {BAUD / 10 / length:.0f} /s"
+    )
+    grounded_s = grounding_times(client, rig, kills)
+    grounding, grounded = report("driver, node killed to output grounded", grounded_s, GROUNDED_BAR_S, 100)
+    print(grounding)
+    return fast and grounded
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Command line; 0 when every bar is met, else 1."""
+    parser = argparse.ArgumentParser(prog="bench", description=__doc__.splitlines()[0])
+    parser.add_argument("--commands", type=int, default=1000, help="commands for the latency")
+    parser.add_argument("--kills", type=int, default=5, help="nodes to be killed")
+    options = parser.parse_args(arguments)
+    client, rig = RosClient(), Rig(VIRTUAL_SUPPLY)
+    try:
+        return int(not measure(client, rig, options.commands, options.kills))
+    except AssertionError as failure:
+        print(f"The measurement failed: {failure}; try again on a machine with less to do.", file=sys.stderr)
+        return 1
+    finally:
         rig.close()
         client.close()
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -21,10 +21,16 @@ COMMANDS = st.sampled_from(
         "SET MAXIMUM 5000",
     ]
 )
+WORDS = st.sampled_from(
+    ["SET", "GET", "VOLTAGE", "WAVEFORM", "MAXIMUM", "TRIP", "ARM", "START"]
+    + ["box", "sine", "both", "alternating", "1000", "-5000", "0", "99999999", "-"]
+)
 STEPS = st.lists(
     st.one_of(
         st.tuples(st.just("command"), COMMANDS),
         st.tuples(st.just("bytes"), st.binary(max_size=30)),
+        st.tuples(st.just("line"), st.text(st.characters(min_codepoint=32, max_codepoint=126), max_size=40)),
+        st.tuples(st.just("words"), st.lists(WORDS, max_size=12).map(" ".join)),
         st.tuples(st.just("wait"), st.integers(1, 700)),
         st.tuples(st.just("reset"), st.just("external")),
     ),
@@ -45,6 +51,12 @@ def test_is_live_only_while_armed_and_heard(steps):
             silent_ms = 0
         elif kind == "bytes":
             board.receive(value)
+        elif kind == "line":
+            board.receive(protocol.encode(value))
+        elif kind == "words":
+            board.receive(protocol.encode(f">{(sequence + 1) % 256:03d} {value}"))
+            sequence, silent_ms = sequence + 1, 0
+            armed = armed or value.startswith("ARM")
         elif kind == "reset":
             board.reset(value)
             armed = False
