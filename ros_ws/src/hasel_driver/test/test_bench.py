@@ -1,0 +1,28 @@
+"""The benchmark: its lines, and what it returns."""
+
+import re
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not there")
+pytest.importorskip("hasel_interfaces", reason="the workspace is not built")
+
+from hasel_driver import bench
+
+
+def test_a_missed_bar_is_said_and_returned():
+    """Percentile and verdict are of the values given."""
+    line, met = bench.report("latency", [0.001] * 99 + [0.004], 0.005, 100)
+    assert (met, "maximum 4.00 ms (bar 5 ms: met; n = 100)" in line) == (True, True)
+    line, met = bench.report("latency", [0.002, 0.009], 0.005, 99)
+    assert (met, "MISSED" in line) == (False, True)
+
+
+def test_measures_latency_rate_and_grounding(capsys, monkeypatch):
+    """A short run prints the three figures, each from as many measurements as were asked for."""
+    monkeypatch.setattr(bench, "FLAT_OUT_S", 0.3)
+    bench.main(["--commands", "50", "--kills", "1"])
+    lines = capsys.readouterr().out.splitlines()
+    assert int(re.search(r"command to wire: median .* n = (\d+)", lines[0])[1]) > 40
+    assert int(re.search(r"command rate: (\d+) /s", lines[1])[1]) > 100
+    assert "node killed to output grounded: median" in lines[2]
