@@ -6,15 +6,9 @@ from collections.abc import Sequence
 
 from hasel_sim.parallel import executor
 
+from hasel_sysid.command_line.inputs import chosen_model, load_all
 from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.options import (
-    add_model,
-    add_recordings,
-    add_results,
-    add_workers,
-    chosen_model,
-    load_all,
-)
+from hasel_sysid.command_line.options import recording_options
 from hasel_sysid.command_line.progress import progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import show
@@ -25,12 +19,7 @@ from hasel_sysid.report.write import write_report
 
 def parser() -> argparse.ArgumentParser:
     """The command's options."""
-    options = argparse.ArgumentParser(prog="compare", description="Compare a model with recordings.")
-    add_recordings(options)
-    add_model(options, several=True)
-    add_results(options)
-    add_workers(options)
-    return options
+    return recording_options("compare", "Compare a model with recordings.", several_models=True)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

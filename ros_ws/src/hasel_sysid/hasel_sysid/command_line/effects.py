@@ -8,7 +8,7 @@ from pathlib import Path
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import Model, load_model, save_model
 
-from hasel_sysid.command_line.options import DEFAULT_MODEL
+from hasel_sysid.command_line.inputs import DEFAULT_MODEL
 from hasel_sysid.command_line.running import run_command
 
 

@@ -9,21 +9,14 @@ from hasel_sim.model import Model, save_model
 from hasel_sim.parallel import executor
 
 from hasel_sysid.command_line.best_so_far import BestSoFar
+from hasel_sysid.command_line.inputs import load_inputs
 from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.options import (
-    add_model,
-    add_recordings,
-    add_results,
-    add_workers,
-    chosen_model,
-    load_all,
-)
+from hasel_sysid.command_line.options import recording_options
 from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
-from hasel_sysid.command_line.shown import announce, show
+from hasel_sysid.command_line.shown import show
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.data_gate import Finding
-from hasel_sysid.dataset import prepared
 from hasel_sysid.errors import SysidError
 from hasel_sysid.fit import METHODS, FitResult
 from hasel_sysid.report.from_results import fit_content
@@ -34,13 +27,7 @@ MODEL_FILE = "fitted_model.yaml"
 
 def parser() -> argparse.ArgumentParser:
     """The command's options."""
-    options = argparse.ArgumentParser(
-        prog="fit", description="Identify a model's parameters from recordings."
-    )
-    add_recordings(options)
-    add_model(options)
-    add_results(options)
-    add_workers(options)
+    options = recording_options("fit", "Identify a model's parameters from recordings.")
     options.add_argument(
         "--method",
         choices=sorted(METHODS),
@@ -57,29 +44,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _fit(options: argparse.Namespace) -> None:
-    experiments, unseen = load_all(options)
-    said = announce([*experiments, *unseen])
-    label, model = chosen_model(options.model, [*experiments, *unseen])
-    model = prepared(model, experiments)
-    if not model.free:
+    given = load_inputs(options)
+    if not given.model.free:
         raise SysidError(
-            f"model '{label}' has no free parameter; expected at least one: add an effect with `add`, "
+            f"model '{given.label}' has no free parameter; expected at least one: add an effect with `add`, "
             "or set free: true in the model file"
         )
     problem = None
     try:
         with executor(options.jobs, options.scheduler) as pool, progress_bar("fit") as progress:
-            problem = BestSoFar(experiments, pool)
-            result = METHODS[options.method](problem, model, part(progress, "", 0.0, 0.95))
-            comparison = compare(
-                result.model, experiments, pool, unseen, f"{label}, fitted", part(progress, "", 0.95, 1.0)
-            )
+            problem = BestSoFar(given.experiments, pool)
+            result = METHODS[options.method](problem, given.model, part(progress, "", 0.0, 0.95))
+            label, last = f"{given.label}, fitted", part(progress, "", 0.95, 1.0)
+            comparison = compare(result.model, given.experiments, pool, given.unseen, label, last)
     except KeyboardInterrupt:
         if problem is not None and problem.best is not None:
-            path = _save(model.with_values(problem.best.model.values), options.output)
+            path = _save(given.model.with_values(problem.best.model.values), options.output)
             print(f"wrote the best model so far, without uncertainties, to {path}", file=sys.stderr)
         raise
-    _finish(options, result, comparison, said)
+    _finish(options, result, comparison, given.said)
 
 
 def _finish(

@@ -9,22 +9,15 @@ from pathlib import Path
 from hasel_sim.model import Model, save_model
 from hasel_sim.parallel import executor, simulate_all
 
+from hasel_sysid.command_line.inputs import load_inputs
 from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.options import (
-    add_effects,
-    add_model,
-    add_recordings,
-    add_results,
-    add_workers,
-    chosen_model,
-    load_all,
-)
+from hasel_sysid.command_line.options import recording_options
 from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
-from hasel_sysid.command_line.shown import announce, show
+from hasel_sysid.command_line.shown import show
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.compare.compare import comparison_of
-from hasel_sysid.dataset import Experiment, prepared
+from hasel_sysid.dataset import Experiment
 from hasel_sysid.improve import Improvement, Stage, Status, improve
 from hasel_sysid.improve.ledger import Ledger
 from hasel_sysid.problem import Problem
@@ -38,16 +31,8 @@ MODEL_FILE = "improved_model.yaml"
 
 def parser() -> argparse.ArgumentParser:
     """The command's options."""
-    options = argparse.ArgumentParser(
-        prog="improve",
-        description="Add missing effects until what is left is noise or nothing known explains it.",
-    )
-    add_recordings(options)
-    add_model(options)
-    add_effects(options)
-    add_results(options)
-    add_workers(options)
-    return options
+    what = "Add missing effects until what is left is noise or nothing known explains it."
+    return recording_options("improve", what, effects=True)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -57,10 +42,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _improve(options: argparse.Namespace) -> None:
-    experiments, unseen = load_all(options)
-    said = announce([*experiments, *unseen])
-    label, model = chosen_model(options.model, [*experiments, *unseen])
-    model = prepared(model, experiments)
+    given = load_inputs(options)
+    experiments, unseen, label, model = given.experiments, given.unseen, given.label, given.model
     options.output.mkdir(parents=True, exist_ok=True)
     ledger, written = Ledger(options.output), []
 
@@ -85,7 +68,7 @@ def _improve(options: argparse.Namespace) -> None:
         if written:
             print(f"wrote the stages so far ({len(written)}), see {ledger.path}", file=sys.stderr)
         raise
-    show([stages[0]], said)
+    show([stages[0]], given.said)
     _finish(options, found, start, stages, suggestions)
 
 

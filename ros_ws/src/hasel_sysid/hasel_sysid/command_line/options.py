@@ -1,17 +1,24 @@
 """The options that commands share."""
 
 import argparse
-from collections.abc import Sequence
 from pathlib import Path
 
-from hasel_sim.model import Model, load_model
 
-from hasel_sysid.dataset import Experiment, load_experiments
+def recording_options(
+    prog: str, description: str, several_models: bool = False, effects: bool = False
+) -> argparse.ArgumentParser:
+    """What commands on recordings share: what to read, the model, candidates, where to write, on how many cores."""
+    parser = argparse.ArgumentParser(prog=prog, description=description)
+    _add_recordings(parser)
+    _add_model(parser, several_models)
+    if effects:
+        _add_effects(parser)
+    _add_results(parser)
+    _add_workers(parser)
+    return parser
 
-DEFAULT_MODEL = "swimmer"
 
-
-def add_recordings(parser: argparse.ArgumentParser) -> None:
+def _add_recordings(parser: argparse.ArgumentParser) -> None:
     """Positional recordings and --validate."""
     parser.add_argument("recordings", metavar="RECORDING", nargs="+", type=Path, help=".mcap or .csv file")
     parser.add_argument(
@@ -24,7 +31,7 @@ def add_recordings(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_model(parser: argparse.ArgumentParser, several: bool = False) -> None:
+def _add_model(parser: argparse.ArgumentParser, several: bool) -> None:
     """--model; `several`: it may be given more than once."""
     parser.add_argument(
         "--model",
@@ -35,7 +42,7 @@ def add_model(parser: argparse.ArgumentParser, several: bool = False) -> None:
     )
 
 
-def add_results(parser: argparse.ArgumentParser) -> None:
+def _add_results(parser: argparse.ArgumentParser) -> None:
     """--output and --json."""
     parser.add_argument(
         "--output",
@@ -47,7 +54,7 @@ def add_results(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", metavar="FILE", type=Path, help="write the results for other programs")
 
 
-def add_effects(parser: argparse.ArgumentParser) -> None:
+def _add_effects(parser: argparse.ArgumentParser) -> None:
     """--effects."""
     parser.add_argument(
         "--effects",
@@ -57,7 +64,7 @@ def add_effects(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_workers(parser: argparse.ArgumentParser) -> None:
+def _add_workers(parser: argparse.ArgumentParser) -> None:
     """--jobs and --scheduler."""
     parser.add_argument(
         "--jobs", metavar="N", type=_at_least_one, help="simulations at once (default: one per core)"
@@ -72,21 +79,3 @@ def _at_least_one(text: str) -> int:
     if number < 1:
         raise argparse.ArgumentTypeError(f"{text} is less than 1")
     return number
-
-
-def load_all(
-    options: argparse.Namespace,
-) -> tuple[list[Experiment], list[Experiment]]:
-    """The experiments to fit and the unseen ones. Raises RecordingError when there are none to read."""
-    unseen = load_experiments(options.validate) if options.validate else []
-    return load_experiments(options.recordings), unseen
-
-
-def chosen_model(name: str | None, experiments: Sequence[Experiment]) -> tuple[str, Model]:
-    """The model asked for, else the one all headers name, else the swimmer; with what to call it."""
-    named = {experiment.recording.metadata.get("model") for experiment in experiments}
-    header = named.pop() if len(named) == 1 else None
-    name = name or header or DEFAULT_MODEL
-    model = load_model(name)
-    label = Path(name).stem if Path(name).suffix in (".yaml", ".yml") else name
-    return label, model

@@ -7,19 +7,11 @@ from collections.abc import Sequence
 from hasel_sim.parallel import executor
 from ruamel.yaml import YAML
 
+from hasel_sysid.command_line.inputs import load_inputs
 from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.options import (
-    add_effects,
-    add_model,
-    add_recordings,
-    add_results,
-    add_workers,
-    chosen_model,
-    load_all,
-)
+from hasel_sysid.command_line.options import recording_options
 from hasel_sysid.command_line.progress import progress_bar
 from hasel_sysid.command_line.running import run_command
-from hasel_sysid.dataset import prepared
 from hasel_sysid.diagnosis import diagnose
 from hasel_sysid.fit import fit_least_squares
 from hasel_sysid.problem import Problem
@@ -31,15 +23,8 @@ _SHOWN = 5
 
 def parser() -> argparse.ArgumentParser:
     """The command's options."""
-    options = argparse.ArgumentParser(
-        prog="suggest",
-        description="Propose the next run: the one in which the remaining explanations differ most.",
-    )
-    add_recordings(options)
-    add_model(options)
-    add_effects(options)
-    add_results(options)
-    add_workers(options)
+    what = "Propose the next run: the one in which the remaining explanations differ most."
+    options = recording_options("suggest", what, effects=True)
     options.add_argument(
         "--max-voltage",
         metavar="V",
@@ -57,12 +42,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _suggest(options: argparse.Namespace) -> None:
-    experiments, _ = load_all(options)
-    _, model = chosen_model(options.model, experiments)
-    model = prepared(model, experiments)
+    given = load_inputs(options)
     with executor(options.jobs, options.scheduler) as pool, progress_bar("suggest") as progress:
-        problem = Problem(experiments, pool)
-        fit = fit_least_squares(problem, model, lambda text, share: progress(text, 0.15 * share))
+        problem = Problem(given.experiments, pool)
+        fit = fit_least_squares(problem, given.model, lambda text, share: progress(text, 0.15 * share))
         found = diagnose(
             problem, fit, options.effects, lambda text, share: progress(text, 0.15 + 0.6 * share)
         )

@@ -10,7 +10,7 @@ from hasel_sysid.improve.result import Improvement, Stage, Status
 EXPLAINED = 0.9
 """Share of the baseline's error above the noise that accepted effects must remove to be an explanation."""
 _PARTLY = 0.6
-NOISE = 1.03
+NOISE = 1.05
 """A mean error up to this many times the noise's is noise."""
 
 

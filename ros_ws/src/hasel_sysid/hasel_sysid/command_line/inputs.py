@@ -1,0 +1,53 @@
+"""What commands on recordings begin with: the runs and the model."""
+
+import argparse
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from hasel_sim.model import Model, load_model
+
+from hasel_sysid.command_line.shown import announce
+from hasel_sysid.data_gate import Finding
+from hasel_sysid.dataset import Experiment, load_experiments, prepared
+
+DEFAULT_MODEL = "swimmer"
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """experiments: to fit; unseen: never fitted; model: with an amplitude for every fitted voltage; label: its name;
+    said: findings of the data gate that were told already.
+    """
+
+    experiments: list[Experiment]
+    unseen: list[Experiment]
+    label: str
+    model: Model
+    said: list[Finding]
+
+
+def load_inputs(options: argparse.Namespace) -> Inputs:
+    """Read the recordings, tell what the data gate finds, and choose the model."""
+    experiments, unseen = load_all(options)
+    said = announce([*experiments, *unseen])
+    label, model = chosen_model(options.model, [*experiments, *unseen])
+    return Inputs(experiments, unseen, label, prepared(model, experiments), said)
+
+
+def load_all(
+    options: argparse.Namespace,
+) -> tuple[list[Experiment], list[Experiment]]:
+    """The experiments to fit and the unseen ones. Raises RecordingError when there are none to read."""
+    unseen = load_experiments(options.validate) if options.validate else []
+    return load_experiments(options.recordings), unseen
+
+
+def chosen_model(name: str | None, experiments: Sequence[Experiment]) -> tuple[str, Model]:
+    """The model asked for, else the one all headers name, else the swimmer; with what to call it."""
+    named = {experiment.recording.metadata.get("model") for experiment in experiments}
+    header = named.pop() if len(named) == 1 else None
+    name = name or header or DEFAULT_MODEL
+    model = load_model(name)
+    label = Path(name).stem if Path(name).suffix in (".yaml", ".yml") else name
+    return label, model
