@@ -5,12 +5,9 @@ import time
 from collections import Counter
 
 import numpy as np
-import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_interfaces.srv import AddEffect, LoadModel, RemoveEffect
-from rclpy.exceptions import InvalidParameterValueException
-from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from threadpoolctl import threadpool_limits
@@ -23,6 +20,7 @@ from hasel_sim.live.pace import Pace
 from hasel_sim.model import Model
 from hasel_sim.model_parameters import ModelParameters
 from hasel_sim.node_parameters import NodeParameter, declare, words
+from hasel_sim.node_process import run_node
 from hasel_sim.simulator_messages import BodyMessage, angle_message, diagnostics, to_nanoseconds
 
 EVERY_MESSAGE = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.RELIABLE)
@@ -191,22 +189,8 @@ def _warm_up(live: LiveSimulator) -> None:
 
 def main() -> int:
     """Run the node until it is interrupted; returns the exit code."""
-    rclpy.init()
-    node = None
-    try:
-        with threadpool_limits(1):
-            node = SimulatorNode()
-            rclpy.spin(node)
-    except (HaselSimError, InvalidParameterValueException) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        if node is not None:
-            node.destroy_node()
-        rclpy.try_shutdown()
-    return 0
+    with threadpool_limits(1):
+        return run_node(SimulatorNode)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@ import sys
 import threading
 from pathlib import Path
 
-import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_interfaces.msg import BendingAngle, Diagnosis, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
@@ -14,11 +13,11 @@ from hasel_sim.errors import HaselSimError
 from hasel_sim.live.live_model import live_model
 from hasel_sim.model import Model, save_model
 from hasel_sim.node_parameters import NodeParameter, declare, words
+from hasel_sim.node_process import run_node
 from hasel_sim.simulator_messages import to_nanoseconds
 from hasel_sim.simulator_node import EVERY_MESSAGE
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
-from rclpy.exceptions import InvalidParameterValueException
-from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
@@ -157,23 +156,13 @@ class SysidNode(Node):
 
 def main() -> int:
     """Run the node until it is interrupted; returns the exit code."""
-    rclpy.init()
-    node = None
-    try:
-        node = SysidNode()
-        executor = MultiThreadedExecutor(num_threads=3)
-        executor.add_node(node)
-        executor.spin()
-    except (HaselSimError, InvalidParameterValueException) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        if node is not None:
-            node.destroy_node()
-        rclpy.try_shutdown()
-    return 0
+    return run_node(SysidNode, _spin)
+
+
+def _spin(node: SysidNode) -> None:
+    executor = MultiThreadedExecutor(num_threads=3)
+    executor.add_node(node)
+    executor.spin()
 
 
 if __name__ == "__main__":

@@ -4,10 +4,8 @@ import argparse
 import contextlib
 import sys
 
-import rclpy
 from hasel_sim.errors import HaselSimError
-from rclpy.exceptions import InvalidParameterValueException
-from rclpy.executors import ExternalShutdownException
+from hasel_sim.node_process import run_node
 from rclpy.utilities import remove_ros_args
 from threadpoolctl import threadpool_limits
 
@@ -32,27 +30,17 @@ def _parser() -> argparse.ArgumentParser:
 def main() -> int:
     """Run until interrupted; returns the exit code."""
     arguments = _parser().parse_args(remove_ros_args(sys.argv)[1:])
-    rclpy.init()
-    node = None
-    try:
-        with (
-            threadpool_limits(1),
-            contextlib.nullcontext() if arguments.body_only else VirtualSupply() as supply,
-        ):
-            node = VirtualBodyNode()
-            if supply is not None:
-                node.create_timer(1.0, supply.check)
-            rclpy.spin(node)
-    except (HaselSimError, BringupError, InvalidParameterValueException) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        if node is not None:
-            node.destroy_node()
-        rclpy.try_shutdown()
-    return 0
+    with threadpool_limits(1), contextlib.ExitStack() as stack:
+        return run_node(lambda: _node(arguments, stack), errors=(HaselSimError, BringupError))
+
+
+def _node(arguments: argparse.Namespace, stack: contextlib.ExitStack) -> VirtualBodyNode:
+    """The body's node and, for as long as `stack` is open, a virtual supply that it watches."""
+    supply = None if arguments.body_only else stack.enter_context(VirtualSupply())
+    node = VirtualBodyNode()
+    if supply is not None:
+        node.create_timer(1.0, supply.check)
+    return node
 
 
 if __name__ == "__main__":

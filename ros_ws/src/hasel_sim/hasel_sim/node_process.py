@@ -1,0 +1,37 @@
+"""The process around a node: start, one sentence for what is wrong with its parameters, a quiet end."""
+
+import sys
+from collections.abc import Callable
+
+import rclpy
+from rclpy.exceptions import InvalidParameterValueException
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+
+from hasel_sim.errors import HaselSimError
+
+
+def run_node(
+    make: Callable[[], Node],
+    spin: Callable[[Node], None] = rclpy.spin,
+    errors: tuple[type[Exception], ...] = (HaselSimError,),
+) -> int:
+    """Make a node and spin it until it is interrupted; returns the exit code.
+
+    errors: told in one sentence, as a parameter out of range is.
+    """
+    rclpy.init()
+    node = None
+    try:
+        node = make()
+        spin(node)
+    except (*errors, InvalidParameterValueException) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        if node is not None:
+            node.destroy_node()
+        rclpy.try_shutdown()
+    return 0
