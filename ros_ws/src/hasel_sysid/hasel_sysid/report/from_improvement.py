@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from hasel_sysid.compare.comparison import Comparison
+from hasel_sysid.diagnosis import Verdict
 from hasel_sysid.improve.result import Improvement, Status
 from hasel_sysid.report.content import KeyNumber, NextRun, ReportContent, Stage
 from hasel_sysid.report.from_diagnosis import ranked_rows, what_remains
@@ -60,9 +61,18 @@ def _title(improvement: Improvement) -> str:
 
 
 def _verdict(improvement: Improvement) -> str:
-    found = {finding.effect: finding for finding in improvement.diagnosis.findings}
-    said = [str(found[effect]) for effect in improvement.missing[:1] if effect in found]
-    return " ".join([*said, improvement.reason])
+    return " ".join(
+        [*(_said_of(effect, improvement) for effect in improvement.missing[:1]), improvement.reason]
+    )
+
+
+def _said_of(effect: str, improvement: Improvement) -> str:
+    """What the first diagnosis says of an effect, or why it was put in the place of the one found first."""
+    finding = improvement.diagnosis.finding(effect)
+    if finding.verdict is Verdict.MISSING:
+        return str(finding)
+    others = " and ".join(other for other in improvement.missing if other != effect)
+    return f"Of the effects that looked alike at first, {effect} fits best together with {others}."
 
 
 def _key_numbers(improvement: Improvement, comparisons: Sequence[Comparison]) -> tuple[KeyNumber, ...]:

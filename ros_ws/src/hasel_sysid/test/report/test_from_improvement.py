@@ -116,3 +116,12 @@ def test_unexplained_is_no_good_news(improvement):
     content = improvement_content(none, [_comparison(model, "fitted", 0.03, 0.04)])
     assert content.title == "None of the listed effects explains the measurements"
     assert content.good is False
+
+
+def test_verdict_says_why_an_effect_was_exchanged(improvement):
+    """An effect that was not first at first, but fits best beside the second, is not called a mere stand-in."""
+    exchanged = replace(improvement, missing=("my_effect", "quadratic_drag"))
+    comparisons = [_comparison(stage.fit.model, "s", stage.mae_fit, 0.1) for stage in improvement.stages]
+    verdict = improvement_content(exchanged, comparisons).verdict
+    assert "my_effect fits best together with quadratic_drag" in verdict
+    assert "my_effect is absent" not in verdict
