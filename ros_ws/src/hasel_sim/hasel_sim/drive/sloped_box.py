@@ -73,12 +73,27 @@ def _onset(levels: np.ndarray, amplitudes: np.ndarray) -> tuple[float, float]:
 
 @njit(cache=True)
 def limit_rate(time: np.ndarray, target: np.ndarray, slope: float) -> np.ndarray:
-    """Follow a target [n, 2] at times [s] [n], starting from 0, at no more than slope [1/s] up or down."""
+    """Follow a target [n, 2] at times [s] [n], starting from 0, at no more than slope [1/s] up or down.
+
+    Exact for a target that changes steadily between its times: where it is met in between, the way goes on from there.
+    """
     out = np.empty_like(target)
     for muscle in range(target.shape[1]):
-        value = 0.0
+        value, before = 0.0, 0.0
         for i in range(target.shape[0]):
-            reach = slope * (time[i] - time[i - 1]) if i > 0 else 0.0
-            value = min(max(target[i, muscle], value - reach), value + reach)
+            left, after = time[i] - time[max(i - 1, 0)], target[i, muscle]
+            if left > 0.0:
+                steepness = (after - before) / left
+                gap = before - value
+                towards = slope if gap > 0.0 else -slope
+                closing = abs(towards - steepness) if (towards - steepness) * gap > 0.0 else 0.0
+                if abs(gap) >= closing * left and gap != 0.0:
+                    value += towards * left
+                else:
+                    met = abs(gap) / closing if gap != 0.0 else 0.0
+                    on_target = before + steepness * met
+                    limited = min(max(steepness, -slope), slope)
+                    value = on_target + limited * (left - met)
+            before = after
             out[i, muscle] = value
     return out

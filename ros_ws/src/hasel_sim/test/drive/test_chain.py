@@ -7,6 +7,7 @@ import pytest
 from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.voltage import VoltageSchedule
 from hasel_sim.effects.base import DriveEffect, DriveStage, EffectParameter
+from hasel_sim.effects.drive.charging_lag import ChargingLag
 
 VALUES = {"amplitude_5500": 0.06, "slope": 0.3}
 
@@ -57,3 +58,28 @@ def test_effects_act_in_the_order_of_their_stage():
     values["gain"].factor = 1.0
     found, plain = _contraction([Delay(), Gain()], values, times), _contraction([], {}, times)
     assert found[2:] == pytest.approx(plain[:-2])
+
+
+def test_a_lag_is_as_exact_on_a_coarse_grid_as_on_a_fine_one():
+    """What a longer discharge changes is smooth in the discharge time: no instant of the grid shows through."""
+    drive = np.array([[5500.0, 0.0], [0.0, 5500.0], [5500.0, 0.0], [0.0, 5500.0]])
+    schedule = VoltageSchedule(np.arange(4) / 7, drive)
+    chain = DriveChain([ChargingLag()], np.array([3500.0, 4500.0, 5500.0]))
+    amplitudes = {"amplitude_3500": 0.0269, "amplitude_4500": 0.0437, "amplitude_5500": 0.0633}
+
+    def change(rate: int, discharge_time: float) -> np.ndarray:
+        times = np.arange(0, 4 / 7, 1 / rate)
+        longer, shorter = (
+            chain.contraction(
+                schedule,
+                times,
+                {**amplitudes, "slope": 0.26},
+                {"charging_lag": SimpleNamespace(charge_time=0.053, discharge_time=time)},
+            )
+            for time in (discharge_time + 0.001, discharge_time - 0.001)
+        )
+        return (longer - shorter)[:: rate // 240]
+
+    for discharge_time in np.linspace(0.04, 0.06, 11):
+        fine = change(24000, discharge_time)
+        assert np.linalg.norm(change(240, discharge_time) - fine) < 0.15 * np.linalg.norm(fine)

@@ -42,3 +42,23 @@ def test_a_slope_too_low_for_the_frequency_gives_a_triangle():
     found = limit_rate(time, np.where(time < 0.5, 1.0, 0.0)[:, None].repeat(2, 1), 0.1)
     assert found.max() == pytest.approx(0.05, abs=1e-3)
     assert np.abs(np.diff(found, axis=0)).max() <= 0.1 * 1e-3 + 1e-12
+
+
+def test_a_target_met_between_two_instants_is_followed_from_there():
+    """Falling at the slope, meeting a target that rises steeply, and rising at the slope: the valley is exact."""
+    time, target = np.array([0.0, 1.0, 1.0, 2.0]), np.array([0.1, 0.1, 0.0, 1.0])[:, None]
+    found = limit_rate(time, target, 0.1)
+    # down from 0.1 at 1 s until 1 s + 1/11 s, where the target is 1/11, and up again
+    assert found[:, 0] == pytest.approx([0.0, 0.1, 0.1, 1 / 11 + 0.1 * 10 / 11])
+
+
+@pytest.mark.parametrize("steepness", [-0.2, -0.05, 0.05, 0.2])
+@pytest.mark.parametrize("gap", [-0.02, 0.0, 0.02])
+def test_agrees_with_small_steps(steepness, gap):
+    """From above, on, or below a steadily moving target: the end is that of ten thousand small steps."""
+    ends = []
+    for count in (2, 10001):
+        time = np.concatenate([[0.0, 1.0], np.linspace(1.0, 1.5, count)])
+        target = np.concatenate([[0.05, 0.05], 0.05 + gap + steepness * (time[2:] - 1.0)])
+        ends.append(limit_rate(time, target[:, None], 0.1)[-1, 0])
+    assert ends[0] == pytest.approx(ends[1], abs=2e-5)
