@@ -1,5 +1,6 @@
 """The process around a node: start, one sentence for what is wrong with its parameters, a quiet end."""
 
+import signal
 import sys
 from collections.abc import Callable
 
@@ -31,6 +32,7 @@ def run_node(
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     finally:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in a launch file comes twice
         if node is not None:
             node.destroy_node()
         rclpy.try_shutdown()
