@@ -7,6 +7,7 @@ import numpy as np
 from hasel_sim.errors import SimulationError
 
 from hasel_sysid.diagnosis import judgement
+from hasel_sysid.diagnosis.between_periods import noise_between_periods
 from hasel_sysid.diagnosis.candidates import candidate_effects
 from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
 from hasel_sysid.diagnosis.result import Diagnosis
@@ -22,6 +23,10 @@ from hasel_sysid.problem import Problem
 _FINALISTS = 3
 _CLOSE = 0.05
 """A trial within this share of the baseline's sum of squares of the best one is refitted in full."""
+_MUCH, _MOST = 0.3, 0.9
+"""An excess of this share of the noise's sum of squares is much; this share of the excess is most of it."""
+_QUIETER = 0.8
+"""Differences between periods this much quieter than the residual show that it repeats itself."""
 
 Progress = Callable[[str, float], None]
 
@@ -73,10 +78,21 @@ def diagnose(
 def _finals(
     problem: Problem, fit: FitResult, best: list[Trial], progress: Progress | None
 ) -> dict[str, FitResult]:
-    """Full fits of the few most promising effects, on the model itself."""
-    finals: dict[str, FitResult] = {}
+    """Full fits of the few most promising effects, on the model itself; of some more where those explain too little."""
     reach = best[0].predicted + _CLOSE * fit.evaluation.sum_of_squares if best else 0.0
-    for number, trial in enumerate([t for t in best if t.predicted <= reach][:_FINALISTS]):
+    chosen = [trial for trial in best if trial.predicted <= reach][:_FINALISTS]
+    finals = _refitted(problem, fit, chosen, progress)
+    if _explain_too_little(fit, finals):
+        further = [trial for trial in best if trial not in chosen][:_FINALISTS]
+        finals |= _refitted(problem, fit, further, progress)
+    return finals
+
+
+def _refitted(
+    problem: Problem, fit: FitResult, trials: list[Trial], progress: Progress | None
+) -> dict[str, FitResult]:
+    finals = {}
+    for number, trial in enumerate(trials):
         effect = trial.start.effect
         model = fit.model.with_effects(effect.source or effect.id).with_values(trial.step)
         if progress:
@@ -90,14 +106,32 @@ def _finals(
     return finals
 
 
+def _explain_too_little(fit: FitResult, finals: dict[str, FitResult]) -> bool:
+    """Whether there is much above the noise and none of the full fits removes most of it.
+
+    A trial's few steps may then have got stuck where a full fit would not.
+    """
+    base, noise = fit.evaluation, _noise(fit, finals)
+    floor = judgement.expected_squares(base.jacobian, noise, base.runs)
+    lowest = min([base.sum_of_squares, *(final.evaluation.sum_of_squares for final in finals.values())])
+    excess = base.sum_of_squares - floor
+    return excess > _MUCH * floor and base.sum_of_squares - lowest < _MOST * excess
+
+
 def _signature(trial: Trial, trials: Trials, fit: FitResult) -> Signature:
     return signature(trial, fit.evaluation.residual, trials.base.jacobian, trial.start.typical)
 
 
 def _noise(fit: FitResult, finals: dict[str, FitResult]) -> NoiseModel:
-    """Noise from what neither the best model nor a learned model of its residual explains."""
+    """Noise from what neither the best model nor a learned model of its residual explains.
+
+    Where the residual repeats itself from period to period it is not noise, and the differences tell the noise.
+    """
     best = min([fit, *finals.values()], key=lambda result: result.evaluation.sum_of_squares)
     evaluation = best.evaluation
     columns = np.column_stack([evaluation.jacobian, regressors(evaluation)])
     left = unexplained_by(columns, evaluation.residual)
-    return estimate_noise(left, evaluation.runs, columns, "what the best model and a learned residual leave")
+    whole = estimate_noise(left, evaluation.runs, columns, "what the best model and a learned residual leave")
+    between = noise_between_periods(evaluation)
+    repeats = between is not None and between.standard_deviation < _QUIETER * whole.standard_deviation
+    return between if repeats else whole
