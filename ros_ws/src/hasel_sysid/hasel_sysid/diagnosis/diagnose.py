@@ -23,8 +23,9 @@ from hasel_sysid.problem import Problem
 _FINALISTS = 3
 _CLOSE = 0.05
 """A trial within this share of the baseline's sum of squares of the best one is refitted in full."""
-_MUCH, _MOST = 0.3, 0.9
-"""An excess of this share of the noise's sum of squares is much; this share of the excess is most of it."""
+_MUCH, _MOST, _WORTH = 0.3, 0.9, 0.25
+"""An excess of this share of the noise's sum of squares is much; this share of the excess is most of it; a trial that
+promises to remove this share is worth a full fit."""
 _QUIETER = 0.8
 """Differences between periods this much quieter than the residual show that it repeats itself."""
 
@@ -82,10 +83,8 @@ def _finals(
     reach = best[0].predicted + _CLOSE * fit.evaluation.sum_of_squares if best else 0.0
     chosen = [trial for trial in best if trial.predicted <= reach][:_FINALISTS]
     finals = _refitted(problem, fit, chosen, progress)
-    if _explain_too_little(fit, finals):
-        further = [trial for trial in best if trial not in chosen][:_FINALISTS]
-        finals |= _refitted(problem, fit, further, progress)
-    return finals
+    others = [trial for trial in best if trial not in chosen]
+    return finals | _refitted(problem, fit, _worth_a_fit(fit, finals, others), progress)
 
 
 def _refitted(
@@ -106,16 +105,18 @@ def _refitted(
     return finals
 
 
-def _explain_too_little(fit: FitResult, finals: dict[str, FitResult]) -> bool:
-    """Whether there is much above the noise and none of the full fits removes most of it.
+def _worth_a_fit(fit: FitResult, finals: dict[str, FitResult], others: list[Trial]) -> list[Trial]:
+    """Trials worth a full fit because none so far removes most of an error well above the noise.
 
-    A trial's few steps may then have got stuck where a full fit would not.
+    A trial's few steps may have got stuck where a full fit does not.
     """
     base, noise = fit.evaluation, _noise(fit, finals)
     floor = judgement.expected_squares(base.jacobian, noise, base.runs)
     lowest = min([base.sum_of_squares, *(final.evaluation.sum_of_squares for final in finals.values())])
     excess = base.sum_of_squares - floor
-    return excess > _MUCH * floor and base.sum_of_squares - lowest < _MOST * excess
+    if excess < _MUCH * floor or base.sum_of_squares - lowest > _MOST * excess:
+        return []
+    return [t for t in others if base.sum_of_squares - t.predicted > _WORTH * excess][:_FINALISTS]
 
 
 def _signature(trial: Trial, trials: Trials, fit: FitResult) -> Signature:
