@@ -35,11 +35,12 @@ def conclude(stages: Sequence[Stage], reason: str, negligible: bool = False) -> 
     unexplained = left_over(stages)
     added = stages[-1].effects
     rest = stages[-1].diagnosis
+    nothing_left = negligible or (rest is not None and rest.p_value >= SIGNIFICANT)
     if first.p_value >= SIGNIFICANT:
         status, unexplained = Status.NOTHING_MISSING, 0.0
     elif not added:
         status = Status.NOTHING_MISSING if negligible else Status.UNEXPLAINED
-    elif unexplained <= 1 - EXPLAINED or (rest is not None and rest.p_value >= SIGNIFICANT):
+    elif unexplained <= 1 - EXPLAINED or nothing_left:
         status = Status.EXPLAINED
     else:
         status = Status.PARTLY_EXPLAINED if unexplained <= 1 - _PARTLY else Status.UNEXPLAINED

@@ -8,8 +8,10 @@ from hasel_sysid.diagnosis.left_out import left_out_squares
 from hasel_sysid.improve.conclusion import EXPLAINED
 from hasel_sysid.improve.result import Stage
 
-_LEAST_GAIN = 0.03
-"""An effect must lower the sum of squares by this share: less is not worth a parameter."""
+_LEAST_GAIN = 0.1
+"""An effect must lower the sum of squares by this share: less is what another mesh leaves, and not worth a parameter."""
+_NEARLY = 0.8
+"""Finer numerics that explain this share of what the best effect does come before any effect."""
 
 
 @dataclass(frozen=True)
@@ -26,21 +28,24 @@ def decide(stage: Stage, found: Diagnosis) -> Decision:
     if found.p_value >= SIGNIFICANT:
         what = "What is left is noise" if stage.effects else "Nothing is missing"
         return Decision(None, f"{what}: noise alone looks like this in {found.p_value:.0%} of cases.")
-    numerics = {name: share for name, share in found.suspects.items() if share > max(0.5, found.explained)}
+    candidates = [f for f in found.findings if f.verdict is Verdict.MISSING and f.fit is not None]
+    before = stage.fit.evaluation
+    gains = [1 - f.fit.evaluation.sum_of_squares / before.sum_of_squares for f in candidates]
+    most = max(gains, default=1 - (found.noise.mean_absolute / stage.fit.mean_absolute_error) ** 2)
+    if most < _LEAST_GAIN:
+        what = candidates[0].effect if candidates else "what exceeds the noise"
+        reason = f"Nothing that matters is missing: {what} makes {most:.1%} of the squared error."
+        return Decision(None, reason, negligible=True)
+    enough = max(0.5, _NEARLY * found.explained)
+    numerics = {name: share for name, share in found.suspects.items() if share > enough}
     if numerics:
         name = max(numerics, key=numerics.get)
         what = f"The {name.replace('_', ' ')} explains {numerics[name]:.0%} of what is left"
         return Decision(None, f"{what}: refine it first.")
-    candidates = [f for f in found.findings if f.verdict is Verdict.MISSING and f.fit is not None]
     if not candidates:
         return Decision(None, _none_convinces(found))
-    best, before = candidates[0], stage.fit.evaluation
-    after = best.fit.evaluation
-    gain = 1 - after.sum_of_squares / before.sum_of_squares
-    if gain < _LEAST_GAIN:
-        what = f"{best.effect} would lower the squared error by {gain:.1%}"
-        return Decision(None, f"Nothing that matters is missing: {what}.", negligible=True)
-    if left_out_squares(after) >= left_out_squares(before):
+    best = candidates[0]
+    if left_out_squares(best.fit.evaluation) >= left_out_squares(before):
         what = f"{best.effect} fits better but predicts runs left out of the fit worse"
         return Decision(None, f"{what}: it is not accepted.")
     return Decision(best)

@@ -1,0 +1,66 @@
+"""Whether a diagnosis gives reason to add an effect."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hasel_sysid.diagnosis import Verdict
+from hasel_sysid.improve import Stage
+from hasel_sysid.improve.decision import decide
+
+FRAMES, NOISE = 2000, 0.0024
+
+
+def fit(error):
+    """A fit whose residual is evenly spread over two runs."""
+    residual = np.full(FRAMES, error)
+    return SimpleNamespace(
+        mean_absolute_error=error,
+        evaluation=SimpleNamespace(
+            residual=residual,
+            sum_of_squares=float(residual @ residual),
+            jacobian=np.ones((FRAMES, 1)),
+            runs=np.repeat([0, 1], FRAMES // 2),
+        ),
+    )
+
+
+def decided(before, after=None, chance=0.002, mesh=0.0, explained=0.9):
+    """The decision on one effect that brings the error from `before` to `after`, or on none."""
+    findings = []
+    if after is not None:
+        findings = [SimpleNamespace(effect="drag", verdict=Verdict.MISSING, fit=fit(after))]
+    diagnosis = SimpleNamespace(
+        p_value=chance,
+        findings=findings,
+        suspects={"mesh": mesh},
+        explained=explained,
+        ceiling=0.9,
+        noise=SimpleNamespace(mean_absolute=NOISE),
+    )
+    return decide(Stage((), fit(before), None), diagnosis)
+
+
+def test_an_effect_that_removes_the_error_is_accepted():
+    """Well above the noise, and no other suspect."""
+    assert decided(0.01, 0.0025).accepted.effect == "drag"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason", "negligible"),
+    [
+        ({"before": 0.0025, "after": 0.0024, "chance": 0.3}, "noise alone looks like this", False),
+        # significant, but no more than what another mesh leaves
+        ({"before": 0.00246, "after": 0.0024}, "Nothing that matters", True),
+        ({"before": 0.00246}, "Nothing that matters", True),
+        ({"before": 0.005, "after": 0.0025, "mesh": 0.8}, "The mesh explains 80%", False),
+        ({"before": 0.01, "explained": 0.3}, "None of the listed effects", False),
+        ({"before": 0.01, "explained": 0.97}, "only at the edge of its range", False),
+    ],
+)
+def test_reasons_to_add_nothing(arguments, reason, negligible):
+    """Noise, a trifle, the numerics, nothing that fits: each is said, and only the trifle is negligible."""
+    decision = decided(**arguments)
+    assert decision.accepted is None
+    assert reason in decision.reason
+    assert decision.negligible is negligible
