@@ -9,7 +9,7 @@ from hasel_sysid.improve.conclusion import EXPLAINED
 from hasel_sysid.improve.result import Stage
 
 _LEAST_GAIN = 0.1
-"""An effect must lower the sum of squares by this share: less is what another mesh leaves, and not worth a parameter."""
+"""An effect must lower the sum of squares by this share; what another mesh leaves is less."""
 _NEARLY = 0.8
 """Finer numerics that explain this share of what the best effect does come before any effect."""
 
