@@ -17,6 +17,7 @@ from hasel_driver.experiment_server import ExperimentServer
 from hasel_driver.faults import Fault, FaultCode
 from hasel_driver.limits import Voltages
 from hasel_driver.messages import to_diagnostics, to_supply_state
+from hasel_driver.middleware import avoid_shared_memory
 from hasel_driver.node_parameters import declare, values
 from hasel_driver.spinning import quiet_at_shutdown, spin
 from hasel_driver.status import Status
@@ -212,6 +213,7 @@ def autostart(node: DriverNode) -> None:
 def main() -> None:
     """Spin until shut down; the supply is disarmed on the way out."""
     sys.setswitchinterval(THREAD_SWITCH_S)
+    avoid_shared_memory()
     rclpy.init()
     node = DriverNode()
     executor = MultiThreadedExecutor(num_threads=4)

@@ -127,6 +127,19 @@ def test_two_masters(driver, provoke, ros, rounds):
             assert (answer.success, "More than one node publishes" in answer.message) == (False, True)
 
 
+@pytest.mark.rounds(2, 40)
+def test_nodes_that_come_and_go_do_not_hold_it_up(driver, shared_rig, ros, rounds):
+    """Discovery, which can make the middleware wait, neither stops the heartbeat nor the commands."""
+    from hasel_driver.testing.onlooker import look_on
+
+    driver.arm()
+    with ros.commanding():
+        ros.wait(lambda: shared_rig.live)
+        for _ in range(rounds):
+            look_on()
+        assert (ros.state.mode, shared_rig.live) == (ACTIVE, True), ros.state.fault_text
+
+
 def test_parameters_are_checked(driver, ros):
     """A value out of range, or a change while the port is open, is refused with its reason."""
     from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
