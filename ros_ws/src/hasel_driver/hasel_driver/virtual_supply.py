@@ -112,7 +112,7 @@ class VirtualSupply:
         data, self.board.transmitted = bytes(self.board.transmitted), bytearray()
         if "truncate" in self._faults and data:
             self._faults.remove("truncate")
-            data = data[: len(data) // 2] + b"\n"
+            data = data[: len(data) // 2].rstrip(b"\n")[:-1] + b"\n"  # never between two lines
         if self._host_present and not self._faults & {"silence", "stuck"}:
             self.port.write(data)
 

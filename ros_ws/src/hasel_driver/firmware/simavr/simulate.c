@@ -151,9 +151,10 @@ static void exchange(void) {
   }
   if (tracing) trace_commands(received + received_count, count, now_s());
   if (!deaf) received_count += count;
-  if (truncate_next && transmitted_count > 1) {
-    transmitted_count /= 2;
-    transmitted[transmitted_count++] = '\n';
+  const size_t kept = transmitted_count / 2;
+  if (truncate_next && transmitted_count > 2 && transmitted[kept - 1] != '\n') {  // not between two lines
+    transmitted[kept] = '\n';
+    transmitted_count = kept + 1;
     truncate_next = false;
   }
   if (host_present && !silent) port_write(&port, transmitted, transmitted_count);
