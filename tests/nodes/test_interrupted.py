@@ -10,7 +10,10 @@ from hasel_bringup.demo.processes import Processes
 
 @pytest.mark.parametrize(
     ("package", "executable", "name"),
-    [("hasel_sim", "simulator", "simulation"), ("hasel_sysid", "sysid", "identification")],
+    [
+        ("hasel_sim", "simulator", "simulation"),
+        pytest.param("hasel_sysid", "sysid", "identification", marks=pytest.mark.slow),
+    ],
 )
 def test_a_second_interrupt_does_not_break_the_clean_up(
     tmp_path, environment, listener, package, executable, name
