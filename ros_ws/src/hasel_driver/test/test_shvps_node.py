@@ -27,8 +27,11 @@ def test_needs_consent_drives_and_claims_nothing(boards, start_driver, ros):
     (upper, lower), ports = boards
     driver = start_driver(**ports, backend="shvps", accept_no_deadman=True, maximum_voltage=4000.0)
     driver.arm()
-    ros.drive(lambda: upper.muscle.voltage_v > 3900, (9000.0, -500.0))
-    assert ros.state.commanded_voltage.tolist() == [4000.0, 0.0]
+
+    def driven_and_told() -> bool:
+        return upper.muscle.voltage_v > 3900 and ros.state.commanded_voltage.tolist() == [4000.0, 0.0]
+
+    ros.drive(driven_and_told, (9000.0, -500.0))
     answer = ros.trigger("emergency_stop")
     assert (answer.success, UNPROVEN in answer.message) == (True, True)
     state = ros.await_mode(FAULT)
