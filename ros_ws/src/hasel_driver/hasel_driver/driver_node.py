@@ -1,5 +1,6 @@
 """`ros2 run hasel_driver driver_node`: lifecycle node on top of the supply's thread."""
 
+import signal
 import sys
 import time
 
@@ -226,6 +227,7 @@ def main() -> None:
     except KeyboardInterrupt:
         pass
     finally:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in a launch file comes twice
         node.close()
         node.leave()
         rclpy.try_shutdown()

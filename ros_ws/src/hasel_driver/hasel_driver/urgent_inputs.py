@@ -15,9 +15,9 @@ from hasel_driver.limits import Voltages
 from hasel_driver.spinning import quiet_at_shutdown
 
 ALIVE_PERIOD_S = 0.05
-NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.RELIABLE)
-LATCHED = QoSProfile(
-    depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
+EVERY = QoSProfile(depth=100, reliability=ReliabilityPolicy.RELIABLE)  # the next must not push out a NaN
+EVERY_AND_LAST = QoSProfile(
+    depth=100, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
 )
 
 
@@ -34,8 +34,8 @@ class UrgentInputs:
         self._node: Node = rclpy.create_node(
             "hasel_driver_inputs", start_parameter_services=False, enable_rosout=False
         )
-        self._node.create_subscription(Actuation, "/hasel/command", self._take_command, NEWEST)
-        self._node.create_subscription(Bool, "/hasel/emergency_stop", self._take_stop, LATCHED)
+        self._node.create_subscription(Actuation, "/hasel/command", self._take_command, EVERY)
+        self._node.create_subscription(Bool, "/hasel/emergency_stop", self._take_stop, EVERY_AND_LAST)
         self._node.create_timer(ALIVE_PERIOD_S, on_alive)
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self._node)

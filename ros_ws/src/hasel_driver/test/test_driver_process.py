@@ -50,16 +50,22 @@ def test_frozen_node(start_driver, virtual_rig, ros, grounded_in_time, rounds):
 
 
 @pytest.mark.rounds(1, 20)
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_ended_node(start_driver, virtual_rig, ros, grounded_in_time, number, rounds):
-    """Ctrl-C and a service manager's stop ground at once, and end without a stack trace or a false alarm."""
+@pytest.mark.parametrize(
+    "numbers",
+    [(signal.SIGINT,), (signal.SIGINT, signal.SIGINT), (signal.SIGTERM,)],
+    ids=["Ctrl-C", "Ctrl-C as from a launch file", "service manager's stop"],
+)
+def test_ended_node(start_driver, virtual_rig, ros, grounded_in_time, numbers, rounds):
+    """Whoever ends it, it grounds at once, and ends without a stack trace or a false alarm."""
     for _ in range(rounds):
         driver = start_driver(virtual_rig.port)
         driver.arm()
         with ros.commanding():
             ros.wait(lambda: virtual_rig.live)
             ended_s = time.monotonic()
-            driver.process.send_signal(number)
+            for number in numbers:
+                driver.process.send_signal(number)
+                time.sleep(0.01)
             grounded_in_time(virtual_rig, ended_s)
         assert driver.process.wait(5.0) == 0
         driver.close()

@@ -33,6 +33,7 @@ static avr_irq_t *analogue_irqs, *uart_irqs;
 static struct port port;
 static struct muscle muscles[CHANNELS];
 static double peaks_v[CHANNELS];
+static uint16_t compare_values[CHANNELS];
 static bool live, silent, deaf, noise, truncate_next, interlock_open, uart_full, host_present, tracing;
 static char received[4096];
 static size_t received_count;
@@ -76,11 +77,16 @@ static void pins_changed(struct avr_irq_t* irq, uint32_t value, void* parameter)
   }
 }
 
+// As in the AVR, where the high byte waits in a register of its own until the low one is written.
+static void compare_written(struct avr_irq_t* irq, uint32_t low_byte, void* parameter) {
+  (void)irq;
+  const int channel = (int)(intptr_t)parameter;
+  compare_values[channel] = low_byte | avr->data[(channel == 0 ? OCR1A : OCR1B) + 1] << 8;
+}
+
 static double set_point_v(int channel) {
   const uint8_t connected = channel == 0 ? 0x80 : 0x20;
-  if (!high(8) || !(avr->data[TCCR1A] & connected)) return 0.0;
-  const int address = channel == 0 ? OCR1A : OCR1B;
-  return avr->data[address] | avr->data[address + 1] << 8;
+  return high(8) && avr->data[TCCR1A] & connected ? compare_values[channel] : 0.0;
 }
 
 static void raise_analogue(int input, double full_scale_share) {
@@ -135,6 +141,7 @@ static void feed_uart(void) {
 
 static void reset(void) {
   avr_reset(avr);
+  memset(compare_values, 0, sizeof(compare_values));
   avr_regbit_set(avr, avr->reset_flags.extrf);
   received_count = transmitted_count = 0;
   set_interlock();
@@ -261,6 +268,10 @@ static void start(const char* path) {
   avr_irq_register_notify(uart_irqs + UART_IRQ_OUTPUT, uart_sent, NULL);
   avr_irq_register_notify(uart_irqs + UART_IRQ_OUT_XOFF, uart_flow, avr);
   avr_irq_register_notify(uart_irqs + UART_IRQ_OUT_XON, uart_flow, NULL);
+  for (int channel = 0; channel < CHANNELS; ++channel) {
+    avr_irq_t* written = avr_iomem_getirq(avr, channel == 0 ? OCR1A : OCR1B, NULL, AVR_IOMEM_IRQ_ALL);
+    avr_irq_register_notify(written, compare_written, (void*)(intptr_t)channel);
+  }
   for (int pin = 2; pin < 8; ++pin) {
     avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('D'), pin), pins_changed, NULL);
   }

@@ -1,0 +1,55 @@
+"""What comes by topic reaches the driver whole."""
+
+import math
+import time
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not there")
+
+import rclpy
+from hasel_driver.urgent_inputs import UrgentInputs
+
+MANY = 50
+
+
+@pytest.fixture
+def inputs():
+    """Urgent inputs, held up by everything they tell, and what they have told."""
+    told = {"commands": [], "stops": []}
+
+    def take(kind: str, value) -> None:
+        time.sleep(0.002)
+        told[kind].append(value)
+
+    rclpy.init()
+    inputs = UrgentInputs(
+        lambda voltage_v, _age_s: take("commands", voltage_v),
+        lambda stop: take("stops", stop),
+        lambda: None,
+    )
+    yield told
+    inputs.close()
+    rclpy.try_shutdown()
+
+
+def test_later_commands_do_not_push_out_a_nan(ros, inputs):
+    """Commands that come faster than they are taken are all seen, so that none that is not a number is missed."""
+    ros.wait(lambda: ros.commands.get_subscription_count() == 1)
+    for _ in range(MANY):
+        ros.command((1000.0, math.nan))
+        ros.command((1000.0, 0.0))
+    ros.wait(lambda: len(inputs["commands"]) == 2 * MANY)
+    assert sum(math.isnan(voltage) for command in inputs["commands"] for voltage in command) == MANY
+
+
+def test_a_stop_that_is_taken_back_at_once_is_heard(ros, inputs):
+    """True is told although false follows immediately."""
+    ros.emergency_stop_topic(False)
+    ros.wait(lambda: inputs["stops"] == [False])
+    for index in range(2 * MANY):
+        ros.emergency_stop_topic(index % 2 == 0)
+        time.sleep(5e-4)  # this publisher, as is usual for a latched topic, keeps the last message only
+    ros.wait(lambda: len(inputs["stops"]) == 2 * MANY + 1)
+    assert sum(inputs["stops"]) == MANY
+    ros.drop_emergency_stop_topic()
