@@ -12,6 +12,8 @@ EXPLAINED = 0.9
 _PARTLY = 0.6
 NOISE = 1.05
 """A mean error up to this many times the noise's is noise."""
+_NEAR_NOISE = 1.25
+"""Where a last look still sees something, a mean error beyond this many times the noise's is not explained."""
 
 
 def left_over(stages: Sequence[Stage]) -> float:
@@ -36,11 +38,12 @@ def conclude(stages: Sequence[Stage], reason: str, negligible: bool = False) -> 
     added = stages[-1].effects
     rest = stages[-1].diagnosis
     nothing_left = negligible or (rest is not None and rest.p_value >= SIGNIFICANT)
+    near = rest is None or stages[-1].fit.mean_absolute_error <= _NEAR_NOISE * rest.noise.mean_absolute
     if first.p_value >= SIGNIFICANT:
         status, unexplained = Status.NOTHING_MISSING, 0.0
     elif not added:
         status = Status.NOTHING_MISSING if negligible else Status.UNEXPLAINED
-    elif unexplained <= 1 - EXPLAINED or nothing_left:
+    elif nothing_left or (near and unexplained <= 1 - EXPLAINED):
         status = Status.EXPLAINED
     else:
         status = Status.PARTLY_EXPLAINED if unexplained <= 1 - _PARTLY else Status.UNEXPLAINED
