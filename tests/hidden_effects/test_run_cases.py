@@ -1,10 +1,15 @@
+"""Many cases: stopped, resumed, beside each other, failing."""
+
 import json
+import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from hasel_bringup.bench_hidden import command, run_cases
 from hasel_bringup.bench_hidden.case import Case
 from hasel_bringup.bench_hidden.generate import Laboratory
 from hasel_sim.errors import SimulationError
+from hasel_sim.parallel import SerialExecutor
 from hasel_sysid.errors import SysidError
 
 CASES = [Case("nothing", (), 0.0, seed, "white", "near") for seed in range(3)]
@@ -34,7 +39,7 @@ def measured(monkeypatch):
 
 def run(cases, folder, explain=lambda laboratory, pool: ANSWER):
     """All outcomes of some cases."""
-    return list(run_cases.run_cases(cases, explain, None, folder, lambda sentence: None))
+    return list(run_cases.run_cases(cases, explain, SerialExecutor(), folder, lambda sentence: None))
 
 
 def test_a_stopped_benchmark_goes_on_where_it_was(tmp_path, measured):
@@ -52,6 +57,21 @@ def test_a_stopped_benchmark_goes_on_where_it_was(tmp_path, measured):
     measured.clear()
     assert [outcome.case for outcome in run(CASES, tmp_path)] == [case.name for case in CASES]
     assert measured == CASES[1:]
+
+
+def test_cases_run_beside_each_other(tmp_path):
+    """As many at once as there are workers, and every one ends in a file."""
+    together = threading.Barrier(2, timeout=10.0)
+
+    def met(laboratory, pool):
+        together.wait()
+        return ANSWER
+
+    cases = [Case("nothing", (), 0.0, seed, "white", "near") for seed in range(4)]
+    with ThreadPoolExecutor(2) as pool:
+        outcomes = list(run_cases.run_cases(cases, met, pool, tmp_path, lambda sentence: None, at_once=2))
+    assert {outcome.case for outcome in outcomes} == {path.stem for path in tmp_path.iterdir()}
+    assert len(outcomes) == 4
 
 
 def test_each_case_leaves_a_file_with_answer_and_truth(tmp_path):

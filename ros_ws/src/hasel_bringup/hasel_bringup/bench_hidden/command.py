@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -42,7 +43,7 @@ def parser() -> argparse.ArgumentParser:
     options.add_argument("--resume", action="store_true", help="keep what the output folder already holds")
     options.add_argument("--output", type=Path, default=_OUTPUT, metavar="DIR", help="default: %(default)s")
     options.add_argument("--page", type=Path, metavar="FILE", help=f"default: {_PAGE}, in DIR for a part")
-    options.add_argument("--jobs", type=int, metavar="N", help="processes (default: one per core)")
+    options.add_argument("--jobs", type=int, metavar="N", help="cases at once (default: one per core)")
     options.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, instead of processes")
     return options
 
@@ -69,13 +70,17 @@ def _bench(options: argparse.Namespace) -> int:
     stopped = False
     try:
         with executor(options.jobs, options.scheduler) as pool:
-            for outcome in run_cases(cases, explain, pool, options.output, _say):
+            for outcome in run_cases(cases, explain, pool, options.output, _say, _at_once(options, cases)):
                 outcomes.append(outcome)
     except KeyboardInterrupt:
         stopped = True
         _say(f"Stopped after {len(outcomes)} of {len(cases)} cases; go on with --resume.")
     _write(outcomes, options.page or _default_page(options))
     return 130 if stopped else 0
+
+
+def _at_once(options: argparse.Namespace, cases: Sequence[Case]) -> int:
+    return len(cases) if options.scheduler else options.jobs or os.cpu_count() or 1
 
 
 def _cases(options: argparse.Namespace) -> list[Case]:

@@ -1,12 +1,13 @@
-"""Run cases one after the other, each kept in a file of its own, so that hours of work survive a stop."""
+"""Run cases, each on one core and kept in a file of its own, so that hours of work survive a stop."""
 
 import json
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor
+from concurrent.futures import FIRST_COMPLETED, Executor, wait
 from pathlib import Path
 
 from hasel_sim.errors import SimulationError
+from hasel_sim.parallel import SerialExecutor
 from hasel_sysid.errors import SysidError
 
 from hasel_bringup.bench_hidden.case import Case
@@ -43,28 +44,52 @@ def run_case(case: Case, explain: Explain, pool: Executor) -> tuple[Outcome, dic
 
 
 def run_cases(
-    cases: Sequence[Case], explain: Explain, pool: Executor, folder: Path, say: Callable[[str], None]
+    cases: Sequence[Case],
+    explain: Explain,
+    pool: Executor,
+    folder: Path,
+    say: Callable[[str], None],
+    at_once: int = 1,
 ) -> Iterator[Outcome]:
-    """Outcomes of all cases, those already in the folder first; each new one is written there at once."""
+    """Outcomes of all cases, those already in the folder first; each new one is written there at once.
+
+    at_once: how many cases the pool is given at a time, each to one worker.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     kept = {case.name: kept_outcome(case, folder) for case in cases}
     yield from (outcome for outcome in kept.values() if outcome is not None)
     todo = [case for case in cases if kept[case.name] is None]
     begin = time.perf_counter()
-    for number, case in enumerate(todo, start=1):
-        outcome, values, answer = run_case(case, explain, pool)
-        content = {
-            "case": case.as_dict(),
-            "hidden_values": values,
-            "outcome": outcome.as_dict(),
-            "answer": answer,
-        }
-        unfinished = folder / f"{case.name}.part"
-        unfinished.write_text(json.dumps(content, indent=1))
-        unfinished.replace(folder / f"{case.name}.json")
+    for number, (case, found) in enumerate(_in_turn(todo, explain, pool, at_once), start=1):
+        _keep(case, *found, folder)
         left = (time.perf_counter() - begin) / number * (len(todo) - number)
-        say(f"[{number}/{len(todo)}, {_duration(left)} left] {case}: {_in_words(outcome)}")
-        yield outcome
+        say(f"[{number}/{len(todo)}, {_duration(left)} left] {case}: {_in_words(found[0])}")
+        yield found[0]
+
+
+def _in_turn(
+    cases: Sequence[Case], explain: Explain, pool: Executor, at_once: int
+) -> Iterator[tuple[Case, tuple[Outcome, dict, dict]]]:
+    waiting, running = list(reversed(cases)), {}
+    while waiting or running:
+        while waiting and len(running) < at_once:
+            case = waiting.pop()
+            running[pool.submit(run_case, case, explain, SerialExecutor())] = case
+        finished, _ = wait(running, return_when=FIRST_COMPLETED)
+        for future in finished:
+            yield running.pop(future), future.result()
+
+
+def _keep(case: Case, outcome: Outcome, values: dict, answer: dict, folder: Path) -> None:
+    content = {
+        "case": case.as_dict(),
+        "hidden_values": values,
+        "outcome": outcome.as_dict(),
+        "answer": answer,
+    }
+    unfinished = folder / f"{case.name}.part"
+    unfinished.write_text(json.dumps(content, indent=1))
+    unfinished.replace(folder / f"{case.name}.json")
 
 
 def _in_words(outcome: Outcome) -> str:
