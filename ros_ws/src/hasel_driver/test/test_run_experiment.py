@@ -42,6 +42,7 @@ def run(ros, tmp_path):
         )
         ros.wait(sent.done)
         handle = sent.result()
+        assert handle.accepted
 
         def end(timeout_s: float = 15.0):
             answer = handle.get_result_async()
@@ -52,6 +53,20 @@ def run(ros, tmp_path):
 
     yield begin
     client.destroy()
+
+
+@pytest.fixture
+def run_until_live(run, shared_rig, ros):
+    """As `run`, but returns when the output is live; where it never is, the action's own words say why."""
+
+    def begin(**changes):
+        handle, feedback, end = run(**changes)
+        ended = handle.get_result_async()
+        ros.wait(lambda: shared_rig.live or ended.done())
+        assert not ended.done(), ended.result().result.message
+        return handle, feedback, end
+
+    yield begin
 
 
 def test_runs_records_and_reports_progress(driver, ros, run):
@@ -76,11 +91,10 @@ def test_runs_records_and_reports_progress(driver, ros, run):
     assert ros.await_mode(ARMED)
 
 
-def test_cancel_grounds_and_keeps_what_was_recorded(driver, shared_rig, ros, run):
+def test_cancel_grounds_and_keeps_what_was_recorded(driver, shared_rig, ros, run_until_live):
     """A cancelled run ends at 0 V, armed, with status cancelled."""
     driver.arm()
-    handle, _, end = run(periods=100)
-    shared_rig.await_live(True)
+    handle, _, end = run_until_live(periods=100)
     cancelled_s = time.monotonic()
     ros.wait(handle.cancel_goal_async().done)
     status, result = end()
@@ -92,12 +106,13 @@ def test_cancel_grounds_and_keeps_what_was_recorded(driver, shared_rig, ros, run
 
 @pytest.mark.rounds(2, 25)
 @pytest.mark.parametrize("way", ["service", "topic"])
-def test_emergency_stop_during_the_waveform(driver, shared_rig, ros, run, grounded_in_time, way, rounds):
+def test_emergency_stop_during_the_waveform(
+    driver, shared_rig, ros, run_until_live, grounded_in_time, way, rounds
+):
     """The stop grounds at any phase, the goal is aborted and says why, and the waveform does not come back."""
     for _ in range(rounds):
         driver.arm()
-        _, _, end = run(periods=100)
-        shared_rig.await_live(True)
+        _, _, end = run_until_live(periods=100)
         time.sleep(random.uniform(0.0, 0.5))
         at_s = time.monotonic()
         if way == "service":
@@ -115,11 +130,10 @@ def test_emergency_stop_during_the_waveform(driver, shared_rig, ros, run, ground
         ros.wait(lambda: ros.trigger("clear_fault").success)
 
 
-def test_a_command_during_the_waveform_is_a_second_master(driver, shared_rig, ros, run):
+def test_a_command_during_the_waveform_is_a_second_master(driver, shared_rig, ros, run_until_live):
     """An experiment is not mixed with commands."""
     driver.arm()
-    _, _, end = run(periods=100)
-    shared_rig.await_live(True)
+    _, _, end = run_until_live(periods=100)
     ros.command((1000.0, 1000.0))
     shared_rig.await_live(False)
     status, result = end()

@@ -8,6 +8,7 @@ from hasel_sim.model import Model
 from scipy.optimize import least_squares
 
 from hasel_sysid.draft import draft
+from hasel_sysid.fit.between_runs import wider_where_runs_disagree
 from hasel_sysid.fit.result import FitResult
 from hasel_sysid.fit.uncertainty import parameter_covariance
 from hasel_sysid.noise import estimate_noise
@@ -133,7 +134,9 @@ def fitted_result(evaluation: Evaluation, count: int) -> FitResult:
     model, names = evaluation.model, evaluation.names
     noise = estimate_noise(evaluation.residual, evaluation.runs, evaluation.jacobian, "what the fit leaves")
     covariance, undetermined = parameter_covariance(evaluation.jacobian, noise, evaluation.runs)
-    errors = dict(zip(names, np.sqrt(np.diag(covariance)), strict=True))
+    by_noise = np.sqrt(np.diag(covariance))
+    errors = wider_where_runs_disagree(by_noise, evaluation.jacobian, evaluation.residual, evaluation.runs)
+    errors = dict(zip(names, errors, strict=True))
     finite = {name: float(error) for name, error in errors.items() if np.isfinite(error)}
     parameters = [model.parameters[name] for name in names]
     at_bound = tuple(p.name for p in parameters if _on(p.value, p.lower, p) or _on(p.value, p.upper, p))
