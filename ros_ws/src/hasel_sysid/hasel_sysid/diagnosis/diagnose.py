@@ -73,6 +73,7 @@ def diagnose(
         float(np.clip((base.sum_of_squares - learned @ learned) / context.excess, 0, 1)),
         none,
         numerical_suspects(problem, fit, context.excess) if chance < judgement.SIGNIFICANT else {},
+        signatures,
     )
 
 

@@ -4,7 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.diagnosis.judgement import SIGNIFICANT
+from hasel_sysid.fit import FitResult
 from hasel_sysid.improve.result import Improvement, Stage, Status
 
 EXPLAINED = 0.9
@@ -12,8 +14,9 @@ EXPLAINED = 0.9
 _PARTLY = 0.6
 NOISE = 1.05
 """A mean error up to this many times the noise's is noise."""
-_NEAR_NOISE = 1.25
-"""Where a last look still sees something, a mean error beyond this many times the noise's is not explained."""
+NEAR_NOISE = 1.25
+"""Correlated noise of nine runs is known to 8 %: a mean error within three times that of the noise's is near it."""
+_ALL_BUT_NOTHING = 0.03
 
 
 def left_over(stages: Sequence[Stage]) -> float:
@@ -27,6 +30,11 @@ def left_over(stages: Sequence[Stage]) -> float:
     return float(np.clip((left - floor) / max(base - floor, 1e-12), 0.0, 1.0))
 
 
+def near_noise(fit: FitResult, found: Diagnosis) -> bool:
+    """Whether what a fit leaves is as small as the noise, as far as that is known."""
+    return fit.mean_absolute_error <= NEAR_NOISE * found.noise.mean_absolute
+
+
 def conclude(stages: Sequence[Stage], reason: str, negligible: bool = False) -> Improvement:
     """The verdict on all stages, baseline first.
 
@@ -38,7 +46,7 @@ def conclude(stages: Sequence[Stage], reason: str, negligible: bool = False) -> 
     added = stages[-1].effects
     rest = stages[-1].diagnosis
     nothing_left = negligible or (rest is not None and rest.p_value >= SIGNIFICANT)
-    near = rest is None or stages[-1].fit.mean_absolute_error <= _NEAR_NOISE * rest.noise.mean_absolute
+    near = near_noise(stages[-1].fit, last) or unexplained <= _ALL_BUT_NOTHING
     if first.p_value >= SIGNIFICANT:
         status, unexplained = Status.NOTHING_MISSING, 0.0
     elif not added:

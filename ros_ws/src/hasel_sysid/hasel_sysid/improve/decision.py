@@ -1,11 +1,12 @@
 """Whether a diagnosis gives reason to add an effect."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict
 from hasel_sysid.diagnosis.judgement import SIGNIFICANT
 from hasel_sysid.diagnosis.left_out import left_out_squares
-from hasel_sysid.improve.conclusion import EXPLAINED
+from hasel_sysid.improve.conclusion import EXPLAINED, near_noise
 from hasel_sysid.improve.result import Stage
 
 _LEAST_GAIN = 0.1
@@ -30,12 +31,9 @@ def decide(stage: Stage, found: Diagnosis) -> Decision:
         return Decision(None, f"{what}: noise alone looks like this in {found.p_value:.0%} of cases.")
     candidates = [f for f in found.findings if f.verdict is Verdict.MISSING and f.fit is not None]
     before = stage.fit.evaluation
-    gains = [1 - f.fit.evaluation.sum_of_squares / before.sum_of_squares for f in candidates]
-    most = max(gains, default=1 - (found.noise.mean_absolute / stage.fit.mean_absolute_error) ** 2)
-    if most < _LEAST_GAIN:
-        what = candidates[0].effect if candidates else "what exceeds the noise"
-        reason = f"Nothing that matters is missing: {what} makes {most:.1%} of the squared error."
-        return Decision(None, reason, negligible=True)
+    trifle = _trifle(stage, found, candidates)
+    if trifle:
+        return Decision(None, f"Nothing that matters is missing: {trifle}.", negligible=True)
     enough = max(0.5, _NEARLY * found.explained)
     numerics = {name: share for name, share in found.suspects.items() if share > enough}
     if numerics:
@@ -49,6 +47,17 @@ def decide(stage: Stage, found: Diagnosis) -> Decision:
         what = f"{best.effect} fits better but predicts runs left out of the fit worse"
         return Decision(None, f"{what}: it is not accepted.")
     return Decision(best)
+
+
+def _trifle(stage: Stage, found: Diagnosis, candidates: Sequence[Finding]) -> str:
+    """Why what is missing does not matter; empty if it does."""
+    if not candidates:
+        times = stage.fit.mean_absolute_error / found.noise.mean_absolute
+        reason = f"the error is {times:.2f} times the noise's, and no effect accounts for it"
+        return reason if near_noise(stage.fit, found) else ""
+    squares = stage.fit.evaluation.sum_of_squares
+    most = max(1 - f.fit.evaluation.sum_of_squares / squares for f in candidates)
+    return f"{candidates[0].effect} makes {most:.1%} of the squared error" if most < _LEAST_GAIN else ""
 
 
 def _none_convinces(found: Diagnosis) -> str:

@@ -7,9 +7,10 @@ from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis import Diagnosis, diagnose
 from hasel_sysid.fit import FitResult, fit_least_squares
-from hasel_sysid.improve.conclusion import NOISE, conclude, left_over
+from hasel_sysid.improve.conclusion import NOISE, conclude, left_over, near_noise
 from hasel_sysid.improve.decision import decide
 from hasel_sysid.improve.exchange import exchanged
+from hasel_sysid.improve.promise import WORTH_A_LOOK, most_promised
 from hasel_sysid.improve.result import Improvement, Stage
 from hasel_sysid.problem import Problem
 
@@ -51,6 +52,10 @@ def improve(
         stages.append(_stage(refit, model, validation))
         if _is_noise(refit, found):
             reason = f"What is left after adding {accepted.effect} is noise."
+            break
+        if near_noise(refit, found) and most_promised(refit, found) < WORTH_A_LOOK:
+            reason = f"What is left after adding {accepted.effect} is near the noise and looks like no other effect."
+            negligible = True
             break
         left = left_over(stages)
         if left < _ENOUGH and len(problem.experiments) == 1:

@@ -22,7 +22,9 @@ def stage(error, *effects, chance=None):
         ([stage(0.0025, chance=NOISE)], Status.NOTHING_MISSING, ()),
         ([stage(0.0444, chance=SOMETHING)], Status.UNEXPLAINED, ()),
         ([stage(0.0444, chance=SOMETHING), stage(0.0025, "drag")], Status.EXPLAINED, ("drag",)),
-        ([stage(0.0444, chance=SOMETHING), stage(0.0040, "drag")], Status.EXPLAINED, ("drag",)),
+        # of a large error all but nothing is gone
+        ([stage(0.0444, chance=SOMETHING), stage(0.0036, "drag")], Status.EXPLAINED, ("drag",)),
+        ([stage(0.0444, chance=SOMETHING), stage(0.0040, "drag")], Status.PARTLY_EXPLAINED, ("drag",)),
         (
             [stage(0.0444, chance=SOMETHING), stage(0.0029, "drag", chance=SOMETHING)],
             Status.EXPLAINED,
