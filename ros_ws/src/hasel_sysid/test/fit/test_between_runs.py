@@ -5,6 +5,7 @@ import pytest
 from hasel_sysid.fit.between_runs import scatter_between_runs, wider_where_runs_disagree
 from hasel_sysid.fit.uncertainty import parameter_covariance
 from hasel_sysid.noise import NoiseModel
+from scipy.linalg import fractional_matrix_power
 
 RUNS = np.repeat(np.arange(9), 200)
 TIME = np.tile(np.arange(200) / 120.0, 9)
@@ -31,13 +32,19 @@ def coverage(residuals):
     return np.mean(alone), np.mean(both)
 
 
-def test_it_is_the_jackknife():
-    """The same as solving again without each run."""
-    generator = np.random.default_rng(0)
-    residual = NOISE.sample(RUNS, 1, generator)[:, 0]
+def test_it_is_the_formula_of_bell_and_mccaffrey():
+    """The same as with the square root of I - H taken of whole matrices."""
+    residual = NOISE.sample(RUNS, 1, np.random.default_rng(0))[:, 0]
     left = residual - JACOBIAN @ solve(JACOBIAN, residual)
-    without = np.array([solve(JACOBIAN[run != RUNS], residual[run != RUNS]) for run in range(9)])
-    expected = np.sqrt(8 / 9 * ((without - without.mean(axis=0)) ** 2).sum(axis=0))
+    inverse = np.linalg.inv(JACOBIAN.T @ JACOBIAN)
+    middle = np.zeros((3, 3))
+    for run in range(9):
+        own = JACOBIAN[run == RUNS]
+        adjusted = (
+            fractional_matrix_power(np.eye(len(own)) - own @ inverse @ own.T, -0.5).real @ left[run == RUNS]
+        )
+        middle += np.outer(own.T @ adjusted, own.T @ adjusted)
+    expected = np.sqrt(np.diag(inverse @ middle @ inverse))
     np.testing.assert_allclose(scatter_between_runs(JACOBIAN, left, RUNS), expected, rtol=1e-9)
 
 
