@@ -1,3 +1,5 @@
+"""The numbers of the benchmark, and the page that shows them."""
+
 import pytest
 from hasel_bringup.bench_hidden.outcome import Estimate, Outcome
 from hasel_bringup.bench_hidden.page import as_json, as_markdown
@@ -95,7 +97,7 @@ def test_a_case_without_an_answer_is_reported_and_not_counted():
         outcome("single", ["tether"], failure="it broke"),
     ]
     assert value(outcomes, "one visible effect") == (1.0, True)
-    assert "it broke" in as_markdown(outcomes)
+    assert "it broke" in as_markdown(outcomes, len(outcomes))
     assert as_json(outcomes)["near"]["failures"] == ["single-tether: it broke"]
 
 
@@ -107,4 +109,13 @@ def test_page_shows_settings_apart():
     ]
     content = as_json(outcomes)
     assert [content[name]["bars"][0]["value"] for name in ("near", "converged")] == [1.0, 0.0]
-    assert "## Truth: near" in as_markdown(outcomes) and "## Truth: converged" in as_markdown(outcomes)
+    assert "## Truth: near" in as_markdown(outcomes, len(outcomes)) and "## Truth: converged" in as_markdown(
+        outcomes, len(outcomes)
+    )
+
+
+def test_a_benchmark_broken_off_says_so():
+    """How many of the planned cases the numbers rest on."""
+    outcomes = [outcome("nothing", status="nothing_missing")]
+    assert "1 of 40 cases have been run" in as_markdown(outcomes, 40)
+    assert "have been run" not in as_markdown(outcomes, 1)

@@ -75,7 +75,7 @@ def _bench(options: argparse.Namespace) -> int:
     except KeyboardInterrupt:
         stopped = True
         _say(f"Stopped after {len(outcomes)} of {len(cases)} cases; go on with --resume.")
-    _write(outcomes, options.page or _default_page(options))
+    _write(outcomes, len(cases), options.page or _default_page(options))
     return 130 if stopped else 0
 
 
@@ -96,11 +96,11 @@ def _default_page(options: argparse.Namespace) -> Path:
     return options.output / _PAGE.name if part else _PAGE
 
 
-def _write(outcomes: Sequence[Outcome], page: Path) -> None:
+def _write(outcomes: Sequence[Outcome], planned: int, page: Path) -> None:
     if not outcomes:
         return
     page.parent.mkdir(parents=True, exist_ok=True)
-    text = as_markdown(outcomes)
+    text = as_markdown(outcomes, planned)
     page.write_text(text)
     page.with_suffix(".json").write_text(json.dumps(as_json(outcomes), indent=1))
     print(text)

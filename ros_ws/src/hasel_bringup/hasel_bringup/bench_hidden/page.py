@@ -33,8 +33,8 @@ def as_json(outcomes: Sequence[Outcome]) -> dict:
     }
 
 
-def as_markdown(outcomes: Sequence[Outcome]) -> str:
-    """The page."""
+def as_markdown(outcomes: Sequence[Outcome], planned: int) -> str:
+    """The page; planned: how many cases there are in all."""
     parts = [
         "# Hidden effects: is the right one named?\n",
         "Written by `bench_hidden` of `hasel_bringup`. Each case hides something in a truth of another mesh, time "
@@ -45,6 +45,8 @@ def as_markdown(outcomes: Sequence[Outcome]) -> str:
         "*Visible* means that, once the baseline is fitted, what is left exceeds the noise by at least half its rms; "
         "the rest is swallowed by the fitted parameters, and nothing could name it.\n",
     ]
+    if len(outcomes) < planned:
+        parts.append(f"**{len(outcomes)} of {planned} cases have been run**; `--resume` runs the rest.\n")
     for name, chosen in _by_numerics(outcomes).items():
         parts += _section(name, chosen)
     return "\n".join(parts)
