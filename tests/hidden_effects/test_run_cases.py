@@ -110,3 +110,15 @@ def test_command_writes_the_page(tmp_path, monkeypatch):
         tmp_path / "hidden_effects.md"
     ).read_text(encoding="utf-8")
     assert json.loads((tmp_path / "hidden_effects.json").read_text())["near"]["bars"]
+
+
+def test_command_goes_on_from_the_page_alone(tmp_path, monkeypatch, measured):
+    """The JSON beside the page holds every outcome: with it, another machine need not begin again."""
+    monkeypatch.setattr(command, "explain", lambda laboratory, pool: ANSWER)
+    page = tmp_path / "page.md"
+    asked = ["--quick", "--jobs", "1", "--page", str(page), "--output"]
+    assert command.main([*asked, str(tmp_path / "here")]) == 0
+    first = page.read_text(encoding="utf-8")
+    measured.clear()
+    assert command.main([*asked, str(tmp_path / "elsewhere"), "--resume"]) == 0
+    assert (measured, page.read_text(encoding="utf-8")) == ([], first)

@@ -14,7 +14,7 @@ from hasel_bringup.bench_hidden.case import Case
 from hasel_bringup.bench_hidden.case_list import list_cases, quick_cases
 from hasel_bringup.bench_hidden.explain import explain
 from hasel_bringup.bench_hidden.outcome import Outcome
-from hasel_bringup.bench_hidden.page import as_json, as_markdown
+from hasel_bringup.bench_hidden.page import as_json, as_markdown, outcomes_of
 from hasel_bringup.bench_hidden.run_cases import run_cases
 from hasel_bringup.bench_hidden.truth import NUMERICS
 from hasel_bringup.errors import BringupError
@@ -40,7 +40,9 @@ def parser() -> argparse.ArgumentParser:
         "--truth", choices=list(NUMERICS), default="near", help="discretisation of the truth"
     )
     options.add_argument("--quick", action="store_true", help="five cases, some minutes")
-    options.add_argument("--resume", action="store_true", help="keep what the output folder already holds")
+    options.add_argument(
+        "--resume", action="store_true", help="keep what the output folder and the page hold"
+    )
     options.add_argument("--output", type=Path, default=_OUTPUT, metavar="DIR", help="default: %(default)s")
     options.add_argument("--page", type=Path, metavar="FILE", help=f"default: {_PAGE}, in DIR for a part")
     options.add_argument("--jobs", type=int, metavar="N", help="cases at once (default: one per core)")
@@ -66,17 +68,26 @@ def _bench(options: argparse.Namespace) -> int:
         raise BringupError(
             f"{options.output} already holds results; go on with --resume, or name another folder with --output."
         )
+    page = options.page or _default_page(options)
+    known = _known(page) if options.resume else {}
     outcomes: list[Outcome] = []
     stopped = False
     try:
         with executor(options.jobs, options.scheduler) as pool:
-            for outcome in run_cases(cases, explain, pool, options.output, _say, _at_once(options, cases)):
+            at_once = _at_once(options, cases)
+            for outcome in run_cases(cases, explain, pool, options.output, _say, at_once, known):
                 outcomes.append(outcome)
     except KeyboardInterrupt:
         stopped = True
         _say(f"Stopped after {len(outcomes)} of {len(cases)} cases; go on with --resume.")
-    _write(outcomes, len(cases), options.page or _default_page(options))
+    _write(outcomes, len(cases), page)
     return 130 if stopped else 0
+
+
+def _known(page: Path) -> dict[str, Outcome]:
+    """What the page to be written already tells, from its JSON."""
+    path = page.with_suffix(".json")
+    return outcomes_of(json.loads(path.read_text())) if path.is_file() else {}
 
 
 def _at_once(options: argparse.Namespace, cases: Sequence[Case]) -> int:
@@ -102,7 +113,7 @@ def _write(outcomes: Sequence[Outcome], planned: int, page: Path) -> None:
     page.parent.mkdir(parents=True, exist_ok=True)
     text = as_markdown(outcomes, planned)
     page.write_text(text)
-    page.with_suffix(".json").write_text(json.dumps(as_json(outcomes), indent=1))
+    page.with_suffix(".json").write_text(json.dumps(as_json(outcomes)))
     print(text)
     _say(f"Written to {page} and {page.with_suffix('.json')}.")
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hasel_bringup.bench_hidden.outcome import Outcome
+from hasel_bringup.bench_hidden.outcome import Outcome, outcome_from_dict
 from hasel_bringup.bench_hidden.summary import Bar, bars, confusion
 from hasel_bringup.bench_hidden.truth import NUMERICS
 
@@ -28,9 +28,16 @@ def as_json(outcomes: Sequence[Outcome]) -> dict:
             ],
             "confusion": confusion(chosen),
             "failures": [f"{o.case}: {o.failure}" for o in chosen if o.failure],
+            "outcomes": [o.as_dict() for o in chosen],
         }
         for name, chosen in _by_numerics(outcomes).items()
     }
+
+
+def outcomes_of(content: dict) -> dict[str, Outcome]:
+    """Read back the outcomes that `as_json` wrote, by the names of their cases."""
+    found = [outcome_from_dict(one) for setting in content.values() for one in setting["outcomes"]]
+    return {outcome.case: outcome for outcome in found}
 
 
 def as_markdown(outcomes: Sequence[Outcome], planned: int) -> str:

@@ -2,7 +2,7 @@
 
 import json
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, wait
 from pathlib import Path
 
@@ -50,13 +50,14 @@ def run_cases(
     folder: Path,
     say: Callable[[str], None],
     at_once: int = 1,
+    known: Mapping[str, Outcome] | None = None,
 ) -> Iterator[Outcome]:
-    """Outcomes of all cases, those already in the folder first; each new one is written there at once.
+    """Outcomes of all cases, those already known or in the folder first; each new one is written there at once.
 
-    at_once: how many cases the pool is given at a time, each to one worker.
+    at_once: how many cases the pool is given at a time, each to one worker; known: outcomes by name of the case.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    kept = {case.name: kept_outcome(case, folder) for case in cases}
+    kept = {case.name: kept_outcome(case, folder) or (known or {}).get(case.name) for case in cases}
     yield from (outcome for outcome in kept.values() if outcome is not None)
     todo = [case for case in cases if kept[case.name] is None]
     begin = time.perf_counter()
