@@ -35,10 +35,13 @@ def near_noise(fit: FitResult, found: Diagnosis) -> bool:
     return fit.mean_absolute_error <= NEAR_NOISE * found.noise.mean_absolute
 
 
-def conclude(stages: Sequence[Stage], reason: str, negligible: bool = False) -> Improvement:
+def conclude(
+    stages: Sequence[Stage], reason: str, negligible: bool = False, contradictions: Sequence[str] = ()
+) -> Improvement:
     """The verdict on all stages, baseline first.
 
-    reason: why the last one is the last; negligible: whether all that could be added would hardly matter.
+    reason: why the last one is the last; negligible: whether all that could be added would hardly matter;
+    contradictions: what speaks against the effects that were added, whatever they explain.
     """
     first = stages[0].diagnosis
     last = next(stage.diagnosis for stage in reversed(stages) if stage.diagnosis is not None)
@@ -52,8 +55,10 @@ def conclude(stages: Sequence[Stage], reason: str, negligible: bool = False) -> 
     elif not added:
         status = Status.NOTHING_MISSING if negligible else Status.UNEXPLAINED
     elif nothing_left or (near and unexplained <= 1 - EXPLAINED):
-        status = Status.EXPLAINED
+        status = Status.PARTLY_EXPLAINED if contradictions else Status.EXPLAINED
     else:
         status = Status.PARTLY_EXPLAINED if unexplained <= 1 - _PARTLY else Status.UNEXPLAINED
     missing = added if status in (Status.EXPLAINED, Status.PARTLY_EXPLAINED) else ()
-    return Improvement(list(stages), status, missing, unexplained, last.noise.mean_absolute, reason)
+    return Improvement(
+        list(stages), status, missing, unexplained, last.noise.mean_absolute, reason, tuple(contradictions)
+    )

@@ -6,6 +6,7 @@ from dataclasses import replace
 from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis import Diagnosis, diagnose
+from hasel_sysid.diagnosis.constancy import trends
 from hasel_sysid.fit import FitResult, fit_least_squares
 from hasel_sysid.improve.conclusion import NOISE, conclude, left_over, near_noise
 from hasel_sysid.improve.decision import decide
@@ -66,7 +67,7 @@ def improve(
             break
     if stages[-1].diagnosis is None and on_stage:
         on_stage(stages[-1])
-    return conclude(stages, reason, negligible)
+    return conclude(stages, reason, negligible, _contradictions(stages))
 
 
 class _Reporter:
@@ -92,6 +93,13 @@ def _stage(fit: FitResult, first: Model, validation: Problem | None) -> Stage:
     added = tuple(effect.id for effect in fit.model.effects if effect.id not in before)
     error = None if validation is None else validation.evaluate(fit.model).mean_absolute_error
     return Stage(added, fit, error)
+
+
+def _contradictions(stages: Sequence[Stage]) -> list[str]:
+    """What the runs would want of the added effects that one law cannot give."""
+    found = next(stage.diagnosis for stage in reversed(stages) if stage.diagnosis is not None)
+    seen = trends(stages[-1].fit, found.noise, stages[-1].effects)
+    return [str(trend) for trend in seen if trend.contradicts]
 
 
 def _is_noise(fit: FitResult, found: Diagnosis) -> bool:

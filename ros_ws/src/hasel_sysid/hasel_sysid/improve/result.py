@@ -45,7 +45,8 @@ class Improvement:
     """All stages and what they come to.
 
     stages: baseline first; missing: effects found missing; unexplained_fraction: of the baseline's mean
-    |Δ sin θ| above the noise; reason: why the improvement stopped, in a sentence.
+    |Δ sin θ| above the noise; reason: why the improvement stopped, in a sentence; contradictions: what tells that an
+    added effect is not the whole truth, in sentences.
     """
 
     stages: list[Stage]
@@ -54,6 +55,7 @@ class Improvement:
     unexplained_fraction: float
     noise_floor: float
     reason: str
+    contradictions: tuple[str, ...] = ()
 
     @property
     def model(self):
@@ -78,11 +80,12 @@ class Improvement:
                 "probability_none_of_these": self.diagnosis.probability_none,
                 "explainable_at_all": self.diagnosis.ceiling,
                 "reason": self.reason,
+                "contradictions": list(self.contradictions),
             },
         }
 
     def __str__(self) -> str:
-        return "\n".join([*map(str, self.stages), self.reason])
+        return "\n".join([*map(str, self.stages), self.reason, *self.contradictions])
 
 
 def diagnosis_json(diagnosis: Diagnosis) -> dict:

@@ -61,9 +61,8 @@ def _title(improvement: Improvement) -> str:
 
 
 def _verdict(improvement: Improvement) -> str:
-    return " ".join(
-        [*(_said_of(effect, improvement) for effect in improvement.missing[:1]), improvement.reason]
-    )
+    said = [_said_of(effect, improvement) for effect in improvement.missing[:1]]
+    return " ".join([*said, improvement.reason, *improvement.contradictions])
 
 
 def _said_of(effect: str, improvement: Improvement) -> str:

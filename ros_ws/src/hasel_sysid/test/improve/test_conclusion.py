@@ -59,3 +59,11 @@ def test_left_over_is_a_share_of_the_baselines_error_above_the_noise():
     assert left_over([first]) == 1.0
     assert left_over([first, stage(FLOOR, "a")]) == 0.0
     assert left_over([first, stage(0.0224, "a")]) == pytest.approx(0.5, abs=0.01)
+
+
+def test_what_fits_but_contradicts_itself_is_only_part_of_the_truth():
+    """An effect that removes everything, but whose value differs from run to run, is not the law."""
+    stages = [stage(0.0444, chance=SOMETHING), stage(0.0025, "drag")]
+    found = conclude(stages, "why", contradictions=["drag would have to grow."])
+    assert (found.status, found.missing) == (Status.PARTLY_EXPLAINED, ("drag",))
+    assert str(found).endswith("why\ndrag would have to grow.")

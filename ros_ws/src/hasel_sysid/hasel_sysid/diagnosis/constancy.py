@@ -1,0 +1,109 @@
+"""Whether one value of an effect does for every voltage and frequency, as it must if its law is the right one."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from hasel_sim.run import Simulation
+
+from hasel_sysid.fit import FitResult
+from hasel_sysid.fit.uncertainty import parameter_covariance
+from hasel_sysid.noise import NoiseModel
+from hasel_sysid.problem import Evaluation
+from hasel_sysid.where_it_fails.drive_cycle import drive_cycle
+
+_CERTAIN = 4.0
+"""Standard errors."""
+_MATTERS = 0.2
+"""Share of the value by which it may differ between the ends of a range: no rig is exact."""
+_ONE_CONDITION = 1.05
+
+
+@dataclass(frozen=True)
+class Trend:
+    """What a parameter would have to be at both ends of a range of runs, were it free to change in between.
+
+    condition: voltage [V] or frequency [Hz]; ends: of the range; values: at the ends, in the parameter's own unit;
+    standard_error: of their difference.
+    """
+
+    parameter: str
+    condition: str
+    ends: tuple[float, float]
+    values: tuple[float, float]
+    standard_error: float
+
+    @property
+    def contradicts(self) -> bool:
+        """Whether the values differ beyond doubt, and by as much as matters."""
+        difference = abs(self.values[1] - self.values[0])
+        return difference > max(_CERTAIN * self.standard_error, _MATTERS * abs(np.mean(self.values)))
+
+    def __str__(self) -> str:
+        unit = {"voltage": "V", "frequency": "Hz"}[self.condition]
+        (low, high), (first, last) = self.ends, self.values
+        return (
+            f"{self.parameter} would have to be {first:.3g} at {low:.4g} {unit} and {last:.3g} at {high:.4g} {unit}: "
+            "something like it is at work, but not by this law."
+        )
+
+
+def trends(fit: FitResult, noise: NoiseModel, effects: Sequence[str]) -> list[Trend]:
+    """Trends of the effects' fitted sizes with voltage and with frequency; time constants and the like are left out.
+
+    Linear in the logarithm of the condition, to first order in the change; conditions that do not vary are left out.
+    """
+    sizes = {
+        f"{effect.id}.{p.name}"
+        for effect in fit.model.effects
+        if effect.id in effects
+        for p in effect.parameters
+        if not p.scan
+    }
+    names = [name for name in fit.evaluation.names if name in sizes and name not in fit.undetermined]
+    found = []
+    for condition, values in _conditions(fit.evaluation.simulations).items():
+        if np.isfinite(values).all() and values.max() > _ONE_CONDITION * values.min():
+            found += [_trend(fit.evaluation, noise, name, condition, values) for name in names]
+    return found
+
+
+def _conditions(simulations: Sequence[Simulation]) -> dict[str, np.ndarray]:
+    return {
+        "voltage": np.array([_peak(s) for s in simulations]),
+        "frequency": np.array([_frequency(s) for s in simulations]),
+    }
+
+
+def _peak(simulation: Simulation) -> float:
+    schedule = simulation.run.schedule
+    peak = 0.0 if schedule is None else float(np.abs(schedule.voltage).max(initial=0.0))
+    return peak if peak > 0 else np.nan
+
+
+def _frequency(simulation: Simulation) -> float:
+    run = simulation.run
+    if run.schedule is None or len(run.time) < 2:
+        return np.nan
+    cycle = drive_cycle(run.time, run.schedule.at(run.time))
+    return np.nan if cycle is None else 1.0 / cycle.period
+
+
+def _trend(evaluation: Evaluation, noise: NoiseModel, name: str, condition: str, values: np.ndarray) -> Trend:
+    """values: the condition of every run."""
+    of_run = np.log(values / np.exp(np.log(values).mean()))
+    own = evaluation.jacobian[:, evaluation.names.index(name)]
+    columns = np.column_stack([evaluation.jacobian, own * of_run[evaluation.runs]])
+    scale = np.linalg.norm(columns, axis=0)
+    scale[scale == 0] = 1.0
+    change = np.linalg.lstsq(columns / scale, evaluation.residual, rcond=1e-7)[0] / scale
+    covariance, _ = parameter_covariance(columns, noise, evaluation.runs)
+    middle = evaluation.model.values[name] + change[evaluation.names.index(name)]
+    low, high = float(of_run.min()), float(of_run.max())
+    return Trend(
+        name,
+        condition,
+        (float(values.min()), float(values.max())),
+        (float(middle + change[-1] * low), float(middle + change[-1] * high)),
+        float((high - low) * np.sqrt(covariance[-1, -1])),
+    )

@@ -1,0 +1,82 @@
+"""A law has one value for every voltage and frequency."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.run import Run
+from hasel_sysid.diagnosis.constancy import trends
+from hasel_sysid.noise import NoiseModel
+
+NOISE = NoiseModel(white=9e-6, coloured=0.0, correlation=0.5)
+CONDITIONS = [(voltage, frequency) for voltage in (3500.0, 4500.0, 5500.0) for frequency in (0.5, 2.0, 3.5)]
+VALUE = 0.25
+
+
+def box_run(voltage, frequency):
+    """Two periods of one muscle after the other."""
+    switches = np.arange(5) / (2 * frequency)
+    upper = np.arange(5)[:, None] % 2 == [[0, 1]]
+    return Run(
+        "run",
+        np.arange(0, 2 / frequency, 1 / 120.0),
+        VoltageSchedule(switches, np.where(upper, voltage, 0.0)),
+    )
+
+
+RUNS = [box_run(*condition) for condition in CONDITIONS]
+NUMBERS = np.repeat(np.arange(len(RUNS)), [len(run.time) for run in RUNS])
+TIME = np.concatenate([run.time for run in RUNS])
+VOLTAGE, FREQUENCY = np.array(CONDITIONS)[NUMBERS].T
+
+
+def fitted(growth, by=VOLTAGE, runs=RUNS):
+    """A fit to a `drag` whose true size grows by `growth` from the low to the high end of `by`."""
+    own = np.sin(2 * np.pi * FREQUENCY * TIME) * VOLTAGE / 4500.0
+    other = np.cos(2 * np.pi * FREQUENCY * TIME)
+    along = (np.log(by) - np.log(by).min()) / np.log(by.max() / by.min()) - 0.5
+    noise = np.random.default_rng(0).normal(scale=0.003, size=len(own))
+    jacobian = np.column_stack([other, own])
+    measured = VALUE * (1 + growth * along) * own + noise
+    change, *_ = np.linalg.lstsq(jacobian, measured - VALUE * own, rcond=None)
+    parameters = [SimpleNamespace(name="size", scan=()), SimpleNamespace(name="time", scan=(0.1, 1.0))]
+    return SimpleNamespace(
+        model=SimpleNamespace(effects=[SimpleNamespace(id="drag", parameters=parameters)]),
+        undetermined=(),
+        evaluation=SimpleNamespace(
+            names=("slope", "drag.size"),
+            jacobian=jacobian,
+            residual=measured - VALUE * own - jacobian @ change,
+            runs=NUMBERS,
+            simulations=[SimpleNamespace(run=run) for run in runs],
+            model=SimpleNamespace(values={"slope": 0.0, "drag.size": VALUE + change[1]}),
+        ),
+    )
+
+
+def test_a_value_that_grows_with_voltage_contradicts_the_law():
+    """The ends of the trend are the true values there, and the sentence names them."""
+    by_voltage, by_frequency = trends(fitted(0.4), NOISE, ["drag"])
+    assert by_voltage.values == pytest.approx((0.8 * VALUE, 1.2 * VALUE), rel=0.02)
+    assert by_voltage.contradicts and not by_frequency.contradicts
+    assert "at 3500 V and" in str(by_voltage) and "at 5500 V: something" in str(by_voltage)
+
+
+def test_a_value_that_falls_with_frequency_contradicts_it_too():
+    """From 0.5 Hz to 3.5 Hz."""
+    by_voltage, by_frequency = trends(fitted(-0.6, FREQUENCY), NOISE, ["drag"])
+    assert by_frequency.contradicts and not by_voltage.contradicts
+    assert by_frequency.ends == pytest.approx((0.5, 3.5), rel=0.02)
+
+
+@pytest.mark.parametrize("growth", [0.0, 0.1])
+def test_noise_and_trifles_do_not(growth):
+    """One value, and a trend that is certain but small."""
+    assert not any(trend.contradicts for trend in trends(fitted(growth), NOISE, ["drag"]))
+
+
+def test_runs_that_are_all_alike_tell_nothing():
+    """One voltage and one frequency: no trend. Nor is there one for what was not added."""
+    assert trends(fitted(0.4, runs=[RUNS[0]] * len(RUNS)), NOISE, ["drag"]) == []
+    assert trends(fitted(0.4), NOISE, ["tether"]) == []
