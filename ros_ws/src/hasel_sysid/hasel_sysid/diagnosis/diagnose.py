@@ -21,6 +21,8 @@ from hasel_sysid.noise import NoiseModel, estimate_noise
 from hasel_sysid.problem import Problem
 
 _FINALISTS = 3
+_BRIEF = 8
+"""Evaluations that a finalist is given."""
 _CLOSE = 0.05
 """A trial within this share of the baseline's sum of squares of the best one is refitted in full."""
 _MUCH, _MOST, _WORTH = 0.3, 0.9, 0.25
@@ -85,7 +87,8 @@ def _finals(
     chosen = [trial for trial in best if trial.predicted <= reach][:_FINALISTS]
     finals = _refitted(problem, fit, chosen, progress)
     others = [trial for trial in best if trial not in chosen]
-    return finals | _refitted(problem, fit, _worth_a_fit(fit, finals, others), progress)
+    finals |= _refitted(problem, fit, _worth_a_fit(fit, finals, others), progress)
+    return finals | _finished(problem, finals)
 
 
 def _refitted(
@@ -99,21 +102,33 @@ def _refitted(
             progress(f"refitting with {effect.id}", 0.7 + 0.3 * number / _FINALISTS)
         try:
             finals[effect.id] = fit_least_squares(
-                problem, model, tolerance=1e-3, most_evaluations=8, drafts=False
+                problem, model, tolerance=1e-3, most_evaluations=_BRIEF, drafts=False
             )
         except SimulationError:
             continue
     return finals
 
 
+def _finished(problem: Problem, finals: dict[str, FitResult]) -> dict[str, FitResult]:
+    """The best of the plausible fits, where it was broken off before it had converged."""
+    plausible = [effect for effect, final in finals.items() if not judgement.on_own_bound(effect, final)]
+    if not plausible:
+        return {}
+    best = min(plausible, key=lambda effect: finals[effect].evaluation.sum_of_squares)
+    if finals[best].iterations < _BRIEF:
+        return {}
+    return {best: fit_least_squares(problem, finals[best].model, tolerance=1e-3, drafts=False)}
+
+
 def _worth_a_fit(fit: FitResult, finals: dict[str, FitResult], others: list[Trial]) -> list[Trial]:
-    """Trials worth a full fit because none so far removes most of an error well above the noise.
+    """Trials worth a full fit because none so far removes most of an error well above the noise at a plausible value.
 
     A trial's few steps may have got stuck where a full fit does not.
     """
     base, noise = fit.evaluation, _noise(fit, finals)
     floor = judgement.expected_squares(base.jacobian, noise, base.runs)
-    lowest = min([base.sum_of_squares, *(final.evaluation.sum_of_squares for final in finals.values())])
+    plausible = [final for effect, final in finals.items() if not judgement.on_own_bound(effect, final)]
+    lowest = min([base.sum_of_squares, *(final.evaluation.sum_of_squares for final in plausible)])
     excess = base.sum_of_squares - floor
     if excess < _MUCH * floor or base.sum_of_squares - lowest > _MOST * excess:
         return []

@@ -117,7 +117,8 @@ def _bounded_step(
 
 
 def _shortened(trial: Trial) -> Trial:
-    """Half the step, for a trial whose full step made things worse, and half of what that promised."""
+    """Half the step, for a trial whose full step made things worse, and the three quarters that it promises of all."""
     values = trial.model.values
     half = {name: 0.5 * (values[name] + trial.step[name]) for name in trial.names}
-    return replace(trial, step=half, predicted=0.5 * (trial.predicted + trial.sum_of_squares))
+    promised = trial.predicted + 0.25 * (trial.sum_of_squares - trial.predicted)
+    return replace(trial, step=half, predicted=promised)
