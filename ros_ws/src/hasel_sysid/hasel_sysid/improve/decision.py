@@ -9,7 +9,7 @@ from hasel_sysid.diagnosis.left_out import left_out_squares
 from hasel_sysid.improve.conclusion import EXPLAINED, near_noise
 from hasel_sysid.improve.result import Stage
 
-_LEAST_GAIN = 0.1
+LEAST_GAIN = 0.1
 """An effect must lower the sum of squares by this share; what another mesh leaves is less."""
 _NEARLY = 0.8
 """Finer numerics that explain this share of what the best effect does come before any effect."""
@@ -57,7 +57,7 @@ def _trifle(stage: Stage, found: Diagnosis, candidates: Sequence[Finding]) -> st
         return reason if near_noise(stage.fit, found) else ""
     squares = stage.fit.evaluation.sum_of_squares
     most = max(1 - f.fit.evaluation.sum_of_squares / squares for f in candidates)
-    return f"{candidates[0].effect} makes {most:.1%} of the squared error" if most < _LEAST_GAIN else ""
+    return f"{candidates[0].effect} makes {most:.1%} of the squared error" if most < LEAST_GAIN else ""
 
 
 def _none_convinces(found: Diagnosis) -> str:

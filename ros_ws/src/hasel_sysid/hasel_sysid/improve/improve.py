@@ -12,6 +12,7 @@ from hasel_sysid.improve.conclusion import NOISE, conclude, left_over, near_nois
 from hasel_sysid.improve.decision import decide
 from hasel_sysid.improve.exchange import exchanged
 from hasel_sysid.improve.promise import WORTH_A_LOOK, most_promised
+from hasel_sysid.improve.prune import pruned
 from hasel_sysid.improve.result import Improvement, Stage
 from hasel_sysid.problem import Problem
 
@@ -49,7 +50,7 @@ def improve(
         accepted, reason, negligible = decision.accepted, decision.reason, decision.negligible
         if accepted is None:
             break
-        refit = exchanged(problem, stages, accepted)
+        refit = pruned(problem, exchanged(problem, stages, accepted), stages[-1].effects)
         stages.append(_stage(refit, model, validation))
         if _is_noise(refit, found):
             reason = f"What is left after adding {accepted.effect} is noise."
