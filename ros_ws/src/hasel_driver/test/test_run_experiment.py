@@ -42,7 +42,6 @@ def run(ros, tmp_path):
         )
         ros.wait(sent.done)
         handle = sent.result()
-        assert handle.accepted
 
         def end(timeout_s: float = 15.0):
             answer = handle.get_result_async()
@@ -61,6 +60,7 @@ def run_until_live(run, shared_rig, ros):
 
     def begin(**changes):
         handle, feedback, end = run(**changes)
+        assert handle.accepted
         ended = handle.get_result_async()
         ros.wait(lambda: shared_rig.live or ended.done())
         assert not ended.done(), ended.result().result.message

@@ -9,6 +9,8 @@ from hasel_sysid.diagnosis.trial import Trial, Trials
 
 _ROUNDS = (9, 5)
 """How many effects go on to the second and to the third round."""
+_FAR = 2.0
+"""A start that makes the sum of squares this many times worse is too far off for its promise to be believed, or not."""
 
 Progress = Callable[[str, float], None]
 
@@ -30,8 +32,11 @@ def search(
                 f"tried {len(first)} of {len(every)} starts", 0.5 * min(1.0, (begin + batch) / len(every))
             )
     best = _best_of_each(first)
+    far = _FAR * trials.fitted.sum_of_squares
     for number, keep in enumerate(_ROUNDS):
-        best = sorted(trials.further(best[:keep]) + best[keep:], key=_promise)
+        going_on = [t for i, t in enumerate(best) if i < keep or (number == 0 and t.sum_of_squares > far)]
+        staying = [t for t in best if t not in going_on]
+        best = sorted(trials.further(going_on) + staying, key=_promise)
         if progress:
             progress(f"round {number + 2}: {best[0].start.effect.id} promises most", 0.5 + 0.1 * (number + 1))
     return best, first

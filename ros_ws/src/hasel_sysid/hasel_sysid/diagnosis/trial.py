@@ -18,7 +18,7 @@ _TOO_ROUGH = 0.15
 """Share of the simulated motion by which a draft may be wrong."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Trial:
     """An effect with the values reached so far.
 
