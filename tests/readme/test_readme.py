@@ -47,3 +47,12 @@ def test_links_lead_somewhere():
     """Every relative link and picture is a file of the repository."""
     for target in re.findall(r"\]\(([^)#:]+)\)", README):
         assert (ROOT / target).exists(), target
+
+
+def test_figures_of_hidden_effects_are_the_benchmarks():
+    """Every row of that table stands in the page that the benchmark wrote."""
+    page = (ROOT / "docs" / "hidden_effects.md").read_text(encoding="utf-8").splitlines()
+    section = README.split("## Is the right effect named?")[1].split("\n## ")[0]
+    rows = [line for line in section.splitlines() if line.startswith("| ")]
+    assert len(rows) > 5
+    assert [row for row in rows if row not in page] == []
