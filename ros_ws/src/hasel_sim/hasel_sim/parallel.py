@@ -31,6 +31,11 @@ def _one_thread() -> None:
     threadpool_limits(1)
 
 
+def worker_count(jobs: int | None) -> int:
+    """How many processes `jobs` asks for; without it one per core."""
+    return jobs or os.cpu_count() or 1
+
+
 @contextmanager
 def executor(jobs: int | None = None, scheduler: str | None = None) -> Iterator[Executor]:
     """An executor for simulations: `jobs` processes (default: one per core), or the Dask scheduler at an address.
@@ -50,7 +55,7 @@ def executor(jobs: int | None = None, scheduler: str | None = None) -> Iterator[
         with client, client.get_executor() as pool:
             yield pool
         return
-    count = jobs or os.cpu_count() or 1
+    count = worker_count(jobs)
     if count == 1:
         with threadpool_limits(1):
             yield SerialExecutor()

@@ -2,13 +2,12 @@
 
 import argparse
 import json
-import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 from hasel_sim.errors import ModelError, SimulationError
-from hasel_sim.parallel import executor
+from hasel_sim.parallel import executor, worker_count
 
 from hasel_bringup.bench_hidden.case import Case
 from hasel_bringup.bench_hidden.case_list import list_cases, quick_cases
@@ -91,7 +90,7 @@ def _known(page: Path) -> dict[str, Outcome]:
 
 
 def _at_once(options: argparse.Namespace, cases: Sequence[Case]) -> int:
-    return len(cases) if options.scheduler else options.jobs or os.cpu_count() or 1
+    return len(cases) if options.scheduler else worker_count(options.jobs)
 
 
 def _cases(options: argparse.Namespace) -> list[Case]:

@@ -111,10 +111,10 @@ def _refitted(
 
 def _finished(problem: Problem, finals: dict[str, FitResult]) -> dict[str, FitResult]:
     """The best of the plausible fits, where it was broken off before it had converged."""
-    plausible = [effect for effect, final in finals.items() if not judgement.on_own_bound(effect, final)]
-    if not plausible:
+    found = judgement.plausible(finals)
+    if not found:
         return {}
-    best = min(plausible, key=lambda effect: finals[effect].evaluation.sum_of_squares)
+    best = min(found, key=lambda effect: finals[effect].evaluation.sum_of_squares)
     if finals[best].iterations < _BRIEF:
         return {}
     return {best: fit_least_squares(problem, finals[best].model, tolerance=1e-3, drafts=False)}
@@ -127,8 +127,8 @@ def _worth_a_fit(fit: FitResult, finals: dict[str, FitResult], others: list[Tria
     """
     base, noise = fit.evaluation, _noise(fit, finals)
     floor = judgement.expected_squares(base.jacobian, noise, base.runs)
-    plausible = [final for effect, final in finals.items() if not judgement.on_own_bound(effect, final)]
-    lowest = min([base.sum_of_squares, *(final.evaluation.sum_of_squares for final in plausible)])
+    found = judgement.plausible(finals).values()
+    lowest = min([base.sum_of_squares, *(final.evaluation.sum_of_squares for final in found)])
     excess = base.sum_of_squares - floor
     if excess < _MUCH * floor or base.sum_of_squares - lowest > _MOST * excess:
         return []

@@ -47,10 +47,10 @@ class Context:
     @property
     def winner(self) -> str | None:
         """The effect whose full fit is best, if what it removes is not noise and its values are not on a bound."""
-        physical = [effect for effect, final in self.finals.items() if not on_own_bound(effect, final)]
-        if self.chance >= SIGNIFICANT or not physical:
+        found = plausible(self.finals)
+        if self.chance >= SIGNIFICANT or not found:
             return None
-        return min(physical, key=lambda effect: self.squares[effect])
+        return min(found, key=lambda effect: self.squares[effect])
 
     def removed(self, effect: str) -> float:
         """Share of the excess over the noise that an effect removes, 0 to 1."""
@@ -71,6 +71,11 @@ def on_own_bound(effect: str, fit: FitResult) -> bool:
         and not np.isclose(fit.model.values[name], names[name], atol=1e-6)
         for name in fit.at_bound
     )
+
+
+def plausible(finals: dict[str, FitResult]) -> dict[str, FitResult]:
+    """The fits, by effect, that did not have to stop at the edge of the effect's range."""
+    return {effect: final for effect, final in finals.items() if not on_own_bound(effect, final)}
 
 
 def expected_squares(fitted: np.ndarray, noise: NoiseModel, runs: np.ndarray) -> float:

@@ -18,6 +18,15 @@ def orthonormal(columns: np.ndarray) -> np.ndarray:
     return left[:, strength > 1e-8 * strength[0]] if len(strength) else left
 
 
+def drops(columns: np.ndarray, basis: np.ndarray, residual: np.ndarray) -> np.ndarray:
+    """By how much columns [frames, n] lower a residual's sum of squares beyond what a basis [frames, m] already does.
+
+    residual [frames] or [frames, draws]; returns one drop for each, [] or [draws].
+    """
+    directions = orthonormal(columns - basis @ (basis.T @ columns))
+    return ((directions.T @ residual) ** 2).sum(axis=0)
+
+
 def largest_drops_by_noise(
     fitted: np.ndarray, candidates: Sequence[np.ndarray], noise: NoiseModel, runs: np.ndarray, seed: int = 0
 ) -> np.ndarray:
@@ -31,8 +40,7 @@ def largest_drops_by_noise(
     draws -= basis @ (basis.T @ draws)
     largest = np.zeros(draws.shape[1])
     for columns in candidates:
-        direction = orthonormal(columns - basis @ (basis.T @ columns))
-        largest = np.maximum(largest, ((direction.T @ draws) ** 2).sum(axis=0))
+        largest = np.maximum(largest, drops(columns, basis, draws))
     return largest
 
 

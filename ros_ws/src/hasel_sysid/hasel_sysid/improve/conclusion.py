@@ -19,15 +19,25 @@ NEAR_NOISE = 1.25
 _ALL_BUT_NOTHING = 0.03
 
 
+def last_diagnosis(stages: Sequence[Stage]) -> Diagnosis:
+    """That of the last stage that was diagnosed."""
+    return next(stage.diagnosis for stage in reversed(stages) if stage.diagnosis is not None)
+
+
 def left_over(stages: Sequence[Stage]) -> float:
     """Share of the baseline's mean error above the noise that the last stage leaves, 0 to 1.
 
     Of the mean |Δ sin θ|, not of its square, which would call a law of the wrong shape an explanation.
     """
-    found = next(stage.diagnosis for stage in reversed(stages) if stage.diagnosis is not None)
+    found = last_diagnosis(stages)
     base, left = (stage.fit.mean_absolute_error for stage in (stages[0], stages[-1]))
     floor = NOISE * found.noise.mean_absolute
     return float(np.clip((left - floor) / max(base - floor, 1e-12), 0.0, 1.0))
+
+
+def is_noise(fit: FitResult, found: Diagnosis) -> bool:
+    """Whether what a fit leaves is no more than the noise."""
+    return fit.mean_absolute_error <= NOISE * found.noise.mean_absolute
 
 
 def near_noise(fit: FitResult, found: Diagnosis) -> bool:
@@ -44,7 +54,7 @@ def conclude(
     contradictions: what speaks against the effects that were added, whatever they explain.
     """
     first = stages[0].diagnosis
-    last = next(stage.diagnosis for stage in reversed(stages) if stage.diagnosis is not None)
+    last = last_diagnosis(stages)
     unexplained = left_over(stages)
     added = stages[-1].effects
     rest = stages[-1].diagnosis

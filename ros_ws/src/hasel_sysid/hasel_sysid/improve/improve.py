@@ -5,10 +5,10 @@ from dataclasses import replace
 
 from hasel_sim.model import Model
 
-from hasel_sysid.diagnosis import Diagnosis, diagnose
+from hasel_sysid.diagnosis import diagnose
 from hasel_sysid.diagnosis.constancy import trends
 from hasel_sysid.fit import FitResult, fit_least_squares
-from hasel_sysid.improve.conclusion import NOISE, conclude, left_over, near_noise
+from hasel_sysid.improve.conclusion import conclude, is_noise, last_diagnosis, left_over, near_noise
 from hasel_sysid.improve.decision import decide
 from hasel_sysid.improve.exchange import exchanged
 from hasel_sysid.improve.promise import WORTH_A_LOOK, most_promised
@@ -52,7 +52,7 @@ def improve(
             break
         refit = pruned(problem, exchanged(problem, stages, accepted), stages[-1].effects)
         stages.append(_stage(refit, model, validation))
-        if _is_noise(refit, found):
+        if is_noise(refit, found):
             reason = f"What is left after adding {accepted.effect} is noise."
             break
         if near_noise(refit, found) and most_promised(refit, found) < WORTH_A_LOOK:
@@ -98,11 +98,6 @@ def _stage(fit: FitResult, first: Model, validation: Problem | None) -> Stage:
 
 def _contradictions(stages: Sequence[Stage]) -> list[str]:
     """What the runs would want of the added effects that one law cannot give."""
-    found = next(stage.diagnosis for stage in reversed(stages) if stage.diagnosis is not None)
+    found = last_diagnosis(stages)
     seen = trends(stages[-1].fit, found.noise, stages[-1].effects)
     return [str(trend) for trend in seen if trend.contradicts]
-
-
-def _is_noise(fit: FitResult, found: Diagnosis) -> bool:
-    """Whether what is left is no more than the noise of the diagnosis before."""
-    return fit.mean_absolute_error <= NOISE * found.noise.mean_absolute

@@ -1,9 +1,7 @@
 """Whether a whole diagnosis of what an added effect leaves is worth its time."""
 
-import numpy as np
-
 from hasel_sysid.diagnosis import Diagnosis
-from hasel_sysid.diagnosis.significance import orthonormal
+from hasel_sysid.diagnosis.significance import drops, orthonormal
 from hasel_sysid.fit import FitResult
 
 WORTH_A_LOOK = 0.05
@@ -18,14 +16,9 @@ def most_promised(fit: FitResult, found: Diagnosis) -> float:
     evaluation = fit.evaluation
     basis = orthonormal(evaluation.jacobian)
     present = {effect.id for effect in fit.model.effects}
-    drops = [
-        _drop(signature.columns, basis, evaluation.residual)
+    promised = [
+        drops(signature.columns, basis, evaluation.residual)
         for effect, signature in found.signatures.items()
         if effect not in present
     ]
-    return max(drops, default=0.0) / evaluation.sum_of_squares
-
-
-def _drop(columns: np.ndarray, basis: np.ndarray, residual: np.ndarray) -> float:
-    directions = orthonormal(columns - basis @ (basis.T @ columns))
-    return float(((directions.T @ residual) ** 2).sum())
+    return float(max(promised, default=0.0)) / evaluation.sum_of_squares
