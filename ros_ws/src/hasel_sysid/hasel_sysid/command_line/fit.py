@@ -18,7 +18,7 @@ from hasel_sysid.command_line.shown import show
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.data_gate import Finding
 from hasel_sysid.errors import SysidError
-from hasel_sysid.fit import METHODS, FitResult
+from hasel_sysid.fit import METHODS, FitResult, identify
 from hasel_sysid.report.from_results import fit_content
 from hasel_sysid.report.write import write_report
 
@@ -54,7 +54,7 @@ def _fit(options: argparse.Namespace) -> None:
     try:
         with executor(options.jobs, options.scheduler) as pool, progress_bar("fit") as progress:
             problem = BestSoFar(given.experiments, pool)
-            result = METHODS[options.method](problem, given.model, part(progress, "", 0.0, 0.95))
+            result = identify(problem, given.model, options.method, part(progress, "", 0.0, 0.9))
             label, last = f"{given.label}, fitted", part(progress, "", 0.95, 1.0)
             comparison = compare(result.model, given.experiments, pool, given.unseen, label, last)
     except KeyboardInterrupt:

@@ -25,6 +25,12 @@ class Start:
         """Names of the effect's parameters in a model."""
         return tuple(self.values)
 
+    @property
+    def changes_nothing(self) -> bool:
+        """Whether the effect starts without effect and may stand beside any other, so one simulation serves all."""
+        nulls = {f"{self.effect.id}.{p.name}": p.null for p in self.effect.parameters}
+        return not self.effect.exclusive and all(nulls[name] == value for name, value in self.values.items())
+
 
 def candidate_effects(model: Model, only: tuple[str, ...] | None = None) -> list[Effect]:
     """Effects that could be added to this model: the catalogue or the named ones, less those that do not fit it."""

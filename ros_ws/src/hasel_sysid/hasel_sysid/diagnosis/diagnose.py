@@ -11,12 +11,13 @@ from hasel_sysid.diagnosis.between_periods import noise_between_periods
 from hasel_sysid.diagnosis.candidates import candidate_effects
 from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
 from hasel_sysid.diagnosis.result import Diagnosis
-from hasel_sysid.diagnosis.search import search
+from hasel_sysid.diagnosis.search import WORTH_A_STEP, search
 from hasel_sysid.diagnosis.signature import Signature, signature
 from hasel_sysid.diagnosis.significance import largest_drops_by_noise, p_value
 from hasel_sysid.diagnosis.suspects import numerical_suspects
 from hasel_sysid.diagnosis.trial import Trial, Trials
 from hasel_sysid.fit import FitResult, fit_least_squares
+from hasel_sysid.fit.refinement import changes_by_refinement
 from hasel_sysid.noise import NoiseModel, estimate_noise
 from hasel_sysid.problem import Problem
 
@@ -59,7 +60,8 @@ def diagnose(
     columns = np.column_stack([base.jacobian, regressors(base)])
     learned = unexplained_by(columns, base.residual)
     chance = p_value(base.sum_of_squares - lowest, by_noise)
-    context = judgement.Context(fit, finals, signatures, squares, noise, floor, chance)
+    changes = changes_by_refinement(problem, base) if chance < judgement.SIGNIFICANT else {}
+    context = judgement.Context(fit, finals, signatures, squares, noise, floor, chance, changes)
     probabilities, none = judgement.probabilities(context)
     findings = [
         replace(judgement.finding(context, effect), probability=probabilities.get(effect.id, 0.0))
@@ -74,8 +76,9 @@ def diagnose(
         float(np.clip((base.sum_of_squares - lowest) / context.excess, 0, 1)),
         float(np.clip((base.sum_of_squares - learned @ learned) / context.excess, 0, 1)),
         none,
-        numerical_suspects(problem, fit, context.excess) if chance < judgement.SIGNIFICANT else {},
+        numerical_suspects(fit, changes, context.excess),
         signatures,
+        changes,
     )
 
 
@@ -83,8 +86,9 @@ def _finals(
     problem: Problem, fit: FitResult, best: list[Trial], progress: Progress | None
 ) -> dict[str, FitResult]:
     """Full fits of the few most promising effects, on the model itself; of some more where those explain too little."""
-    reach = best[0].predicted + _CLOSE * fit.evaluation.sum_of_squares if best else 0.0
-    chosen = [trial for trial in best if trial.predicted <= reach][:_FINALISTS]
+    squares = fit.evaluation.sum_of_squares
+    close = [t for t in best if t.predicted <= best[0].predicted + _CLOSE * squares]
+    chosen = close[:1] + [t for t in close[1:_FINALISTS] if t.promised >= WORTH_A_STEP * squares]
     finals = _refitted(problem, fit, chosen, progress)
     others = [trial for trial in best if trial not in chosen]
     finals |= _refitted(problem, fit, _worth_a_fit(fit, finals, others), progress)

@@ -7,6 +7,7 @@ import numpy as np
 from hasel_sysid.diagnosis.result import Finding, Verdict
 from hasel_sysid.diagnosis.signature import Signature, alike
 from hasel_sysid.diagnosis.significance import orthonormal
+from hasel_sysid.fit.refinement import with_numerical_error
 from hasel_sysid.fit.result import FitResult
 from hasel_sysid.noise import NoiseModel
 
@@ -24,7 +25,10 @@ _TOLD_APART = 0.03
 
 @dataclass(frozen=True)
 class Context:
-    """Everything a verdict rests on; squares: sum of squared residuals reached with each effect."""
+    """Everything a verdict rests on.
+
+    squares: sum of squared residuals reached with each effect; changes: of the simulated series by finer numerics.
+    """
 
     fit: FitResult
     finals: dict[str, FitResult]
@@ -33,6 +37,7 @@ class Context:
     noise: NoiseModel
     floor: float
     chance: float
+    changes: dict[str, np.ndarray]
 
     @property
     def base(self) -> float:
@@ -96,7 +101,7 @@ def finding(context: Context, effect) -> Finding:
             name, Verdict.INCONCLUSIVE, 0.0, 0.0, {}, units, 1.0, float("inf"), source=effect.source
         )
     if name in context.finals:
-        model = context.finals[name].model
+        model = with_numerical_error(context.finals[name], context.changes).model
         expected = {
             key: (model.values[key], model.parameters[key].standard_error or float("inf")) for key in units
         }

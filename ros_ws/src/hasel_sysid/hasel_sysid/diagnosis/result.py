@@ -3,6 +3,8 @@
 from dataclasses import dataclass, field
 from enum import Enum
 
+import numpy as np
+
 from hasel_sysid.diagnosis.signature import Signature
 from hasel_sysid.fit.result import FitResult
 from hasel_sysid.noise import NoiseModel
@@ -71,7 +73,8 @@ class Diagnosis:
     findings: most probable first; groups: effects that these recordings cannot tell apart; p_value: chance that noise
     alone makes the best effect look this good; explained: share of the error above the noise that it removes; ceiling:
     share that a small learned model of the residual removes; suspects: share removed by finer numerics, by name;
-    signatures: what every effect looks like here, by its id.
+    signatures: what every effect looks like here, by its id; changes: of the simulated series by finer numerics,
+    by name, where something is missing.
     """
 
     findings: list[Finding]
@@ -83,6 +86,7 @@ class Diagnosis:
     probability_none: float
     suspects: dict[str, float] = field(default_factory=dict)
     signatures: dict[str, Signature] = field(default_factory=dict)
+    changes: dict[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def best(self) -> Finding | None:

@@ -9,8 +9,13 @@ from hasel_sysid.diagnosis.trial import Trial, Trials
 
 _ROUNDS = (9, 5)
 """How many effects go on to the second and to the third round."""
+_BATCH = 8
 _FAR = 2.0
 """A start that makes the sum of squares this many times worse is too far off for its promise to be believed, or not."""
+_RIVAL = 0.5
+"""What could lower the sum of squares by less than this share of what the best one could is no rival to it."""
+WORTH_A_STEP = 0.05
+"""Half the least share of the sum of squares for which an effect is added: less is not worth another step."""
 
 Progress = Callable[[str, float], None]
 
@@ -23,23 +28,33 @@ def search(
     The first round tries every start of every effect; later rounds take further steps with the most promising.
     """
     every = [start for effect in effects for start in starts(effect)]
+    every.sort(key=lambda start: not start.changes_nothing)
     first: list[Trial] = []
-    batch = 6
-    for begin in range(0, len(every), batch):
-        first += trials.first(every[begin : begin + batch])
+    for begin in range(0, len(every), _BATCH):
+        first += trials.first(every[begin : begin + _BATCH])
         if progress:
-            progress(
-                f"tried {len(first)} of {len(every)} starts", 0.5 * min(1.0, (begin + batch) / len(every))
-            )
+            done = min(1.0, (begin + _BATCH) / len(every))
+            progress(f"tried {len(first)} of {len(every)} starts", 0.5 * done)
     best = _best_of_each(first)
-    far = _FAR * trials.fitted.sum_of_squares
+    squares = trials.fitted.sum_of_squares
     for number, keep in enumerate(_ROUNDS):
-        going_on = [t for i, t in enumerate(best) if i < keep or (number == 0 and t.sum_of_squares > far)]
+        hopeful = [t for t in best if _has_hope(t, best, squares)]
+        going_on = [
+            t
+            for i, t in enumerate(hopeful)
+            if i < keep or (number == 0 and t.sum_of_squares > _FAR * squares)
+        ]
         staying = [t for t in best if t not in going_on]
         best = sorted(trials.further(going_on) + staying, key=_promise)
         if progress:
             progress(f"round {number + 2}: {best[0].start.effect.id} promises most", 0.5 + 0.1 * (number + 1))
     return best, first
+
+
+def _has_hope(trial: Trial, best: Sequence[Trial], squares: float) -> bool:
+    """Whether another step may matter: the effect could remove enough, and not much less than the best one."""
+    most = max(squares - t.predicted for t in best)
+    return trial.promised >= max(_RIVAL * most, WORTH_A_STEP * squares)
 
 
 def _promise(trial: Trial) -> float:

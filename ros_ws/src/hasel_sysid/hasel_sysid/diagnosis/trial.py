@@ -9,6 +9,7 @@ from hasel_sim.model import Model
 from scipy.optimize import lsq_linear
 
 from hasel_sysid.diagnosis.candidates import Start
+from hasel_sysid.diagnosis.significance import drops, orthonormal
 from hasel_sysid.draft import draft
 from hasel_sysid.problem import Evaluation, Problem
 
@@ -23,7 +24,8 @@ class Trial:
     """An effect with the values reached so far.
 
     model: draft with the effect; residual: corrected, at `model`'s values [frames]; jacobian [frames, names];
-    predicted: sum of squares expected after the next step, to `step` (values by name).
+    predicted: sum of squares expected after the next step, to `step` (values by name); promised: by how much the effect
+    could lower the sum of squares of the model without it, by its derivatives or by the change it has made so far.
     """
 
     start: Start
@@ -33,6 +35,7 @@ class Trial:
     jacobian: np.ndarray
     step: dict[str, float]
     predicted: float
+    promised: float
 
     @property
     def sum_of_squares(self) -> float:
@@ -53,17 +56,16 @@ class Trials:
         self._model = draft(fitted.model)
         self.base = problem.evaluate(self._model, fitted.names)
         self._correction = fitted.residual - self.base.residual
+        self._imitable = orthonormal(fitted.jacobian)
         if np.linalg.norm(self._correction) > _TOO_ROUGH * np.linalg.norm(fitted.simulated()):
             self._model, self.base = fitted.model, fitted
             self._correction = np.zeros_like(fitted.residual)
 
     def first(self, starts: Sequence[Start]) -> list[Trial]:
         """Every effect at its start; those that cannot be simulated there are left out."""
-        models = []
-        for start in starts:
-            with_effect = self._model.with_effects(start.effect.source or start.effect.id)
-            models.append((start, with_effect.with_values(start.values)))
-        return self._evaluate(models)
+        together = [start for start in starts if start.changes_nothing]
+        alone = [(start, self._with(start)) for start in starts if not start.changes_nothing]
+        return self._at_null(together) + self._evaluate(alone)
 
     def further(self, trials: Sequence[Trial]) -> list[Trial]:
         """Every trial one step on, or as it was where the step made it worse."""
@@ -75,6 +77,24 @@ class Trials:
             better = new is not None and new.sum_of_squares < trial.sum_of_squares
             result.append(new if better else _shortened(trial))
         return result
+
+    def _with(self, start: Start) -> Model:
+        return self._model.with_effects(_source(start)).with_values(start.values)
+
+    def _at_null(self, starts: Sequence[Start]) -> list[Trial]:
+        """Trials of effects that change nothing where they start: one simulation with all their derivatives."""
+        if not starts:
+            return []
+        own = [name for start in starts for name in start.names]
+        model = self._model.with_effects(*[_source(start) for start in starts])
+        found = self.problem.evaluate(model, (*self.fitted.names, *own))
+        trials = []
+        for start in starts:
+            names = (*self.fitted.names, *start.names)
+            columns = found.jacobian[:, [found.names.index(name) for name in names]]
+            alone = replace(found, names=names, jacobian=columns)
+            trials.append(self._trial(start, self._with(start), names, alone))
+        return trials
 
     def _evaluate(self, models: Sequence[tuple[Start, Model]]) -> list[Trial]:
         if not models:
@@ -90,7 +110,15 @@ class Trials:
     def _trial(self, start: Start, model: Model, names: tuple[str, ...], evaluation: Evaluation) -> Trial:
         residual = evaluation.residual + self._correction
         step, predicted = _bounded_step(model, names, residual, evaluation.jacobian)
-        return Trial(start, model, names, residual, evaluation.jacobian, step, predicted)
+        own = evaluation.jacobian[:, [index for index, name in enumerate(names) if name in start.values]]
+        looks = np.column_stack([self.fitted.residual - residual, own])
+        spanned = float(drops(looks, self._imitable, self.fitted.residual))
+        promised = max(spanned, self.fitted.sum_of_squares - predicted)
+        return Trial(start, model, names, residual, evaluation.jacobian, step, predicted, promised)
+
+
+def _source(start: Start) -> str:
+    return start.effect.source or start.effect.id
 
 
 def _bounded_step(

@@ -1,10 +1,8 @@
 """Identification of a model's free parameters from recordings."""
 
 from hasel_sysid.fit.adam import fit_adam
+from hasel_sysid.fit.identify import METHODS, identify
 from hasel_sysid.fit.least_squares import fit_least_squares
 from hasel_sysid.fit.result import FitResult
 
-METHODS = {"least_squares": fit_least_squares, "adam": fit_adam}
-"""Ways to fit, by the name that `fit --method` takes."""
-
-__all__ = ["METHODS", "FitResult", "fit_adam", "fit_least_squares"]
+__all__ = ["METHODS", "FitResult", "fit_adam", "fit_least_squares", "identify"]

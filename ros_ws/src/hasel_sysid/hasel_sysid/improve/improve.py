@@ -8,6 +8,7 @@ from hasel_sim.model import Model
 from hasel_sysid.diagnosis import diagnose
 from hasel_sysid.diagnosis.constancy import trends
 from hasel_sysid.fit import FitResult, fit_least_squares
+from hasel_sysid.fit.refinement import changes_by_refinement, with_numerical_error
 from hasel_sysid.improve.conclusion import conclude, is_noise, last_diagnosis, left_over, near_noise
 from hasel_sysid.improve.decision import decide
 from hasel_sysid.improve.exchange import exchanged
@@ -43,9 +44,7 @@ def improve(
     reason, negligible = "", False
     for number in range(most_effects):
         found = diagnose(problem, stages[-1].fit, only, report.part("diagnosis", *report.share(number)))
-        stages[-1] = replace(stages[-1], diagnosis=found)
-        if on_stage:
-            on_stage(stages[-1])
+        stages[-1] = _completed(problem, replace(stages[-1], diagnosis=found), on_stage)
         decision = decide(stages[-1], found)
         accepted, reason, negligible = decision.accepted, decision.reason, decision.negligible
         if accepted is None:
@@ -66,8 +65,8 @@ def improve(
                 "too little to find another effect in."
             )
             break
-    if stages[-1].diagnosis is None and on_stage:
-        on_stage(stages[-1])
+    if stages[-1].diagnosis is None:
+        stages[-1] = _completed(problem, stages[-1], on_stage)
     return conclude(stages, reason, negligible, _contradictions(stages))
 
 
@@ -94,6 +93,16 @@ def _stage(fit: FitResult, first: Model, validation: Problem | None) -> Stage:
     added = tuple(effect.id for effect in fit.model.effects if effect.id not in before)
     error = None if validation is None else validation.evaluate(fit.model).mean_absolute_error
     return Stage(added, fit, error)
+
+
+def _completed(problem: Problem, stage: Stage, on_stage: OnStage | None) -> Stage:
+    """The stage with standard errors that also hold what its mesh and time step do, handed on."""
+    known = None if stage.diagnosis is None else stage.diagnosis.changes
+    changes = known or changes_by_refinement(problem, stage.fit.evaluation)
+    complete = replace(stage, fit=with_numerical_error(stage.fit, changes))
+    if on_stage:
+        on_stage(complete)
+    return complete
 
 
 def _contradictions(stages: Sequence[Stage]) -> list[str]:

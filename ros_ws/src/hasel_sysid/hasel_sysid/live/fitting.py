@@ -4,15 +4,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hasel_recording import Recording, read_recordings
-from hasel_sim.errors import nearest_name
 from hasel_sim.model import Model
 from hasel_sim.parallel import executor
 
 from hasel_sysid.dataset import experiment, prepared
 from hasel_sysid.diagnosis import Diagnosis, Verdict, diagnose
 from hasel_sysid.diagnosis.judgement import SIGNIFICANT
-from hasel_sysid.errors import SysidError
-from hasel_sysid.fit import METHODS, FitResult, fit_least_squares
+from hasel_sysid.fit import FitResult, fit_least_squares, identify
 from hasel_sysid.fit.least_squares import Progress
 from hasel_sysid.problem import Problem
 
@@ -33,12 +31,10 @@ def fit_recordings(
 
     Raises SysidError, SimulationError or ModelError.
     """
-    method = method or DEFAULT_METHOD
-    if method not in METHODS:
-        raise SysidError(f"unknown method '{method}'; {nearest_name(method, METHODS)}")
     experiments = [experiment(recording) for recording in recordings]
     with executor(jobs or None) as pool:
-        return METHODS[method](Problem(experiments, pool), prepared(model, experiments), progress)
+        problem = Problem(experiments, pool)
+        return identify(problem, prepared(model, experiments), method or DEFAULT_METHOD, progress)
 
 
 def diagnose_recordings(

@@ -14,33 +14,61 @@ class FakeTrial:
     start: SimpleNamespace
     sum_of_squares: float
     predicted: float
+    promised: float
 
 
 @dataclass
 class FakeTrials:
-    """Twelve effects that promise little, and one whose first try is far off; its second finds the truth."""
+    """Twelve effects that promise a tenth, one that promises nothing, and one whose first try is far off.
 
+    Its second finds the truth.
+    """
+
+    moved: list = field(default_factory=list)
     fitted: SimpleNamespace = field(default_factory=lambda: SimpleNamespace(sum_of_squares=1.0))
 
     def first(self, starts):
         """By name."""
-        return [
-            FakeTrial(start, 12.0, 1.5) if start.effect.id == "far" else FakeTrial(start, 1.0, 0.9)
-            for start in starts
-        ]
+        kinds = {"far": (12.0, 1.5, 0.3), "hopeless": (12.0, 1.5, 0.01)}
+        return [FakeTrial(start, *kinds.get(start.effect.id, (1.0, 0.9, 0.1))) for start in starts]
 
     def further(self, trials):
         """One step on."""
+        self.moved += [t.start.effect.id for t in trials]
         return [
-            replace(t, sum_of_squares=0.1, predicted=0.05) if t.start.effect.id == "far" else t
+            replace(t, sum_of_squares=0.1, predicted=0.05, promised=0.95) if t.start.effect.id == "far" else t
             for t in trials
         ]
 
 
 def test_a_first_try_far_off_gets_a_second(monkeypatch):
     """What promises less than nothing from far away is not dropped for it."""
-    monkeypatch.setattr(module, "starts", lambda effect: [SimpleNamespace(effect=effect)])
-    effects = [SimpleNamespace(id=f"weak_{number}") for number in range(12)] + [SimpleNamespace(id="far")]
-    best, first = search(FakeTrials(), effects)
+    monkeypatch.setattr(module, "starts", _one_start)
+    best, first = search(FakeTrials(), _effects("far"))
     assert best[0].start.effect.id == "far"
     assert (len(best), len(first)) == (13, 13)
+
+
+def test_what_could_remove_next_to_nothing_gets_no_further_step(monkeypatch):
+    """An effect whose change and derivatives point elsewhere than the residual is not simulated again."""
+    monkeypatch.setattr(module, "starts", _one_start)
+    trials = FakeTrials()
+    best, _ = search(trials, _effects("hopeless"))
+    assert "weak_0" in trials.moved and "hopeless" not in trials.moved
+    assert len(best) == 13
+
+
+def test_what_could_remove_far_less_than_the_best_is_no_rival(monkeypatch):
+    """Once one effect is found that removes nearly all, those that could remove a tenth stay where they are."""
+    monkeypatch.setattr(module, "starts", _one_start)
+    trials = FakeTrials()
+    search(trials, _effects("far"))
+    assert trials.moved[9:] == ["far", "far"]
+
+
+def _one_start(effect):
+    return [SimpleNamespace(effect=effect, changes_nothing=False)]
+
+
+def _effects(last: str) -> list[SimpleNamespace]:
+    return [SimpleNamespace(id=f"weak_{number}") for number in range(12)] + [SimpleNamespace(id=last)]

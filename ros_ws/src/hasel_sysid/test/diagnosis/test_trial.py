@@ -4,7 +4,41 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hasel_sysid.diagnosis.trial import Trial, _shortened
+from hasel_recording import Recording
+from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.effects.registry import catalogue
+from hasel_sim.model import load_model
+from hasel_sim.parallel import SerialExecutor
+from hasel_sim.run import Run
+from hasel_sysid.dataset import Experiment
+from hasel_sysid.diagnosis.candidates import starts
+from hasel_sysid.diagnosis.trial import Trial, Trials, _shortened
+from hasel_sysid.problem import Problem
+
+
+@pytest.fixture(scope="module")
+def trials() -> Trials:
+    """Of a swimmer that is bent once, against an angle that it does not follow."""
+    time = np.arange(0.0, 0.3, 1 / 60)
+    schedule = VoltageSchedule(np.zeros(1), np.array([[4500.0, 0.0]]))
+    measured = Recording("bent", time, 0.2 * time, voltage=schedule.at(time))
+    problem = Problem([Experiment(measured, Run("bent", time, schedule))], SerialExecutor())
+    model = load_model("swimmer").with_levels([4500.0]).with_values({"amplitude_4500": 0.03})
+    model = model.with_numerics(mesh_density=0.5, quadrature_order=2, steps_per_second=120.0)
+    return Trials(problem, problem.evaluate(model, ("amplitude_4500", "slope")))
+
+
+def test_effects_without_effect_share_a_simulation(trials):
+    """What signed effects promise does not depend on which others are tried beside them."""
+    chosen = [starts(catalogue()[name])[0] for name in ("soft_modulus", "marker_offset", "pre_bend")]
+    before = trials.problem.evaluations
+    together = trials.first(chosen)
+    assert trials.problem.evaluations == before + 1
+    for start, trial in zip(chosen, together, strict=True):
+        (alone,) = trials.first([start])
+        assert trial.names == alone.names and trial.step == pytest.approx(alone.step, rel=1e-6)
+        assert trial.predicted == pytest.approx(alone.predicted)
+        assert [effect.id for effect in trial.model.effects] == [start.effect.id]
 
 
 def test_half_a_step_promises_three_quarters_of_a_whole_one():
@@ -20,6 +54,7 @@ def test_half_a_step_promises_three_quarters_of_a_whole_one():
         jacobian=jacobian,
         step={"rate": 0.5 + whole},
         predicted=float(left @ left),
+        promised=0.0,
     )
     half = _shortened(trial)
     after = residual - jacobian[:, 0] * 0.5 * whole
