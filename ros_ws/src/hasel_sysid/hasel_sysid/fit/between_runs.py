@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from hasel_sysid.fit.directions import seen_directions
+
 _FEWEST_RUNS = 4
-_UNSEEN = 1e-7
 _ALONE = 1e-6
 _BEYOND_NOISE = 1.5
 """The scatter of a few runs is itself uncertain: it counts where it is this many times what the noise explains."""
@@ -25,18 +26,16 @@ def scatter_between_runs(jacobian: np.ndarray, residual: np.ndarray, runs: np.nd
     """Standard errors [parameters] of least squares at its optimum that take each run, not each frame, for one sample.
 
     The cluster-robust estimate CR2 (Bell and McCaffrey 2002) for the linearised problem. NaN for parameters that one
-    run alone determines, and for fewer than four runs. jacobian [frames, parameters]; residual, runs [frames].
+    run alone determines or none does, and for fewer than four runs. jacobian [frames, parameters]; residual, runs
+    [frames].
     """
     size = jacobian.shape[1]
     numbers = np.unique(runs)
     if size == 0 or len(numbers) < _FEWEST_RUNS:
         return np.full(size, np.nan)
-    scale = np.linalg.norm(jacobian, axis=0)
-    left, strength, right = np.linalg.svd(jacobian / np.where(scale > 0, scale, 1.0), full_matrices=False)
-    seen = strength > _UNSEEN * strength[0] if strength[0] > 0 else np.zeros(len(strength), dtype=bool)
-    to_parameters = right[seen].T / strength[seen] / np.where(scale > 0, scale, np.nan)[:, None]
-    changes = [_change_by(left[runs == n][:, seen], residual[runs == n], to_parameters) for n in numbers]
-    return np.sqrt((np.array(changes) ** 2).sum(axis=0))
+    seen = seen_directions(jacobian)
+    changes = [_change_by(seen.left[runs == n], residual[runs == n], seen.to_parameters) for n in numbers]
+    return np.where(seen.undetermined, np.nan, np.sqrt((np.array(changes) ** 2).sum(axis=0)))
 
 
 def _change_by(basis: np.ndarray, residual: np.ndarray, to_parameters: np.ndarray) -> np.ndarray:

@@ -7,11 +7,9 @@ import numpy as np
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
+from hasel_sysid.fit.directions import seen_directions
 from hasel_sysid.fit.result import FitResult
 from hasel_sysid.problem import Evaluation, Problem
-
-_UNSEEN = 1e-7
-"""As for the errors by noise: directions with less than this share of the strongest response are not seen."""
 
 
 def refinements(model: Model) -> dict[str, Model]:
@@ -40,22 +38,12 @@ def with_numerical_error(fit: FitResult, changes: Mapping[str, np.ndarray]) -> F
     A type B contribution: the shift, linearised, counts as one standard error (JCGM 100:2008, 4.3; ASME V&V 20-2009
     combines numerical and measurement uncertainty likewise). changes: as from `changes_by_refinement`.
     """
-    squares = sum((_shift(fit.evaluation.jacobian, change) ** 2 for change in changes.values()), start=0.0)
-    known = fit.model.parameters
+    names, seen = fit.evaluation.names, seen_directions(fit.evaluation.jacobian)
+    squares = sum((seen.estimate(change) ** 2 for change in changes.values()), start=np.zeros(len(names)))
+    before = {name: fit.model.parameters[name].standard_error for name in names}
     errors = {
-        name: float(np.hypot(known[name].standard_error, np.sqrt(square)))
-        for name, square in zip(
-            fit.evaluation.names, np.broadcast_to(squares, len(fit.evaluation.names)), strict=True
-        )
-        if known[name].standard_error is not None
+        name: float(np.sqrt(before[name] ** 2 + square))
+        for name, square in zip(names, squares, strict=True)
+        if before[name] is not None
     }
     return replace(fit, model=fit.model.with_values(fit.model.values, errors))
-
-
-def _shift(jacobian: np.ndarray, change: np.ndarray) -> np.ndarray:
-    """Change of least-squares estimates [parameters] when the simulated series [frames] changes."""
-    if jacobian.shape[1] == 0:
-        return np.zeros(0)
-    scale = np.linalg.norm(jacobian, axis=0)
-    safe = np.where(scale > 0, scale, 1.0)
-    return -np.linalg.lstsq(jacobian / safe, change, rcond=_UNSEEN)[0] / safe
