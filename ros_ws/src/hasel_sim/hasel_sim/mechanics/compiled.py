@@ -339,14 +339,16 @@ def mass_product(masses, elements, columns, out):
 def scatter_sites(direct, along, nodes, shape, slope, measure, band, diagonal):
     """Add site matrices [n, 2, 2], for values (direct) and tangents (along) of the field, to a band matrix."""
     for s in range(nodes.shape[0]):
-        for b in range(nodes.shape[1]):
-            for a in range(nodes.shape[1]):
-                weight = measure[s] * shape[s, a]
-                for i in range(2):
-                    for k in range(2):
-                        value = weight * (direct[s, i, k] * shape[s, b] + along[s, i, k] * slope[s, b])
-                        row, column = 2 * nodes[s, a] + i, 2 * nodes[s, b] + k
-                        band[row, diagonal + column - row] += value
+        for a in range(nodes.shape[1]):
+            weight = measure[s] * shape[s, a]
+            for i in range(2):
+                row = 2 * nodes[s, a] + i
+                d0, d1 = weight * direct[s, i, 0], weight * direct[s, i, 1]
+                t0, t1 = weight * along[s, i, 0], weight * along[s, i, 1]
+                for b in range(nodes.shape[1]):
+                    j = diagonal + 2 * nodes[s, b] - row
+                    band[row, j] += d0 * shape[s, b] + t0 * slope[s, b]
+                    band[row, j + 1] += d1 * shape[s, b] + t1 * slope[s, b]
 
 
 @njit(cache=True, fastmath=True)

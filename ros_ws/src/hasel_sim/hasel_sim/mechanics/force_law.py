@@ -142,8 +142,9 @@ class ForceLaw:
             "acceleration": lambda: self.sites.value(acceleration),
             "tangent": lambda: self.sites.tangent(shift),
         }
-        total = sum(np.einsum("nij,cnj->cni", self._slopes[name], moved[name]()) for name in self._moved_by)
-        self.sites.scatter(-total, out)
+        for name in self._moved_by:
+            slope, change = self._slopes[name], moved[name]()
+            self.sites.scatter(-(slope[:, :, 0] * change[..., :1] + slope[:, :, 1] * change[..., 1:]), out)
 
     def add_pulled_back(self, weights: np.ndarray, out: np.ndarray) -> None:
         """Subtract the transposed derivatives times weights [nodes, 2] from out [3, nodes, 2].
