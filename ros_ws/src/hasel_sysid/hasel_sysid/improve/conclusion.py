@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hasel_sysid.diagnosis import Diagnosis
-from hasel_sysid.diagnosis.judgement import SIGNIFICANT
+from hasel_sysid.diagnosis.context import SIGNIFICANT
 from hasel_sysid.fit import FitResult
 from hasel_sysid.improve.result import Improvement, Stage, Status
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict
-from hasel_sysid.diagnosis.judgement import SIGNIFICANT
+from hasel_sysid.diagnosis.context import SIGNIFICANT
 from hasel_sysid.diagnosis.left_out import left_out_squares
 from hasel_sysid.improve.conclusion import EXPLAINED, near_noise
 from hasel_sysid.improve.result import Stage

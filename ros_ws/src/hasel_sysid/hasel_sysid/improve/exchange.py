@@ -6,7 +6,7 @@ from hasel_sim.errors import HaselSimError
 from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis import Diagnosis, Finding
-from hasel_sysid.diagnosis.judgement import on_own_bound
+from hasel_sysid.diagnosis.context import on_own_bound
 from hasel_sysid.fit import FitResult, fit_least_squares
 from hasel_sysid.improve.result import Stage
 from hasel_sysid.problem import Problem

@@ -9,7 +9,7 @@ from hasel_sim.parallel import executor
 
 from hasel_sysid.dataset import experiment, prepared
 from hasel_sysid.diagnosis import Diagnosis, Verdict, diagnose
-from hasel_sysid.diagnosis.judgement import SIGNIFICANT
+from hasel_sysid.diagnosis.context import SIGNIFICANT
 from hasel_sysid.fit import FitResult, fit_least_squares, identify
 from hasel_sysid.fit.least_squares import Progress
 from hasel_sysid.problem import Problem

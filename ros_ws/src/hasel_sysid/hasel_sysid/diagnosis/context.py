@@ -1,0 +1,94 @@
+"""What every verdict of a diagnosis rests on."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hasel_sysid.diagnosis.signature import Signature
+from hasel_sysid.diagnosis.significance import orthonormal
+from hasel_sysid.fit.result import FitResult
+from hasel_sysid.noise import NoiseModel
+
+SIGNIFICANT = 0.01
+"""Chance that noise alone looks like this below which something is missing."""
+_LEAST_EXCESS = 0.05
+
+
+@dataclass(frozen=True)
+class Context:
+    """Everything a verdict rests on.
+
+    squares: sum of squared residuals reached with each effect; changes: of the simulated series by finer numerics.
+    """
+
+    fit: FitResult
+    finals: dict[str, FitResult]
+    signatures: dict[str, Signature]
+    squares: dict[str, float]
+    noise: NoiseModel
+    floor: float
+    chance: float
+    changes: dict[str, np.ndarray]
+
+    @property
+    def base(self) -> float:
+        """Sum of squares without any effect."""
+        return self.fit.evaluation.sum_of_squares
+
+    @property
+    def excess(self) -> float:
+        """Sum of squares above the noise; never less than what the noise's own uncertainty could hide."""
+        return max(self.base - self.floor, _LEAST_EXCESS * self.floor)
+
+    @property
+    def winner(self) -> str | None:
+        """The effect whose full fit is best, if what it removes is not noise and its values are not on a bound."""
+        found = plausible(self.finals)
+        if self.chance >= SIGNIFICANT or not found:
+            return None
+        return min(found, key=lambda effect: self.squares[effect])
+
+    def removed(self, effect: str) -> float:
+        """Share of the excess over the noise that an effect removes, 0 to 1."""
+        drop = self.base - self.squares.get(effect, self.base)
+        return float(np.clip(drop / self.excess, 0.0, 1.0))
+
+    @property
+    def directional_variance(self) -> float:
+        """The noise's variance in the direction of a typical signature; correlation makes it more than a frame's."""
+        runs = self.fit.evaluation.runs
+        values = []
+        for seen in self.signatures.values():
+            power = float(seen.left @ seen.left)
+            if power > 1e-20:
+                unit = seen.left / np.sqrt(power)
+                values.append(float(unit @ self.noise.covariance_product(unit[:, None], runs)[:, 0]))
+        return float(np.median(values)) if values else self.noise.standard_deviation**2
+
+
+def on_own_bound(effect: str, fit: FitResult) -> bool:
+    """Whether a fit had to stop at the edge of the plausible range of one of the effect's own parameters.
+
+    A part of the effect that is not there (at its null) or that nothing shows does not count.
+    """
+    kind = next(e for e in fit.model.effects if e.id == effect)
+    names = {f"{effect}.{p.name}": p.null for p in kind.parameters}
+    return any(
+        name in names
+        and name not in fit.undetermined
+        and not np.isclose(fit.model.values[name], names[name], atol=1e-6)
+        for name in fit.at_bound
+    )
+
+
+def plausible(finals: dict[str, FitResult]) -> dict[str, FitResult]:
+    """The fits, by effect, that did not have to stop at the edge of the effect's range."""
+    return {effect: final for effect, final in finals.items() if not on_own_bound(effect, final)}
+
+
+def expected_squares(fitted: np.ndarray, noise: NoiseModel, runs: np.ndarray) -> float:
+    """Expected sum of squares of the noise after the fitted directions [frames, n] and run means are taken out."""
+    basis = orthonormal(fitted)
+    draws = noise.sample(runs, 100, np.random.default_rng(1))
+    draws -= basis @ (basis.T @ draws)
+    return float((draws**2).sum(axis=0).mean())

@@ -1,0 +1,100 @@
+"""Full fits of the few most promising effects, on the model itself, and the noise that they reveal."""
+
+from collections.abc import Callable
+
+import numpy as np
+from hasel_sim.errors import SimulationError
+
+from hasel_sysid.diagnosis.between_periods import noise_between_periods
+from hasel_sysid.diagnosis.context import expected_squares, plausible
+from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
+from hasel_sysid.diagnosis.search import WORTH_A_STEP
+from hasel_sysid.diagnosis.trial import Trial
+from hasel_sysid.fit import FitResult, fit_least_squares
+from hasel_sysid.noise import NoiseModel, estimate_noise
+from hasel_sysid.problem import Problem
+
+_FINALISTS = 3
+_BRIEF = 8
+"""Evaluations that a finalist is given."""
+_CLOSE = 0.05
+"""A trial within this share of the baseline's sum of squares of the best one is refitted in full."""
+_MUCH, _MOST, _WORTH = 0.3, 0.9, 0.25
+"""An excess of this share of the noise's sum of squares is much; this share of the excess is most of it; a trial that
+promises to remove this share is worth a full fit."""
+_QUIETER = 0.8
+"""Differences between periods this much quieter than the residual show that it repeats itself."""
+
+Progress = Callable[[str, float], None]
+
+
+def full_fits(
+    problem: Problem, fit: FitResult, best: list[Trial], progress: Progress | None
+) -> dict[str, FitResult]:
+    """Full fits of the few most promising effects, on the model itself; of some more where those explain too little."""
+    squares = fit.evaluation.sum_of_squares
+    close = [t for t in best if t.predicted <= best[0].predicted + _CLOSE * squares]
+    chosen = close[:1] + [t for t in close[1:_FINALISTS] if t.promised >= WORTH_A_STEP * squares]
+    finals = _refitted(problem, fit, chosen, progress)
+    others = [trial for trial in best if trial not in chosen]
+    finals |= _refitted(problem, fit, _worth_a_fit(fit, finals, others), progress)
+    return finals | _finished(problem, finals)
+
+
+def _refitted(
+    problem: Problem, fit: FitResult, trials: list[Trial], progress: Progress | None
+) -> dict[str, FitResult]:
+    finals = {}
+    for number, trial in enumerate(trials):
+        effect = trial.start.effect
+        model = fit.model.with_effects(effect.source or effect.id).with_values(trial.step)
+        if progress:
+            progress(f"refitting with {effect.id}", 0.7 + 0.3 * number / _FINALISTS)
+        try:
+            finals[effect.id] = fit_least_squares(
+                problem, model, tolerance=1e-3, most_evaluations=_BRIEF, drafts=False
+            )
+        except SimulationError:
+            continue
+    return finals
+
+
+def _finished(problem: Problem, finals: dict[str, FitResult]) -> dict[str, FitResult]:
+    """The best of the plausible fits, where it was broken off before it had converged."""
+    found = plausible(finals)
+    if not found:
+        return {}
+    best = min(found, key=lambda effect: finals[effect].evaluation.sum_of_squares)
+    if finals[best].iterations < _BRIEF:
+        return {}
+    return {best: fit_least_squares(problem, finals[best].model, tolerance=1e-3, drafts=False)}
+
+
+def _worth_a_fit(fit: FitResult, finals: dict[str, FitResult], others: list[Trial]) -> list[Trial]:
+    """Trials worth a full fit because none so far removes most of an error well above the noise at a plausible value.
+
+    A trial's few steps may have got stuck where a full fit does not.
+    """
+    base, noise = fit.evaluation, noise_beyond(fit, finals)
+    floor = expected_squares(base.jacobian, noise, base.runs)
+    found = plausible(finals).values()
+    lowest = min([base.sum_of_squares, *(final.evaluation.sum_of_squares for final in found)])
+    excess = base.sum_of_squares - floor
+    if excess < _MUCH * floor or base.sum_of_squares - lowest > _MOST * excess:
+        return []
+    return [t for t in others if base.sum_of_squares - t.predicted > _WORTH * excess][:_FINALISTS]
+
+
+def noise_beyond(fit: FitResult, finals: dict[str, FitResult]) -> NoiseModel:
+    """Noise from what neither the best model nor a learned model of its residual explains.
+
+    Where the residual repeats itself from period to period it is not noise, and the differences tell the noise.
+    """
+    best = min([fit, *finals.values()], key=lambda result: result.evaluation.sum_of_squares)
+    evaluation = best.evaluation
+    columns = np.column_stack([evaluation.jacobian, regressors(evaluation)])
+    left = unexplained_by(columns, evaluation.residual)
+    whole = estimate_noise(left, evaluation.runs, columns, "what the best model and a learned residual leave")
+    between = noise_between_periods(evaluation)
+    repeats = between is not None and between.standard_deviation < _QUIETER * whole.standard_deviation
+    return between if repeats else whole

@@ -1,0 +1,34 @@
+"""How probable it is that each effect, or none of them, is the missing one."""
+
+import numpy as np
+
+from hasel_sysid.diagnosis.context import SIGNIFICANT, Context
+
+
+def probabilities(context: Context) -> tuple[dict[str, float], float]:
+    """Probability of each effect being the missing one, and of none of them.
+
+    Weights exp(-(S - S_best) / 2 v), v the noise's variance in the direction of a typical signature (which correlated
+    noise makes larger than that of a frame), with half a logarithm of the frames per parameter added, as BIC does. What
+    the best leaves above the noise counts for "none of them".
+    """
+    evaluation = context.fit.evaluation
+    variance = context.directional_variance
+    frames = np.log(len(evaluation.residual))
+    tolerance = 2 * variance + 0.01 * context.excess
+    scores = {}
+    for name, squares in context.squares.items():
+        count = context.signatures[name].columns.shape[1] - 1 if name in context.signatures else 1
+        scores[name] = -squares / tolerance - 0.5 * count * frames
+    nothing = -context.base / tolerance
+    best = max([nothing, *scores.values()])
+    weights = {name: float(np.exp(score - best)) for name, score in scores.items()}
+    weight_nothing = float(np.exp(nothing - best))
+    unexplained = 1 - max((context.removed(name) for name in scores), default=0.0)
+    some = context.chance < SIGNIFICANT
+    none = float(np.clip((unexplained - 0.05) / 0.3, 0.0, 1.0)) if some else 1.0
+    total = sum(weights.values()) + weight_nothing
+    share = 1 - none if some else 0.0
+    return {
+        name: share * weights.get(name, 0.0) / total for name in context.signatures | context.squares
+    }, none
