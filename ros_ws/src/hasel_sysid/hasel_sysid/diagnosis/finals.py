@@ -14,7 +14,8 @@ from hasel_sysid.fit import FitResult, fit_least_squares
 from hasel_sysid.noise import NoiseModel, estimate_noise
 from hasel_sysid.problem import Problem
 
-_FINALISTS = 3
+_FINALISTS, _MOST_FITS = 3, 6
+"""How many are fitted in any case, and at most."""
 _BRIEF = 8
 """Evaluations that a finalist is given."""
 _CLOSE = 0.05
@@ -36,8 +37,9 @@ def full_fits(
     close = [t for t in best if t.predicted <= best[0].predicted + _CLOSE * squares]
     chosen = close[:1] + [t for t in close[1:_FINALISTS] if t.promised >= WORTH_A_STEP * squares]
     finals = _refitted(problem, fit, chosen, progress)
-    others = [trial for trial in best if trial not in chosen]
-    finals |= _refitted(problem, fit, _worth_a_fit(fit, finals, others), progress)
+    for trial in best:
+        if len(finals) < _MOST_FITS and trial not in chosen and _worth_a_fit(fit, finals, trial):
+            finals |= _refitted(problem, fit, [trial], progress)
     return finals | _finished(problem, finals)
 
 
@@ -70,19 +72,21 @@ def _finished(problem: Problem, finals: dict[str, FitResult]) -> dict[str, FitRe
     return {best: fit_least_squares(problem, finals[best].model, tolerance=1e-3, drafts=False)}
 
 
-def _worth_a_fit(fit: FitResult, finals: dict[str, FitResult], others: list[Trial]) -> list[Trial]:
-    """Trials worth a full fit because none so far removes most of an error well above the noise at a plausible value.
+def _worth_a_fit(fit: FitResult, finals: dict[str, FitResult], trial: Trial) -> bool:
+    """Whether none so far removes most of an error well above the noise at a plausible value, and this one may.
 
-    A trial's few steps may have got stuck where a full fit does not.
+    A trial's few steps may have got stuck where a full fit does not. A double of a fitted effect does no more.
     """
+    fitted = {effect.exclusive for final in finals.values() for effect in final.model.effects}
+    if trial.start.effect.exclusive and trial.start.effect.exclusive in fitted:
+        return False
     base, noise = fit.evaluation, noise_beyond(fit, finals)
     floor = expected_squares(base.jacobian, noise, base.runs)
     found = plausible(finals).values()
     lowest = min([base.sum_of_squares, *(final.evaluation.sum_of_squares for final in found)])
     excess = base.sum_of_squares - floor
-    if excess < _MUCH * floor or base.sum_of_squares - lowest > _MOST * excess:
-        return []
-    return [t for t in others if base.sum_of_squares - t.predicted > _WORTH * excess][:_FINALISTS]
+    much_left = excess > _MUCH * floor and base.sum_of_squares - lowest < _MOST * excess
+    return much_left and base.sum_of_squares - trial.predicted > _WORTH * excess
 
 
 def noise_beyond(fit: FitResult, finals: dict[str, FitResult]) -> NoiseModel:
