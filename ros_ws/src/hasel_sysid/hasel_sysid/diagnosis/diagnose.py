@@ -12,7 +12,6 @@ from hasel_sysid.diagnosis.groups import groups
 from hasel_sysid.diagnosis.judgement import finding
 from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
 from hasel_sysid.diagnosis.probability import probabilities
-from hasel_sysid.diagnosis.promise import carried_over, worth_trying
 from hasel_sysid.diagnosis.result import Diagnosis
 from hasel_sysid.diagnosis.search import search
 from hasel_sysid.diagnosis.signature import Signature, signature
@@ -27,24 +26,17 @@ Progress = Callable[[str, float], None]
 
 
 def diagnose(
-    problem: Problem,
-    fit: FitResult,
-    only: Sequence[str] | None = None,
-    progress: Progress | None = None,
-    earlier: Diagnosis | None = None,
+    problem: Problem, fit: FitResult, only: Sequence[str] | None = None, progress: Progress | None = None
 ) -> Diagnosis:
     """Rank every effect of the catalogue (or the named ones) as an explanation of what `fit` leaves.
 
-    earlier: diagnosis of the same runs before the last effect was added; what promises next to nothing by its
-    signatures there is not simulated again. Raises ModelError for an unknown effect.
+    Raises ModelError for an unknown effect.
     """
     effects = candidate_effects(fit.model, tuple(only) if only else None)
-    known = {} if earlier is None else earlier.signatures
     trials = Trials(problem, fit.evaluation)
-    best, first = search(trials, worth_trying(fit, effects, known), progress)
+    best, first = search(trials, effects, progress)
     finals = full_fits(problem, fit, best, progress)
-    signatures = {e.id: carried_over(fit, known[e.id]) for e in effects if e.id in known}
-    signatures |= {t.start.effect.id: _signature(t, trials, fit) for t in reversed(first)}
+    signatures = {t.start.effect.id: _signature(t, trials, fit) for t in reversed(first)}
 
     noise = noise_beyond(fit, finals)
     base = fit.evaluation

@@ -7,12 +7,12 @@ from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis import diagnose
 from hasel_sysid.diagnosis.constancy import trends
-from hasel_sysid.diagnosis.promise import WORTH_A_LOOK, promised_shares
 from hasel_sysid.fit import FitResult, fit_least_squares
 from hasel_sysid.fit.refinement import changes_by_refinement, with_numerical_error
 from hasel_sysid.improve.conclusion import conclude, is_noise, last_diagnosis, left_over, near_noise
 from hasel_sysid.improve.decision import decide
 from hasel_sysid.improve.exchange import exchanged
+from hasel_sysid.improve.promise import WORTH_A_LOOK, most_promised
 from hasel_sysid.improve.prune import pruned
 from hasel_sysid.improve.result import Improvement, Stage
 from hasel_sysid.problem import Problem
@@ -43,9 +43,7 @@ def improve(
     stages = [_stage(fit, model, validation)]
     reason, negligible = "", False
     for number in range(most_effects):
-        part = report.part("diagnosis", *report.share(number))
-        earlier = stages[-2].diagnosis if number else None
-        found = diagnose(problem, stages[-1].fit, only, part, earlier)
+        found = diagnose(problem, stages[-1].fit, only, report.part("diagnosis", *report.share(number)))
         stages[-1] = _completed(problem, replace(stages[-1], diagnosis=found), on_stage)
         decision = decide(stages[-1], found)
         accepted, reason, negligible = decision.accepted, decision.reason, decision.negligible
@@ -56,8 +54,7 @@ def improve(
         if is_noise(refit, found):
             reason = f"What is left after adding {accepted.effect} is noise."
             break
-        most = max(promised_shares(refit, found.signatures).values(), default=0.0)
-        if near_noise(refit, found) and most < WORTH_A_LOOK:
+        if near_noise(refit, found) and most_promised(refit, found) < WORTH_A_LOOK:
             reason = f"What is left after adding {accepted.effect} is near the noise and looks like no other effect."
             negligible = True
             break
