@@ -78,9 +78,12 @@ class Model:
         return self.parameters[name]
 
     def with_values(
-        self, values: dict[str, float], standard_errors: dict[str, float] | None = None
+        self, values: dict[str, float], standard_errors: dict[str, float | None] | None = None
     ) -> "Model":
-        """A copy with other parameter values. Raises ModelError for an unknown name."""
+        """A copy with other parameter values. Raises ModelError for an unknown name.
+
+        standard_errors: None for a parameter that is not determined; those not named keep theirs.
+        """
         parameters = dict(self.parameters)
         for name, value in values.items():
             error = (standard_errors or {}).get(name, self.parameter(name).standard_error)

@@ -13,7 +13,7 @@ README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.timeout(600)
-def test_the_program_names_the_drag_and_drops_what_it_took_it_for():
+def test_the_program_names_the_drag():
     """The same effects stage by stage, and the same errors but for the last digits."""
     program, printed = re.search(r"```python\n(.*?)```\s+```\n(.*?)```", README, re.DOTALL).groups()
     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
