@@ -37,9 +37,12 @@ def full_fits(
     close = [t for t in best if t.predicted <= best[0].predicted + _CLOSE * squares]
     chosen = close[:1] + [t for t in close[1:_FINALISTS] if t.promised >= WORTH_A_STEP * squares]
     finals = _refitted(problem, fit, chosen, progress)
+    least = _least_drop_worth_a_fit(fit, finals)
     for trial in best:
-        if len(finals) < _MOST_FITS and trial not in chosen and _worth_a_fit(fit, finals, trial):
+        worth = squares - trial.predicted > least and not _double(trial, finals)
+        if worth and trial not in chosen and len(finals) < _MOST_FITS:
             finals |= _refitted(problem, fit, [trial], progress)
+            least = _least_drop_worth_a_fit(fit, finals)
     return finals | _finished(problem, finals)
 
 
@@ -72,21 +75,25 @@ def _finished(problem: Problem, finals: dict[str, FitResult]) -> dict[str, FitRe
     return {best: fit_least_squares(problem, finals[best].model, tolerance=1e-3, drafts=False)}
 
 
-def _worth_a_fit(fit: FitResult, finals: dict[str, FitResult], trial: Trial) -> bool:
-    """Whether none so far removes most of an error well above the noise at a plausible value, and this one may.
+def _least_drop_worth_a_fit(fit: FitResult, finals: dict[str, FitResult]) -> float:
+    """By how much a trial must promise to lower the sum of squares; infinite where no further fit is needed.
 
-    A trial's few steps may have got stuck where a full fit does not. A double of a fitted effect does no more.
+    It is needed while none so far removes most of an error well above the noise at a plausible value: a trial's few
+    steps may have got stuck where a full fit does not.
     """
-    fitted = {effect.exclusive for final in finals.values() for effect in final.model.effects}
-    if trial.start.effect.exclusive and trial.start.effect.exclusive in fitted:
-        return False
     base, noise = fit.evaluation, noise_beyond(fit, finals)
     floor = expected_squares(base.jacobian, noise, base.runs)
     found = plausible(finals).values()
     lowest = min([base.sum_of_squares, *(final.evaluation.sum_of_squares for final in found)])
     excess = base.sum_of_squares - floor
     much_left = excess > _MUCH * floor and base.sum_of_squares - lowest < _MOST * excess
-    return much_left and base.sum_of_squares - trial.predicted > _WORTH * excess
+    return _WORTH * excess if much_left else float("inf")
+
+
+def _double(trial: Trial, finals: dict[str, FitResult]) -> bool:
+    """Whether an effect that does the same is fitted already."""
+    fitted = {effect.exclusive for final in finals.values() for effect in final.model.effects}
+    return bool(trial.start.effect.exclusive) and trial.start.effect.exclusive in fitted
 
 
 def noise_beyond(fit: FitResult, finals: dict[str, FitResult]) -> NoiseModel:

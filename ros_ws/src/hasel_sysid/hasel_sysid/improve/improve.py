@@ -7,12 +7,13 @@ from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis import diagnose
 from hasel_sysid.diagnosis.constancy import trends
+from hasel_sysid.diagnosis.search import WORTH_A_STEP
 from hasel_sysid.fit import FitResult, fit_least_squares
 from hasel_sysid.fit.refinement import changes_by_refinement, with_numerical_error
 from hasel_sysid.improve.conclusion import conclude, is_noise, last_diagnosis, left_over, near_noise
 from hasel_sysid.improve.decision import decide
 from hasel_sysid.improve.exchange import exchanged
-from hasel_sysid.improve.promise import WORTH_A_LOOK, most_promised
+from hasel_sysid.improve.promise import most_promised
 from hasel_sysid.improve.prune import pruned
 from hasel_sysid.improve.result import Improvement, Stage
 from hasel_sysid.problem import Problem
@@ -54,7 +55,7 @@ def improve(
         if is_noise(refit, found):
             reason = f"What is left after adding {accepted.effect} is noise."
             break
-        if near_noise(refit, found) and most_promised(refit, found) < WORTH_A_LOOK:
+        if near_noise(refit, found) and most_promised(refit, found) < WORTH_A_STEP:
             reason = f"What is left after adding {accepted.effect} is near the noise and looks like no other effect."
             negligible = True
             break

@@ -4,9 +4,6 @@ from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.diagnosis.significance import drops, orthonormal
 from hasel_sysid.fit import FitResult
 
-WORTH_A_LOOK = 0.05
-"""Half the least share of the squared error for which an effect is added: signatures are only nearly right."""
-
 
 def most_promised(fit: FitResult, found: Diagnosis) -> float:
     """Largest share, 0 to 1, of what a fit leaves (sum of squares) that any other effect could take away.
