@@ -12,6 +12,7 @@ from hasel_driver.faults import FaultCode
 STANDBY, ARMED, ACTIVE, FAULT = range(4)
 GROUNDED_WITHIN_S = 0.5
 CONFIGURE, CLEANUP, ACTIVATE, DEACTIVATE, UNKNOWN = 1, 2, 3, 4, 77
+DISCHARGED_WITHIN_S = 0.02  # of the contact that the board reports: 0.5 nF over 2 MΩ, 10 kV to 50 V in 5.3 ms
 
 
 def test_nothing_is_live_before_arming(driver, shared_rig, ros):
@@ -80,7 +81,7 @@ def test_deactivating_disarms_and_activating_does_not_arm(driver, shared_rig, ro
     ros.drive(lambda: shared_rig.live)
     ros.transition(DEACTIVATE)
     answered_s = time.monotonic()
-    assert shared_rig.await_live(False) <= answered_s
+    assert shared_rig.await_live(False) < answered_s + DISCHARGED_WITHIN_S
     assert "not active" in ros.trigger("arm").message
     ros.transition(ACTIVATE)
     ros.await_mode(STANDBY)

@@ -38,8 +38,9 @@ class DriverProcess:
         raise AssertionError(answer.message)
 
     def to_standby(self) -> None:
-        """From whatever state."""
+        """From whatever state, of the lifecycle too."""
         client = self._client
+        client.activate()
         client.wait(lambda: bool(client.states), 10.0)
         client.trigger("disarm")
         client.states.clear()

@@ -9,7 +9,8 @@ from typing import Any
 
 import rclpy
 from hasel_interfaces.msg import Actuation, SupplyState
-from lifecycle_msgs.srv import ChangeState
+from lifecycle_msgs.msg import State, Transition
+from lifecycle_msgs.srv import ChangeState, GetState
 from rclpy.context import Context
 from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
@@ -90,6 +91,15 @@ class RosClient:
         request.transition.id = identifier
         if not self.request(ChangeState, "/hasel_driver/change_state", request).success:
             raise AssertionError(f"the transition {identifier} failed")
+
+    def activate(self) -> None:
+        """Bring the node's lifecycle to active, from unconfigured or inactive."""
+        request = GetState.Request()
+        state = self.request(GetState, "/hasel_driver/get_state", request).current_state.id
+        if state == State.PRIMARY_STATE_UNCONFIGURED:
+            self.transition(Transition.TRANSITION_CONFIGURE)
+        if state != State.PRIMARY_STATE_ACTIVE:
+            self.transition(Transition.TRANSITION_ACTIVATE)
 
     def illegal_transition(self, identifier: int) -> None:
         """Request a transition that will never be answered."""
