@@ -1,12 +1,14 @@
 """Where the search for each effect starts."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from hasel_sim.effects.base import Effect, EffectParameter
 from hasel_sim.effects.registry import catalogue, find_effects
 from hasel_sim.errors import ModelError
 from hasel_sim.model import Model
+
+_LARGER = 2.0
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,23 @@ def starts(effect: Effect) -> list[Start]:
     count = len(nuisance.scan)
     chosen = {nuisance.scan[count // 4], nuisance.scan[(3 * count) // 4]}
     return [_start(effect, {nuisance.name: value}) for value in sorted(chosen)]
+
+
+def larger_starts(effect: Effect) -> list[Start]:
+    """The same starts with whatever is one-sided at twice its typical size; none where nothing is one-sided."""
+    return [
+        replace(start, values=larger)
+        for start in starts(effect)
+        if (larger := _enlarged(start)) != start.values
+    ]
+
+
+def _enlarged(start: Start) -> dict[str, float]:
+    values = dict(start.values)
+    for p in start.effect.parameters:
+        if not p.scan and not _signed(p):
+            values[f"{start.effect.id}.{p.name}"] = min(_LARGER * p.typical, p.upper)
+    return values
 
 
 def _start(effect: Effect, fixed: dict[str, float]) -> Start:

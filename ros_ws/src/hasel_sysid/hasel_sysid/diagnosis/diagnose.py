@@ -13,7 +13,7 @@ from hasel_sysid.diagnosis.judgement import finding
 from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
 from hasel_sysid.diagnosis.probability import probabilities
 from hasel_sysid.diagnosis.result import Diagnosis
-from hasel_sysid.diagnosis.search import search
+from hasel_sysid.diagnosis.search import search, search_from_larger
 from hasel_sysid.diagnosis.signature import Signature, signature
 from hasel_sysid.diagnosis.significance import largest_drops_by_noise, p_value
 from hasel_sysid.diagnosis.suspects import numerical_suspects
@@ -35,7 +35,7 @@ def diagnose(
     effects = candidate_effects(fit.model, tuple(only) if only else None)
     trials = Trials(problem, fit.evaluation)
     best, first = search(trials, effects, progress)
-    finals = full_fits(problem, fit, best, progress)
+    finals = full_fits(problem, fit, best, lambda: search_from_larger(trials, effects, progress), progress)
     signatures = {t.start.effect.id: _signature(t, trials, fit) for t in reversed(first)}
 
     noise = noise_beyond(fit, finals)

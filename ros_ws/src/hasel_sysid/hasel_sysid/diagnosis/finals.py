@@ -30,20 +30,54 @@ Progress = Callable[[str, float], None]
 
 
 def full_fits(
-    problem: Problem, fit: FitResult, best: list[Trial], progress: Progress | None
+    problem: Problem,
+    fit: FitResult,
+    best: list[Trial],
+    larger: Callable[[], list[Trial]],
+    progress: Progress | None,
 ) -> dict[str, FitResult]:
-    """Full fits of the few most promising effects, on the model itself; of some more where those explain too little."""
+    """Full fits of the few most promising effects, on the model itself; of some more where those explain too little.
+
+    larger: trials that start from larger sizes, asked for where the other ones do not lead to an explanation.
+    """
     squares = fit.evaluation.sum_of_squares
     close = [t for t in best if t.predicted <= best[0].predicted + _CLOSE * squares]
     chosen = close[:1] + [t for t in close[1:_FINALISTS] if t.promised >= WORTH_A_STEP * squares]
     finals = _refitted(problem, fit, chosen, progress)
-    least = _least_drop_worth_a_fit(fit, finals)
-    for trial in best:
-        worth = squares - trial.predicted > least and not _double(trial, finals)
-        if worth and trial not in chosen and len(finals) < _MOST_FITS:
-            finals |= _refitted(problem, fit, [trial], progress)
-            least = _least_drop_worth_a_fit(fit, finals)
+    rest = [trial for trial in best if trial not in chosen]
+    finals = _while_needed(problem, fit, finals, rest, _MOST_FITS - len(finals), progress)
+    if np.isfinite(_least_drop_worth_a_fit(fit, finals)):
+        finals = _while_needed(problem, fit, finals, larger(), _FINALISTS, progress)
     return finals | _finished(problem, finals)
+
+
+def _while_needed(
+    problem: Problem,
+    fit: FitResult,
+    finals: dict[str, FitResult],
+    trials: list[Trial],
+    most: int,
+    progress: Progress | None,
+) -> dict[str, FitResult]:
+    """`finals` with up to `most` more full fits, in the order of `trials`, while they explain too little."""
+    squares = fit.evaluation.sum_of_squares
+    least = _least_drop_worth_a_fit(fit, finals)
+    for trial in trials:
+        if most > 0 and squares - trial.predicted > least and not _known(trial, finals):
+            finals = _better_of(finals, _refitted(problem, fit, [trial], progress))
+            least = _least_drop_worth_a_fit(fit, finals)
+            most -= 1
+    return finals
+
+
+def _better_of(finals: dict[str, FitResult], more: dict[str, FitResult]) -> dict[str, FitResult]:
+    def worse(effect: str) -> bool:
+        known = finals.get(effect)
+        return known is not None and (
+            more[effect].evaluation.sum_of_squares >= known.evaluation.sum_of_squares
+        )
+
+    return finals | {effect: final for effect, final in more.items() if not worse(effect)}
 
 
 def _refitted(
@@ -90,10 +124,13 @@ def _least_drop_worth_a_fit(fit: FitResult, finals: dict[str, FitResult]) -> flo
     return _WORTH * excess if much_left else float("inf")
 
 
-def _double(trial: Trial, finals: dict[str, FitResult]) -> bool:
-    """Whether an effect that does the same is fitted already."""
+def _known(trial: Trial, finals: dict[str, FitResult]) -> bool:
+    """Whether an effect that does the same is fitted already, or the effect itself at least as well as promised."""
+    effect = trial.start.effect
+    if effect.id in finals:
+        return finals[effect.id].evaluation.sum_of_squares <= trial.predicted
     fitted = {effect.exclusive for final in finals.values() for effect in final.model.effects}
-    return bool(trial.start.effect.exclusive) and trial.start.effect.exclusive in fitted
+    return bool(effect.exclusive) and effect.exclusive in fitted
 
 
 def noise_beyond(fit: FitResult, finals: dict[str, FitResult]) -> NoiseModel:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 from hasel_sim.effects.base import Effect
 
-from hasel_sysid.diagnosis.candidates import starts
+from hasel_sysid.diagnosis.candidates import larger_starts, starts
 from hasel_sysid.diagnosis.trial import Trial, Trials
 
 _ROUNDS = (9, 5)
@@ -35,7 +35,25 @@ def search(
         if progress:
             done = min(1.0, (begin + _BATCH) / len(every))
             progress(f"tried {len(first)} of {len(every)} starts", 0.5 * done)
-    best = _best_of_each(first)
+    return _steps(trials, _best_of_each(first), progress), first
+
+
+def search_from_larger(
+    trials: Trials, effects: Sequence[Effect], progress: Progress | None = None
+) -> list[Trial]:
+    """The best trial, from twice the typical size, of every effect that is one-sided, best first.
+
+    An effect twice as large as is typical may be out of reach of Gauss-Newton steps from its typical size: a slew limit
+    that the voltage just meets and one that it never meets do not look alike.
+    """
+    if progress:
+        progress("trying larger effects", 0.8)
+    first = trials.first([start for effect in effects for start in larger_starts(effect)])
+    return _steps(trials, _best_of_each(first)) if first else []
+
+
+def _steps(trials: Trials, best: list[Trial], progress: Progress | None = None) -> list[Trial]:
+    """Further steps with the most promising trials; all of them, best first."""
     squares = trials.fitted.sum_of_squares
     for number, keep in enumerate(_ROUNDS):
         hopeful = [t for t in best if _has_hope(t, best, squares)]
@@ -48,7 +66,7 @@ def search(
         best = sorted(trials.further(going_on) + staying, key=_promise)
         if progress:
             progress(f"round {number + 2}: {best[0].start.effect.id} promises most", 0.5 + 0.1 * (number + 1))
-    return best, first
+    return best
 
 
 def _has_hope(trial: Trial, best: Sequence[Trial], squares: float) -> bool:

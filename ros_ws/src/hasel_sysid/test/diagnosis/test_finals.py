@@ -9,6 +9,7 @@ from hasel_sysid.diagnosis.finals import full_fits
 
 SQUARES = {"best": 0.4, "its_double": 0.5, "stuck": 0.6, "never": 0.9}
 """What the trials promise of a sum of squares of 1; the full fit of the one that got stuck leaves only noise."""
+LEFT = {"best": 0.4, "its_double": 0.4, "stuck": 0.1, "never": 0.9}
 
 
 class Model:
@@ -28,13 +29,18 @@ class Model:
         return self
 
 
-def trial(name):
-    """A trial that promises what `SQUARES` says."""
+def trial(name, predicted=None):
+    """A trial that promises what `SQUARES` says, if nothing else."""
     effect = Model(name).effects[0]
     effect.source = None
     return SimpleNamespace(
-        start=SimpleNamespace(effect=effect), predicted=SQUARES[name], promised=0.5, step={}
+        start=SimpleNamespace(effect=effect), predicted=predicted or SQUARES[name], promised=0.5, step={}
     )
+
+
+def none_larger():
+    """For a test in which nothing may start from a larger size."""
+    raise AssertionError("asked for larger sizes although the error is explained")
 
 
 def result(model, squares):
@@ -45,9 +51,11 @@ def result(model, squares):
 
 @pytest.fixture(autouse=True)
 def _fits(monkeypatch):
-    left = {"best": 0.4, "its_double": 0.4, "stuck": 0.1, "never": 0.9}
+    left = {name: iter([squares, 0.1, 0.1]) for name, squares in LEFT.items()}
     monkeypatch.setattr(
-        module, "fit_least_squares", lambda problem, model, **how: result(model, left[model.effects[0].id])
+        module,
+        "fit_least_squares",
+        lambda problem, model, **how: result(model, next(left[model.effects[0].id])),
     )
     monkeypatch.setattr(module, "noise_beyond", lambda fit, finals: None)
     monkeypatch.setattr(module, "expected_squares", lambda *of: 0.1)
@@ -56,11 +64,33 @@ def _fits(monkeypatch):
 
 def test_what_only_got_stuck_is_fitted_where_the_best_explains_too_little():
     """Its double, which does the same, is passed over for it; what promises next to nothing is left alone."""
-    found = full_fits(None, result(Model(), 1.0), [trial(name) for name in SQUARES], None)
+    found = full_fits(None, result(Model(), 1.0), [trial(name) for name in SQUARES], none_larger, None)
     assert list(found) == ["best", "stuck"]
 
 
 def test_once_the_error_is_explained_no_other_is_fitted():
     """The best one leaves only noise."""
-    found = full_fits(None, result(Model(), 1.0), [trial("stuck"), trial("never")], None)
+    found = full_fits(None, result(Model(), 1.0), [trial("stuck"), trial("never")], none_larger, None)
     assert list(found) == ["stuck"]
+
+
+def test_an_effect_is_fitted_again_from_a_larger_size():
+    """Where nothing explains the error: from there it leaves only noise, which takes the place of its first fit."""
+    found = full_fits(None, result(Model(), 1.0), [trial("best")], lambda: [trial("best", 0.05)], None)
+    assert {name: final.evaluation.sum_of_squares for name, final in found.items()} == {"best": 0.1}
+
+
+def test_a_larger_size_that_promises_no_more_is_left_alone():
+    """What its full fit has reached already is not fitted again."""
+    found = full_fits(None, result(Model(), 1.0), [trial("best")], lambda: [trial("best", 0.45)], None)
+    assert found["best"].evaluation.sum_of_squares == 0.4
+
+
+def test_a_worse_fit_does_not_take_the_place_of_a_better_one(monkeypatch):
+    """Whatever a larger size promised."""
+    squares = iter([0.4, 0.7])
+    monkeypatch.setattr(
+        module, "fit_least_squares", lambda problem, model, **how: result(model, next(squares))
+    )
+    found = full_fits(None, result(Model(), 1.0), [trial("best")], lambda: [trial("best", 0.05)], None)
+    assert found["best"].evaluation.sum_of_squares == 0.4

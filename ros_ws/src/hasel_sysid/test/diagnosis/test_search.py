@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
 from hasel_sysid.diagnosis import search as module
-from hasel_sysid.diagnosis.search import search
+from hasel_sysid.diagnosis.search import search, search_from_larger
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +64,14 @@ def test_what_could_remove_far_less_than_the_best_is_no_rival(monkeypatch):
     trials = FakeTrials()
     search(trials, _effects("far"))
     assert trials.moved[9:] == ["far", "far"]
+
+
+def test_larger_sizes_are_tried_where_there_are_any(monkeypatch):
+    """And the best one comes first; a catalogue in which nothing is one-sided has none."""
+    monkeypatch.setattr(module, "larger_starts", _one_start)
+    assert search_from_larger(FakeTrials(), _effects("far"))[0].start.effect.id == "far"
+    monkeypatch.setattr(module, "larger_starts", lambda effect: [])
+    assert search_from_larger(FakeTrials(), _effects("far")) == []
 
 
 def _one_start(effect):
