@@ -46,7 +46,7 @@ def full_fits(
     finals = _refitted(problem, fit, chosen, progress)
     rest = [trial for trial in best if trial not in chosen]
     finals = _while_needed(problem, fit, finals, rest, _MOST_FITS - len(finals), progress)
-    if np.isfinite(_least_drop_worth_a_fit(fit, finals)):
+    if _well_above_noise(fit, finals):
         finals = _while_needed(problem, fit, finals, larger(), _FINALISTS, progress)
     return finals | _finished(problem, finals)
 
@@ -115,13 +115,24 @@ def _least_drop_worth_a_fit(fit: FitResult, finals: dict[str, FitResult]) -> flo
     It is needed while none so far removes most of an error well above the noise at a plausible value: a trial's few
     steps may have got stuck where a full fit does not.
     """
-    base, noise = fit.evaluation, noise_beyond(fit, finals)
-    floor = expected_squares(base.jacobian, noise, base.runs)
-    found = plausible(finals).values()
-    lowest = min([base.sum_of_squares, *(final.evaluation.sum_of_squares for final in found)])
-    excess = base.sum_of_squares - floor
-    much_left = excess > _MUCH * floor and base.sum_of_squares - lowest < _MOST * excess
+    base, lowest, floor = _squares(fit, finals)
+    excess = base - floor
+    much_left = excess > _MUCH * floor and base - lowest < _MOST * excess
     return _WORTH * excess if much_left else float("inf")
+
+
+def _well_above_noise(fit: FitResult, finals: dict[str, FitResult]) -> bool:
+    """Whether the best plausible fit so far neither removes most of the error nor comes near the noise."""
+    base, lowest, floor = _squares(fit, finals)
+    return lowest - floor > max(_MUCH * floor, (1 - _MOST) * (base - floor))
+
+
+def _squares(fit: FitResult, finals: dict[str, FitResult]) -> tuple[float, float, float]:
+    """Sum of squares of the fit, of the best plausible one with an effect, and expected of noise alone."""
+    base = fit.evaluation
+    floor = expected_squares(base.jacobian, noise_beyond(fit, finals), base.runs)
+    squares = [final.evaluation.sum_of_squares for final in plausible(finals).values()]
+    return base.sum_of_squares, min([base.sum_of_squares, *squares]), floor
 
 
 def _known(trial: Trial, finals: dict[str, FitResult]) -> bool:

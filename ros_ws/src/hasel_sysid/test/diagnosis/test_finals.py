@@ -94,3 +94,9 @@ def test_a_worse_fit_does_not_take_the_place_of_a_better_one(monkeypatch):
     )
     found = full_fits(None, result(Model(), 1.0), [trial("best")], lambda: [trial("best", 0.05)], None)
     assert found["best"].evaluation.sum_of_squares == 0.4
+
+
+def test_near_the_noise_no_larger_size_is_tried(monkeypatch):
+    """What a small effect leaves may be a large share of little."""
+    monkeypatch.setattr(module, "expected_squares", lambda *of: 0.32)
+    assert list(full_fits(None, result(Model(), 1.0), [trial("best")], none_larger, None)) == ["best"]

@@ -66,12 +66,15 @@ def test_what_could_remove_far_less_than_the_best_is_no_rival(monkeypatch):
     assert trials.moved[9:] == ["far", "far"]
 
 
-def test_larger_sizes_are_tried_where_there_are_any(monkeypatch):
-    """And the best one comes first; a catalogue in which nothing is one-sided has none."""
+def test_larger_sizes_are_tried_of_what_has_hope(monkeypatch):
+    """And the best one comes first; where nothing is one-sided there are none."""
+    monkeypatch.setattr(module, "starts", _one_start)
     monkeypatch.setattr(module, "larger_starts", _one_start)
-    assert search_from_larger(FakeTrials(), _effects("far"))[0].start.effect.id == "far"
+    best, _ = search(FakeTrials(), [*_effects("far"), SimpleNamespace(id="hopeless")])
+    larger = [trial.start.effect.id for trial in search_from_larger(FakeTrials(), best)]
+    assert larger[0] == "far" and "hopeless" not in larger and len(larger) == 13
     monkeypatch.setattr(module, "larger_starts", lambda effect: [])
-    assert search_from_larger(FakeTrials(), _effects("far")) == []
+    assert search_from_larger(FakeTrials(), best) == []
 
 
 def _one_start(effect):
