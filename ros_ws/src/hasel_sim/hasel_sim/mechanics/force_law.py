@@ -72,6 +72,14 @@ class ForceLaw:
         """Add factor times the nodal forces to out [nodes, 2]."""
         self.sites.scatter(factor * self.effect.force(self.state(motion, drive), self.values), out)
 
+    def add_excess(
+        self, other: "ForceLaw", motion: Motion, drive: DriveState, out: np.ndarray, factor: float
+    ) -> None:
+        """Add factor times the nodal forces that this law has more than another of the same effect and sites."""
+        at = self.state(motion, drive)
+        excess = self.effect.force(at, self.values) - self.effect.force(at, other.values)
+        self.sites.scatter(factor * excess, out)
+
     def linearise(self, motion: Motion, drive: DriveState) -> None:
         """Keep the derivatives at this state: one [n, 2, 2] array per quantity the effect depends on."""
         if not self.effect.depends_on:

@@ -43,11 +43,16 @@ class ForceSlope:
 
     def __init__(self, more: ForceLaw, less: ForceLaw, width: float) -> None:
         self._more, self._less, self._width = more, less, width
+        self._same_sites = more.sites.same_as(less.sites)
 
     def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
         """Subtract the derivative of the force, which stands on the right-hand side."""
-        self._more.add_force(motion, drive, out, -load_factor / self._width)
-        self._less.add_force(motion, drive, out, load_factor / self._width)
+        factor = -load_factor / self._width
+        if self._same_sites:
+            self._more.add_excess(self._less, motion, drive, out, factor)
+        else:
+            self._more.add_force(motion, drive, out, factor)
+            self._less.add_force(motion, drive, out, -factor)
 
 
 class StressSlope:

@@ -24,6 +24,12 @@ class StressLaw:
         self.effect, self.values, self._fibre = effect, values, fibre
         self.elements = np.flatnonzero(np.isin(region, [int(r) for r in effect.regions]))
         self._muscle = muscle[self.elements]
+        self._muscles: dict[tuple[int, int], np.ndarray] = {}
+
+    @property
+    def concerns_muscles(self) -> bool:
+        """Whether any of the elements lies in a muscle."""
+        return bool(self._muscle.any())
 
     def stress(self, deformation: np.ndarray, rate: np.ndarray, drive) -> np.ndarray:
         """First Piola stress at [elements here, points, 4] for gradients and rates of all elements [.., points, 4]."""
@@ -33,7 +39,9 @@ class StressLaw:
         ).reshape(here.shape)
 
     def _evaluate(self, F: np.ndarray, rate: np.ndarray, drive, points: int, copies: int) -> np.ndarray:
-        muscle = repeated(np.repeat(self._muscle, points), copies)
+        if (points, copies) not in self._muscles:
+            self._muscles[points, copies] = repeated(np.repeat(self._muscle, points), copies)
+        muscle = self._muscles[points, copies]
         contraction, voltage = (
             np.concatenate([[0.0], of_both])[muscle] for of_both in (drive.contraction, drive.voltage)
         )
@@ -60,10 +68,15 @@ class StressLaw:
             change = (P[index, :, 0] - P[index, :, 1]) / (2 * _DIFFERENCE[name])
             moduli[name][self.elements] += change.transpose(1, 2, 0).reshape(*shape, 4)
 
-    def contraction_slope(self, deformation: np.ndarray, rate: np.ndarray, drive, muscle: int) -> np.ndarray:
-        """Derivative of the stress by the contraction of one muscle (0 upper, 1 lower), [elements here, points, 4]."""
-        step = np.zeros(2)
-        step[muscle] = 1e-6
-        more = self.stress(deformation, rate, drive.with_contraction(drive.contraction + step))
-        less = self.stress(deformation, rate, drive.with_contraction(drive.contraction - step))
-        return (more - less) / 2e-6
+    def contraction_slopes(self, deformation: np.ndarray, rate: np.ndarray, drive) -> np.ndarray:
+        """Derivative of the stress by the contraction of either muscle, [2, elements here, points, 4].
+
+        A point knows the contraction of the muscle it lies in only, so one difference serves both.
+        """
+        more, less = (
+            self.stress(deformation, rate, drive.with_contraction(drive.contraction + step))
+            for step in (1e-6, -1e-6)
+        )
+        change = (more - less) / 2e-6
+        here = self._muscle == np.array([[1], [2]])
+        return here[:, :, None, None] * change

@@ -183,10 +183,11 @@ class Linearisation:
         """Derivative of the residual by the contraction of the upper and the lower muscle, [2, nodes, 2]."""
         out = self.system.solid.contraction_force(self.F)
         for law in self.system.stresses:
-            for muscle in range(2):
-                P = np.zeros_like(self.F)
-                P[law.elements] = law.contraction_slope(self.F, self.rate, drive, muscle)
-                self.system.solid.add_force(P, out[muscle])
+            if law.concerns_muscles:
+                for muscle, slope in enumerate(law.contraction_slopes(self.F, self.rate, drive)):
+                    P = np.zeros_like(self.F)
+                    P[law.elements] = slope
+                    self.system.solid.add_force(P, out[muscle])
         for law in self.system.forces:
             law.add_contraction(out)
         return self.system.held_to_zero(out)

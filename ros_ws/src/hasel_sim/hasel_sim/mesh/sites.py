@@ -22,6 +22,11 @@ class Sites:
     slope: np.ndarray
     measure: np.ndarray
 
+    def same_as(self, other: "Sites") -> bool:
+        """Whether another object describes the same sites."""
+        pairs = zip(vars(self).values(), vars(other).values(), strict=True)
+        return all(np.array_equal(mine, theirs) for mine, theirs in pairs)
+
     def value(self, field: np.ndarray) -> np.ndarray:
         """A nodal field [..., nodes, 2] at the sites, [..., n, 2]."""
         return self._interpolated(self.shape, field)
