@@ -4,7 +4,7 @@ import numpy as np
 
 from hasel_sim.effects.base import Coefficients
 from hasel_sim.mechanics import compiled
-from hasel_sim.mechanics.branches import Branches, green_stress
+from hasel_sim.mechanics.branches import Branches, green_stress, kept
 from hasel_sim.mesh.mesh import Mesh, Region
 from hasel_sim.mesh.serendipity import reference_gradients
 
@@ -48,6 +48,7 @@ class Solid:
         self._table[:, compiled.VISCOUS_SHEAR] = material.retardation * material.shear
         self._table[:, compiled.VISCOUS_LAME] = material.retardation * lame
         self._table[:, compiled.FIBRE] = np.where(self.muscle > 0, material.fibre, 0.0)
+        self._tables: dict[float, np.ndarray] = {}
         self._no_history = np.zeros((*areas.shape, 3))
 
     def gradient(self, field: np.ndarray) -> np.ndarray:
@@ -63,6 +64,9 @@ class Solid:
         """
         if len(self.branches) == 0 or step == 0.0:
             return self._table
+        return kept(self._tables, step, self._table_after)
+
+    def _table_after(self, step: float) -> np.ndarray:
         table, gain = self._table.copy(), self.branches.factors(step)[1].sum()
         table[:, compiled.BRANCH_SHEAR] = gain * self.shear
         table[:, compiled.BRANCH_LAME] = gain * self.linear_lame
