@@ -1,8 +1,10 @@
 """What every verdict of a diagnosis rests on."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
+from hasel_sim.effects.base import Effect
 
 from hasel_sysid.diagnosis.signature import Signature
 from hasel_sysid.diagnosis.significance import orthonormal
@@ -18,9 +20,11 @@ _LEAST_EXCESS = 0.05
 class Context:
     """Everything a verdict rests on.
 
-    squares: sum of squared residuals reached with each effect; changes: of the simulated series by finer numerics.
+    effects: what is judged; squares: sum of squared residuals reached with each; changes: of the simulated series by
+    finer numerics.
     """
 
+    effects: Sequence[Effect]
     fit: FitResult
     finals: dict[str, FitResult]
     signatures: dict[str, Signature]
@@ -48,6 +52,11 @@ class Context:
             return None
         return min(found, key=lambda effect: self.squares[effect])
 
+    def with_fit(self, effect: str, fit: FitResult) -> "Context":
+        """The same with one more effect fitted in full."""
+        squares = {**self.squares, effect: fit.evaluation.sum_of_squares}
+        return replace(self, finals={**self.finals, effect: fit}, squares=squares)
+
     def removed(self, effect: str) -> float:
         """Share of the excess over the noise that an effect removes, 0 to 1."""
         drop = self.base - self.squares.get(effect, self.base)
@@ -64,6 +73,11 @@ class Context:
                 unit = seen.left / np.sqrt(power)
                 values.append(float(unit @ self.noise.covariance_product(unit[:, None], runs)[:, 0]))
         return float(np.median(values)) if values else self.noise.standard_deviation**2
+
+
+def lowest_squares(fit: FitResult, finals: dict[str, FitResult]) -> float:
+    """Sum of squares of the best of all fits, the one without any effect among them."""
+    return min(one.evaluation.sum_of_squares for one in (fit, *finals.values()))
 
 
 def on_own_bound(effect: str, fit: FitResult) -> bool:

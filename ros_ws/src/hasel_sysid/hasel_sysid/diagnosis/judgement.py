@@ -1,17 +1,48 @@
-"""From numbers to the verdict on one effect."""
+"""From numbers to the verdict on every effect."""
+
+from dataclasses import replace
 
 import numpy as np
 
-from hasel_sysid.diagnosis.context import Context
-from hasel_sysid.diagnosis.result import Finding, Verdict
+from hasel_sysid.diagnosis.context import Context, lowest_squares
+from hasel_sysid.diagnosis.groups import groups
+from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
+from hasel_sysid.diagnosis.probability import probabilities
+from hasel_sysid.diagnosis.result import Diagnosis, Finding, Verdict
 from hasel_sysid.diagnosis.signature import Signature
 from hasel_sysid.diagnosis.significance import orthonormal
+from hasel_sysid.diagnosis.suspects import numerical_suspects
 from hasel_sysid.fit.refinement import with_numerical_error
 
 _MATTERS = 0.4
 """An effect that removes less than this share of the error above the noise is not what is missing."""
 _DETECTION = 3.3
 """Standard errors at which an effect is seen with 95 % certainty at a 5 % false-alarm rate."""
+
+
+def judged(context: Context) -> Diagnosis:
+    """What is said of all effects of a context."""
+    base = context.fit.evaluation
+    lowest = lowest_squares(context.fit, context.finals)
+    chances, none = probabilities(context)
+    findings = [
+        replace(finding(context, effect), probability=chances.get(effect.id, 0.0))
+        for effect in context.effects
+    ]
+    findings.sort(key=lambda one: (-one.probability, context.squares.get(one.effect, np.inf)))
+    columns = np.column_stack([base.jacobian, regressors(base)])
+    learned = unexplained_by(columns, base.residual)
+    return Diagnosis(
+        findings,
+        groups(context),
+        context.noise,
+        context.chance,
+        float(np.clip((context.base - lowest) / context.excess, 0, 1)),
+        float(np.clip((context.base - learned @ learned) / context.excess, 0, 1)),
+        none,
+        numerical_suspects(context.fit, context.changes, context.excess),
+        context,
+    )
 
 
 def finding(context: Context, effect) -> Finding:

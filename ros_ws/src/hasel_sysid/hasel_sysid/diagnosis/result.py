@@ -5,6 +5,7 @@ from enum import Enum
 
 import numpy as np
 
+from hasel_sysid.diagnosis.context import Context
 from hasel_sysid.diagnosis.signature import Signature
 from hasel_sysid.fit.result import FitResult
 from hasel_sysid.noise import NoiseModel
@@ -73,8 +74,7 @@ class Diagnosis:
     findings: most probable first; groups: effects that these recordings cannot tell apart; p_value: chance that noise
     alone makes the best effect look this good; explained: share of the error above the noise that it removes; ceiling:
     share that a small learned model of the residual removes; suspects: share removed by finer numerics, by name;
-    signatures: what every effect looks like here, by its id; changes: of the simulated series by finer numerics,
-    by name, where something is missing.
+    context: what all this rests on.
     """
 
     findings: list[Finding]
@@ -85,8 +85,17 @@ class Diagnosis:
     ceiling: float
     probability_none: float
     suspects: dict[str, float] = field(default_factory=dict)
-    signatures: dict[str, Signature] = field(default_factory=dict)
-    changes: dict[str, np.ndarray] = field(default_factory=dict)
+    context: Context | None = None
+
+    @property
+    def signatures(self) -> dict[str, Signature]:
+        """What every effect looks like here, by its id."""
+        return self.context.signatures if self.context else {}
+
+    @property
+    def changes(self) -> dict[str, np.ndarray]:
+        """Changes of the simulated series by finer numerics, by name, where something is missing."""
+        return self.context.changes if self.context else {}
 
     @property
     def best(self) -> Finding | None:

@@ -13,6 +13,7 @@ from hasel_sysid.fit.refinement import changes_by_refinement, with_numerical_err
 from hasel_sysid.improve.conclusion import conclude, is_noise, last_diagnosis, left_over, near_noise
 from hasel_sysid.improve.decision import decide
 from hasel_sysid.improve.exchange import exchanged
+from hasel_sysid.improve.hindsight import with_hindsight
 from hasel_sysid.improve.promise import most_promised
 from hasel_sysid.improve.prune import pruned
 from hasel_sysid.improve.result import Improvement, Stage
@@ -52,6 +53,7 @@ def improve(
             break
         refit = pruned(problem, exchanged(problem, stages, accepted), stages[-1].effects)
         stages.append(_stage(refit, model, validation))
+        stages[0] = with_hindsight(stages)
         if is_noise(refit, found):
             reason = f"What is left after adding {accepted.effect} is noise."
             break

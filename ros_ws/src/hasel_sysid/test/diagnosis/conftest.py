@@ -39,9 +39,16 @@ def context():
             finals[name] = _fit(name, rest, np.column_stack([FITTED, shape]))
             squares[name] = float(rest @ rest)
         floor = expected_squares(FITTED, NOISE, RUNS)
-        return Context(_fit("", residual, FITTED), finals, signatures, squares, NOISE, floor, chance, {})
+        effects = [_effect(name) for name in SHAPES]
+        base = _fit("", residual, FITTED)
+        return Context(effects, base, finals, signatures, squares, NOISE, floor, chance, {})
 
     return make
+
+
+def _effect(name: str) -> SimpleNamespace:
+    size = SimpleNamespace(name="size", unit="1", null=0.0, lower=0.0, upper=10.0, typical=1.0, scan=())
+    return SimpleNamespace(id=name, parameters=[size], source=None)
 
 
 def _solve(shape: np.ndarray, residual: np.ndarray) -> np.ndarray:

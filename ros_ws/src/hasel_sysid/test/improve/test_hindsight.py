@@ -1,0 +1,35 @@
+"""The first ranking, seen from the last stage."""
+
+from types import SimpleNamespace
+
+import pytest
+from hasel_sysid.improve import Stage
+from hasel_sysid.improve import hindsight as module
+from hasel_sysid.improve.hindsight import with_hindsight
+
+
+@pytest.fixture(autouse=True)
+def _judged(monkeypatch):
+    monkeypatch.setattr(module, "judged", lambda context: context)
+
+
+def stage(*effects):
+    """One whose diagnosis thought of a payload, and takes down what it is told afterwards."""
+    found = SimpleNamespace(
+        best=SimpleNamespace(effect="payload"),
+        context=SimpleNamespace(with_fit=lambda effect, fit: (effect, fit)),
+    )
+    return Stage(effects, f"fit of {effects}", None, found)
+
+
+def test_what_a_detour_led_to_is_ranked_with_its_fit():
+    """First the payload, then the soft spine, then the spine alone."""
+    last = stage("spine_modulus")
+    assert with_hindsight([stage(), stage("payload"), last]).diagnosis == ("spine_modulus", last.fit)
+
+
+@pytest.mark.parametrize("added", [("payload",), ("payload", "spine_modulus"), ("gain_drift", "payload")])
+def test_a_first_choice_that_stays_needs_no_second_look(added):
+    """And of two effects neither alone was fitted."""
+    first = stage()
+    assert with_hindsight([first, stage(*added)]) is first
