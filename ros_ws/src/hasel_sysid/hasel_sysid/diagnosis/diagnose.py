@@ -28,7 +28,9 @@ def diagnose(
     effects = candidate_effects(fit.model, tuple(only) if only else None)
     trials = Trials(problem, fit.evaluation)
     best, first = search(trials, effects, progress)
-    finals = full_fits(problem, fit, best, lambda: search_from_larger(trials, best, progress), progress)
+    finals = full_fits(
+        problem, fit, best, lambda worth: search_from_larger(trials, best, worth, progress), progress
+    )
     signatures = {t.start.effect.id: _signature(t, trials, fit) for t in reversed(first)}
 
     noise = noise_beyond(fit, finals)

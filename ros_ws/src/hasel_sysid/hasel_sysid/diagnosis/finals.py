@@ -21,8 +21,10 @@ _BRIEF = 8
 _CLOSE = 0.05
 """A trial within this share of the baseline's sum of squares of the best one is refitted in full."""
 _MUCH, _MOST, _WORTH = 0.3, 0.9, 0.25
-"""An excess of this share of the noise's sum of squares is much; this share of the excess is most of it; a trial that
-promises to remove this share is worth a full fit."""
+"""An excess of this share of the noise's sum of squares is much; this share of the excess is most of it; a trial whose
+next step would remove this share may be worth a full fit."""
+_COULD = 0.3
+"""What could never remove this share of the excess, by its promise, would not be accepted and needs no full fit."""
 _QUIETER = 0.8
 """Differences between periods this much quieter than the residual show that it repeats itself."""
 
@@ -33,12 +35,13 @@ def full_fits(
     problem: Problem,
     fit: FitResult,
     best: list[Trial],
-    larger: Callable[[], list[Trial]],
+    larger: Callable[[float], list[Trial]],
     progress: Progress | None,
 ) -> dict[str, FitResult]:
     """Full fits of the few most promising effects, on the model itself; of some more where those explain too little.
 
-    larger: trials that start from larger sizes, asked for where the other ones do not lead to an explanation.
+    larger: trials that start from larger sizes, of effects that promise to lower the sum of squares by so much, asked
+    for where the other ones do not lead to an explanation.
     """
     squares = fit.evaluation.sum_of_squares
     close = [t for t in best if t.predicted <= best[0].predicted + _CLOSE * squares]
@@ -46,8 +49,9 @@ def full_fits(
     finals = _refitted(problem, fit, chosen, progress)
     rest = [trial for trial in best if trial not in chosen]
     finals = _while_needed(problem, fit, finals, rest, _MOST_FITS - len(finals), progress)
-    if _well_above_noise(fit, finals):
-        finals = _while_needed(problem, fit, finals, larger(), _FINALISTS, progress)
+    worth = _least_drop_worth_larger_sizes(fit, finals)
+    if np.isfinite(worth):
+        finals = _while_needed(problem, fit, finals, larger(worth), _FINALISTS, progress)
     return finals | _finished(problem, finals)
 
 
@@ -63,7 +67,8 @@ def _while_needed(
     squares = fit.evaluation.sum_of_squares
     least = _least_drop_worth_a_fit(fit, finals)
     for trial in trials:
-        if most > 0 and squares - trial.predicted > least and not _known(trial, finals):
+        worth = squares - trial.predicted > least and trial.promised > _COULD / _WORTH * least
+        if most > 0 and worth and not _known(trial, finals):
             finals = _better_of(finals, _refitted(problem, fit, [trial], progress))
             least = _least_drop_worth_a_fit(fit, finals)
             most -= 1
@@ -121,10 +126,16 @@ def _least_drop_worth_a_fit(fit: FitResult, finals: dict[str, FitResult]) -> flo
     return _WORTH * excess if much_left else float("inf")
 
 
-def _well_above_noise(fit: FitResult, finals: dict[str, FitResult]) -> bool:
-    """Whether the best plausible fit so far neither removes most of the error nor comes near the noise."""
+def _least_drop_worth_larger_sizes(fit: FitResult, finals: dict[str, FitResult]) -> float:
+    """By how much an effect must promise to lower the sum of squares for a larger size of it to be tried; or infinite.
+
+    No less than the best fit so far does, or nearly: what is to take its place must do better. Infinite where that one
+    removes most of the error or comes near the noise.
+    """
     base, lowest, floor = _squares(fit, finals)
-    return lowest - floor > max(_MUCH * floor, (1 - _MOST) * (base - floor))
+    if lowest - floor <= max(_MUCH * floor, (1 - _MOST) * (base - floor)):
+        return float("inf")
+    return max(_WORTH * (base - floor), _MOST * (base - lowest))
 
 
 def _squares(fit: FitResult, finals: dict[str, FitResult]) -> tuple[float, float, float]:

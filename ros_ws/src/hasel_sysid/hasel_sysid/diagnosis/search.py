@@ -39,16 +39,16 @@ def search(
 
 
 def search_from_larger(
-    trials: Trials, best: Sequence[Trial], progress: Progress | None = None
+    trials: Trials, best: Sequence[Trial], worth: float, progress: Progress | None = None
 ) -> list[Trial]:
-    """Trials, best first, from twice the typical size of what is one-sided in the effects that have hope by `best`.
+    """Trials, best first, from twice the typical size of what is one-sided in effects that promise enough by `best`.
 
+    worth: by how much an effect must promise to lower the sum of squares.
     An effect twice as large as is typical may be out of reach of Gauss-Newton steps from its typical size: a slew limit
     that the voltage just meets and one that it never meets do not look alike.
     """
     if progress:
         progress("trying larger effects", 0.8)
-    worth = WORTH_A_STEP * trials.fitted.sum_of_squares
     effects = [trial.start.effect for trial in best if trial.promised >= worth]
     first = trials.first([start for effect in effects for start in larger_starts(effect)])
     return _steps(trials, _best_of_each(first)) if first else []

@@ -38,7 +38,7 @@ def trial(name, predicted=None):
     )
 
 
-def none_larger():
+def none_larger(worth):
     """For a test in which nothing may start from a larger size."""
     raise AssertionError("asked for larger sizes although the error is explained")
 
@@ -68,6 +68,17 @@ def test_what_only_got_stuck_is_fitted_where_the_best_explains_too_little():
     assert list(found) == ["best", "stuck"]
 
 
+def test_what_could_not_remove_enough_to_be_accepted_is_not_fitted():
+    """A quarter of the error above the noise by its next step, but by all its derivatives no more than that."""
+    weak = trial("stuck", 0.75)
+    weak.promised = 0.26
+    found = full_fits(None, result(Model(), 1.0), [trial("best"), weak], lambda worth: [], None)
+    assert list(found) == ["best"]
+    weak.promised = 0.28
+    found = full_fits(None, result(Model(), 1.0), [trial("never"), weak], lambda worth: [], None)
+    assert list(found) == ["never", "stuck"]
+
+
 def test_once_the_error_is_explained_no_other_is_fitted():
     """The best one leaves only noise."""
     found = full_fits(None, result(Model(), 1.0), [trial("stuck"), trial("never")], none_larger, None)
@@ -76,13 +87,13 @@ def test_once_the_error_is_explained_no_other_is_fitted():
 
 def test_an_effect_is_fitted_again_from_a_larger_size():
     """Where nothing explains the error: from there it leaves only noise, which takes the place of its first fit."""
-    found = full_fits(None, result(Model(), 1.0), [trial("best")], lambda: [trial("best", 0.05)], None)
+    found = full_fits(None, result(Model(), 1.0), [trial("best")], lambda worth: [trial("best", 0.05)], None)
     assert {name: final.evaluation.sum_of_squares for name, final in found.items()} == {"best": 0.1}
 
 
 def test_a_larger_size_that_promises_no_more_is_left_alone():
     """What its full fit has reached already is not fitted again."""
-    found = full_fits(None, result(Model(), 1.0), [trial("best")], lambda: [trial("best", 0.45)], None)
+    found = full_fits(None, result(Model(), 1.0), [trial("best")], lambda worth: [trial("best", 0.45)], None)
     assert found["best"].evaluation.sum_of_squares == 0.4
 
 
@@ -92,7 +103,7 @@ def test_a_worse_fit_does_not_take_the_place_of_a_better_one(monkeypatch):
     monkeypatch.setattr(
         module, "fit_least_squares", lambda problem, model, **how: result(model, next(squares))
     )
-    found = full_fits(None, result(Model(), 1.0), [trial("best")], lambda: [trial("best", 0.05)], None)
+    found = full_fits(None, result(Model(), 1.0), [trial("best")], lambda worth: [trial("best", 0.05)], None)
     assert found["best"].evaluation.sum_of_squares == 0.4
 
 
@@ -100,3 +111,10 @@ def test_near_the_noise_no_larger_size_is_tried(monkeypatch):
     """What a small effect leaves may be a large share of little."""
     monkeypatch.setattr(module, "expected_squares", lambda *of: 0.32)
     assert list(full_fits(None, result(Model(), 1.0), [trial("best")], none_larger, None)) == ["best"]
+
+
+def test_a_larger_size_must_promise_nearly_what_the_best_fit_does():
+    """The best removes 0.6 of the sum of squares."""
+    asked = []
+    full_fits(None, result(Model(), 1.0), [trial("best")], lambda worth: asked.append(worth) or [], None)
+    assert asked == [pytest.approx(0.9 * 0.6)]

@@ -71,10 +71,10 @@ def test_larger_sizes_are_tried_of_what_has_hope(monkeypatch):
     monkeypatch.setattr(module, "starts", _one_start)
     monkeypatch.setattr(module, "larger_starts", _one_start)
     best, _ = search(FakeTrials(), [*_effects("far"), SimpleNamespace(id="hopeless")])
-    larger = [trial.start.effect.id for trial in search_from_larger(FakeTrials(), best)]
+    larger = [trial.start.effect.id for trial in search_from_larger(FakeTrials(), best, worth=0.05)]
     assert larger[0] == "far" and "hopeless" not in larger and len(larger) == 13
     monkeypatch.setattr(module, "larger_starts", lambda effect: [])
-    assert search_from_larger(FakeTrials(), best) == []
+    assert search_from_larger(FakeTrials(), best, worth=0.05) == []
 
 
 def _one_start(effect):
