@@ -3,7 +3,7 @@
 import pytest
 from hasel_bringup.bench_hidden.outcome import Estimate, Outcome
 from hasel_bringup.bench_hidden.page import as_json, as_markdown
-from hasel_bringup.bench_hidden.summary import bars, confusion
+from hasel_bringup.bench_hidden.summary import Bar, bars, confusion
 
 
 def outcome(kind, hidden=(), first=None, status="explained", colour="white", **changes):
@@ -119,3 +119,9 @@ def test_a_benchmark_broken_off_says_so():
     outcomes = [outcome("nothing", status="nothing_missing")]
     assert "1 of 40 cases have been run" in as_markdown(outcomes, 40)
     assert "have been run" not in as_markdown(outcomes, 1)
+
+
+def test_a_bar_missed_by_little_is_seen_to_be_missed():
+    """Not 98 % beside a bar of 98 %."""
+    bar = Bar("95 % intervals that cover the truth", 56 / 57, 0.9, 0.98, 57)
+    assert (bar.measured, bar.bar, bar.met) == ("98.2 %", "90 %–98 %", False)

@@ -43,7 +43,7 @@ class Bar:
         return "not measured" if self.value is None else self._text(self.value)
 
     def _text(self, value: float) -> str:
-        return f"{100 * value:.0f} %" if self.unit == "%" else f"{value:.0f} {self.unit}"
+        return f"{100 * value:.3g} %" if self.unit == "%" else f"{value:.0f} {self.unit}"
 
 
 def bars(outcomes: Sequence[Outcome]) -> list[Bar]:
