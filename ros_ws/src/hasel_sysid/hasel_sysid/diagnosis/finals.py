@@ -65,24 +65,23 @@ def _while_needed(
 ) -> dict[str, FitResult]:
     """`finals` with up to `most` more full fits, in the order of `trials`, while they explain too little."""
     squares = fit.evaluation.sum_of_squares
-    least = _least_drop_worth_a_fit(fit, finals)
+    excess = _unexplained_excess(fit, finals)
     for trial in trials:
-        worth = squares - trial.predicted > least and trial.promised > _COULD / _WORTH * least
+        worth = squares - trial.predicted > _WORTH * excess and trial.promised > _COULD * excess
         if most > 0 and worth and not _known(trial, finals):
             finals = _better_of(finals, _refitted(problem, fit, [trial], progress))
-            least = _least_drop_worth_a_fit(fit, finals)
+            excess = _unexplained_excess(fit, finals)
             most -= 1
     return finals
 
 
 def _better_of(finals: dict[str, FitResult], more: dict[str, FitResult]) -> dict[str, FitResult]:
-    def worse(effect: str) -> bool:
-        known = finals.get(effect)
-        return known is not None and (
-            more[effect].evaluation.sum_of_squares >= known.evaluation.sum_of_squares
-        )
-
-    return finals | {effect: final for effect, final in more.items() if not worse(effect)}
+    better = {
+        effect: final
+        for effect, final in more.items()
+        if effect not in finals or final.evaluation.sum_of_squares < finals[effect].evaluation.sum_of_squares
+    }
+    return finals | better
 
 
 def _refitted(
@@ -114,16 +113,16 @@ def _finished(problem: Problem, finals: dict[str, FitResult]) -> dict[str, FitRe
     return {best: fit_least_squares(problem, finals[best].model, tolerance=1e-3, drafts=False)}
 
 
-def _least_drop_worth_a_fit(fit: FitResult, finals: dict[str, FitResult]) -> float:
-    """By how much a trial must promise to lower the sum of squares; infinite where no further fit is needed.
+def _unexplained_excess(fit: FitResult, finals: dict[str, FitResult]) -> float:
+    """Sum of squares of the fit above the noise; infinite, so that nothing is worth a fit, where no more are needed.
 
-    It is needed while none so far removes most of an error well above the noise at a plausible value: a trial's few
+    More are needed while none so far removes most of an error well above the noise at a plausible value: a trial's few
     steps may have got stuck where a full fit does not.
     """
     base, lowest, floor = _squares(fit, finals)
     excess = base - floor
     much_left = excess > _MUCH * floor and base - lowest < _MOST * excess
-    return _WORTH * excess if much_left else float("inf")
+    return excess if much_left else float("inf")
 
 
 def _least_drop_worth_larger_sizes(fit: FitResult, finals: dict[str, FitResult]) -> float:
