@@ -1,5 +1,6 @@
 """The first ranking, seen from the last stage."""
 
+import importlib
 from types import SimpleNamespace
 
 import pytest
@@ -33,3 +34,27 @@ def test_a_first_choice_that_stays_needs_no_second_look(added):
     """And of two effects neither alone was fitted."""
     first = stage()
     assert with_hindsight([first, stage(*added)]) is first
+
+
+def test_improve_looks_back_when_an_effect_was_added(monkeypatch):
+    """The baseline that it hands on is the one ranked again, from the stages known by then."""
+    improve = importlib.import_module("hasel_sysid.improve.improve")
+    bare, soft = (
+        SimpleNamespace(model=SimpleNamespace(effects=effects))
+        for effects in ([], [SimpleNamespace(id="spine_modulus")])
+    )
+    stubs = {
+        "fit_least_squares": bare,
+        "diagnose": stage().diagnosis,
+        "decide": SimpleNamespace(accepted=stage().diagnosis.best, reason="", negligible=False),
+        "exchanged": soft,
+        "pruned": soft,
+        "is_noise": True,
+        "_contradictions": [],
+    }
+    for name, answer in stubs.items():
+        monkeypatch.setattr(improve, name, lambda *of, answer=answer: answer)
+    monkeypatch.setattr(improve, "_completed", lambda problem, known, on_stage: known)
+    monkeypatch.setattr(improve, "conclude", lambda stages, *why: stages)
+    baseline, last = improve.improve(None, bare.model)
+    assert baseline.diagnosis == ("spine_modulus", last.fit)
