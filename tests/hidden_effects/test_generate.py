@@ -89,7 +89,9 @@ def test_whole_benchmark_covers_what_it_must():
     assert len(nothing) >= 40
     assert nothing.count("white") == nothing.count("coloured")
     assert {case.effects for case in cases if case.kind == "pair"} == set(PAIRS)
-    assert len({case.effects for case in cases if case.kind == "unlisted"}) >= 5
+    strangers = [(case.effects, abs(case.size)) for case in cases if case.kind == "unlisted"]
+    assert len({effects for effects, _ in strangers}) >= 5
+    assert all(strangers.count((effects, size)) == 1 for effects, _ in strangers for size in (0.5, 1.0, 2.0))
 
 
 def test_pairs_can_stand_side_by_side():

@@ -12,6 +12,8 @@ from hasel_bringup.errors import BringupError
 
 SIZES = (1.0, 2.0, 0.5)
 """In typical values; a seed takes one after the other."""
+UNLISTED_SEEDS = len(SIZES)
+"""What no catalogue lists is hidden once at every size: to find no explanation takes longest."""
 NOTHING_PER_SEED = 8
 PAIRS = (
     ("quadratic_drag", "muscle_asymmetry"),
@@ -54,7 +56,7 @@ def _of_seed(seed: int, numerics: str) -> list[Case]:
     ]
     for kind, hidden in (
         *(("single", (identity,)) for identity in catalogue()),
-        *(("unlisted", (identity,)) for identity in UNLISTED),
+        *(("unlisted", (identity,)) for identity in UNLISTED if seed < UNLISTED_SEEDS),
         *(("pair", pair) for pair in PAIRS[seed % 2 :: 2]),
     ):
         sign = -1.0 if seed % 2 and kind != "pair" and both_signs(hidden[0]) else 1.0

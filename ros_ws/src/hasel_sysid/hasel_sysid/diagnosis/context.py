@@ -2,10 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from hasel_sim.effects.base import Effect
 
+from hasel_sysid.diagnosis.left_out import left_out_squares
 from hasel_sysid.diagnosis.signature import Signature
 from hasel_sysid.diagnosis.significance import orthonormal
 from hasel_sysid.fit.result import FitResult
@@ -46,11 +48,11 @@ class Context:
 
     @property
     def winner(self) -> str | None:
-        """The effect whose full fit is best, if what it removes is not noise and its values are not on a bound."""
-        found = plausible(self.finals)
+        """The effect with the best score of those with a plausible full fit, if what it removes is not noise."""
+        found = plausible(self.finals, self.fit)
         if self.chance >= SIGNIFICANT or not found:
             return None
-        return min(found, key=lambda effect: self.squares[effect])
+        return max(found, key=self.score)
 
     def with_fit(self, effect: str, fit: FitResult) -> "Context":
         """The same with one more effect fitted in full."""
@@ -62,7 +64,20 @@ class Context:
         drop = self.base - self.squares.get(effect, self.base)
         return float(np.clip(drop / self.excess, 0.0, 1.0))
 
+    def score(self, effect: str) -> float:
+        """Logarithm of an effect's weight, up to a constant: of its sum of squares, less half a logarithm of the frames
+        per parameter, as BIC does.
+        """
+        count = self.signatures[effect].columns.shape[1] - 1 if effect in self.signatures else 1
+        frames = len(self.fit.evaluation.residual)
+        return -self.squares[effect] / self.tolerance - 0.5 * count * float(np.log(frames))
+
     @property
+    def tolerance(self) -> float:
+        """Sums of squares that differ by less can hardly be told apart: no model is exact."""
+        return 2 * self.directional_variance + 0.01 * self.excess
+
+    @cached_property
     def directional_variance(self) -> float:
         """The noise's variance in the direction of a typical signature; correlation makes it more than a frame's."""
         runs = self.fit.evaluation.runs
@@ -95,9 +110,16 @@ def on_own_bound(effect: str, fit: FitResult) -> bool:
     )
 
 
-def plausible(finals: dict[str, FitResult]) -> dict[str, FitResult]:
-    """The fits, by effect, that did not have to stop at the edge of the effect's range."""
-    return {effect: final for effect, final in finals.items() if not on_own_bound(effect, final)}
+def plausible(finals: dict[str, FitResult], fit: FitResult) -> dict[str, FitResult]:
+    """The fits, by effect, that did not have to stop at the edge of the effect's range, and foretell runs that are left
+    out better than `fit` without it does.
+    """
+    before = left_out_squares(fit.evaluation)
+    return {
+        effect: final
+        for effect, final in finals.items()
+        if not on_own_bound(effect, final) and left_out_squares(final.evaluation) < before
+    }
 
 
 def expected_squares(fitted: np.ndarray, noise: NoiseModel, runs: np.ndarray) -> float:

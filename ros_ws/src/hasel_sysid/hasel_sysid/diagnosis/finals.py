@@ -18,6 +18,8 @@ _FINALISTS, _MOST_FITS = 3, 6
 """How many are fitted in any case, and at most."""
 _BRIEF = 8
 """Evaluations that a finalist is given."""
+_NEXT = 0.01
+"""What comes within this share of the baseline's sum of squares of the best fit may win for having fewer values."""
 _CLOSE = 0.05
 """A trial within this share of the baseline's sum of squares of the best one is refitted in full."""
 _MUCH, _MOST, _WORTH = 0.3, 0.9, 0.25
@@ -52,7 +54,7 @@ def full_fits(
     worth = _least_drop_worth_larger_sizes(fit, finals)
     if np.isfinite(worth):
         finals = _while_needed(problem, fit, finals, larger(worth), _FINALISTS, progress)
-    return finals | _finished(problem, finals)
+    return finals | _finished(problem, fit, finals)
 
 
 def _while_needed(
@@ -65,12 +67,12 @@ def _while_needed(
 ) -> dict[str, FitResult]:
     """`finals` with up to `most` more full fits, in the order of `trials`, while they explain too little."""
     squares = fit.evaluation.sum_of_squares
-    excess = _unexplained_excess(fit, finals)
+    next_step, promise = _least_drops_worth_a_fit(fit, finals)
     for trial in trials:
-        worth = squares - trial.predicted > _WORTH * excess and trial.promised > _COULD * excess
+        worth = squares - trial.predicted > next_step and trial.promised > promise
         if most > 0 and worth and not _known(trial, finals):
             finals = _better_of(finals, _refitted(problem, fit, [trial], progress))
-            excess = _unexplained_excess(fit, finals)
+            next_step, promise = _least_drops_worth_a_fit(fit, finals)
             most -= 1
     return finals
 
@@ -102,27 +104,31 @@ def _refitted(
     return finals
 
 
-def _finished(problem: Problem, finals: dict[str, FitResult]) -> dict[str, FitResult]:
-    """The best of the plausible fits, where it was broken off before it had converged."""
-    found = plausible(finals)
-    if not found:
-        return {}
-    best = min(found, key=lambda effect: finals[effect].evaluation.sum_of_squares)
-    if finals[best].iterations < _BRIEF:
-        return {}
-    return {best: fit_least_squares(problem, finals[best].model, tolerance=1e-3, drafts=False)}
+def _finished(problem: Problem, fit: FitResult, finals: dict[str, FitResult]) -> dict[str, FitResult]:
+    """The best of the plausible fits and what comes close to it, where broken off before they had converged."""
+    squares = {effect: final.evaluation.sum_of_squares for effect, final in plausible(finals, fit).items()}
+    close = min(squares.values(), default=0.0) + _NEXT * fit.evaluation.sum_of_squares
+    return {
+        effect: fit_least_squares(problem, finals[effect].model, tolerance=1e-3, drafts=False)
+        for effect, reached in squares.items()
+        if reached <= close and finals[effect].iterations >= _BRIEF
+    }
 
 
-def _unexplained_excess(fit: FitResult, finals: dict[str, FitResult]) -> float:
-    """Sum of squares of the fit above the noise; infinite, so that nothing is worth a fit, where no more are needed.
+def _least_drops_worth_a_fit(fit: FitResult, finals: dict[str, FitResult]) -> tuple[float, float]:
+    """By how much a trial must lower the sum of squares, by its next step and by its promise; infinite: no more fits.
 
-    More are needed while none so far removes most of an error well above the noise at a plausible value: a trial's few
-    steps may have got stuck where a full fit does not.
+    More are needed while no plausible one removes most of an error well above the noise: a trial's few steps may have
+    got stuck where a full fit does not, and the best may be refuted by runs left out. Where one does but stays well
+    above the noise, only what promises nearly as much may take its place.
     """
     base, lowest, floor = _squares(fit, finals)
-    excess = base - floor
-    much_left = excess > _MUCH * floor and base - lowest < _MOST * excess
-    return excess if much_left else float("inf")
+    excess, removed = base - floor, base - lowest
+    if removed < _MOST * excess:
+        needed, promise = excess > _MUCH * floor, _COULD * excess
+    else:
+        needed, promise = lowest - floor > _MUCH * floor, _MOST * removed
+    return (_WORTH * excess, promise) if needed else (np.inf, np.inf)
 
 
 def _least_drop_worth_larger_sizes(fit: FitResult, finals: dict[str, FitResult]) -> float:
@@ -141,7 +147,7 @@ def _squares(fit: FitResult, finals: dict[str, FitResult]) -> tuple[float, float
     """Sum of squares of the fit, of the best plausible one with an effect, and expected of noise alone."""
     base = fit.evaluation
     floor = expected_squares(base.jacobian, noise_beyond(fit, finals), base.runs)
-    squares = [final.evaluation.sum_of_squares for final in plausible(finals).values()]
+    squares = [final.evaluation.sum_of_squares for final in plausible(finals, fit).values()]
     return base.sum_of_squares, min([base.sum_of_squares, *squares]), floor
 
 

@@ -12,15 +12,8 @@ def probabilities(context: Context) -> tuple[dict[str, float], float]:
     noise makes larger than that of a frame), with half a logarithm of the frames per parameter added, as BIC does. What
     the best leaves above the noise counts for "none of them".
     """
-    evaluation = context.fit.evaluation
-    variance = context.directional_variance
-    frames = np.log(len(evaluation.residual))
-    tolerance = 2 * variance + 0.01 * context.excess
-    scores = {}
-    for name, squares in context.squares.items():
-        count = context.signatures[name].columns.shape[1] - 1 if name in context.signatures else 1
-        scores[name] = -squares / tolerance - 0.5 * count * frames
-    nothing = -context.base / tolerance
+    scores = {name: context.score(name) for name in context.squares}
+    nothing = -context.base / context.tolerance
     best = max([nothing, *scores.values()])
     weights = {name: float(np.exp(score - best)) for name, score in scores.items()}
     weight_nothing = float(np.exp(nothing - best))

@@ -11,7 +11,8 @@ from hasel_sysid.improve.result import Improvement, Stage, Status
 
 EXPLAINED = 0.9
 """Share of the baseline's error above the noise that accepted effects must remove to be an explanation."""
-_PARTLY = 0.6
+PARTLY = 0.6
+"""Share that they must remove to be part of one."""
 NOISE = 1.05
 """A mean error up to this many times the noise's is noise."""
 NEAR_NOISE = 1.25
@@ -25,13 +26,18 @@ def last_diagnosis(stages: Sequence[Stage]) -> Diagnosis:
 
 
 def left_over(stages: Sequence[Stage]) -> float:
-    """Share of the baseline's mean error above the noise that the last stage leaves, 0 to 1.
+    """Share of the baseline's mean error above the noise that the last stage leaves, 0 to 1."""
+    return share_left(stages[0].fit, stages[-1].fit, last_diagnosis(stages).noise.mean_absolute)
 
-    Of the mean |Δ sin θ|, not of its square, which would call a law of the wrong shape an explanation.
+
+def share_left(before: FitResult, after: FitResult, noise: float) -> float:
+    """Share of a fit's mean error above the noise that another fit leaves, 0 to 1.
+
+    Of the mean |Δ sin θ|, not of its square, which would call a law of the wrong shape an explanation. noise: its mean
+    |Δ sin θ|.
     """
-    found = last_diagnosis(stages)
-    base, left = (stage.fit.mean_absolute_error for stage in (stages[0], stages[-1]))
-    floor = NOISE * found.noise.mean_absolute
+    floor = NOISE * noise
+    base, left = before.mean_absolute_error, after.mean_absolute_error
     return float(np.clip((left - floor) / max(base - floor, 1e-12), 0.0, 1.0))
 
 
@@ -67,7 +73,7 @@ def conclude(
     elif nothing_left or (near and unexplained <= 1 - EXPLAINED):
         status = Status.PARTLY_EXPLAINED if contradictions else Status.EXPLAINED
     else:
-        status = Status.PARTLY_EXPLAINED if unexplained <= 1 - _PARTLY else Status.UNEXPLAINED
+        status = Status.PARTLY_EXPLAINED if unexplained <= 1 - PARTLY else Status.UNEXPLAINED
     missing = added if status in (Status.EXPLAINED, Status.PARTLY_EXPLAINED) else ()
     return Improvement(
         list(stages), status, missing, unexplained, last.noise.mean_absolute, reason, tuple(contradictions)

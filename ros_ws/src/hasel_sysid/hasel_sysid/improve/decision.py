@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict
-from hasel_sysid.diagnosis.context import SIGNIFICANT
-from hasel_sysid.diagnosis.left_out import left_out_squares
+from hasel_sysid.diagnosis.context import SIGNIFICANT, on_own_bound
 from hasel_sysid.improve.conclusion import EXPLAINED, near_noise
 from hasel_sysid.improve.result import Stage
 
@@ -17,11 +16,14 @@ _NEARLY = 0.8
 
 @dataclass(frozen=True)
 class Decision:
-    """accepted: what to add, or None and the reason; negligible: whether what could be added would hardly matter."""
+    """accepted: what to add, or None and the reason; negligible: whether what could be added would hardly matter;
+    none_alone: whether something is missing, but no single effect.
+    """
 
     accepted: Finding | None
     reason: str = ""
     negligible: bool = False
+    none_alone: bool = False
 
 
 def decide(stage: Stage, found: Diagnosis) -> Decision:
@@ -30,7 +32,6 @@ def decide(stage: Stage, found: Diagnosis) -> Decision:
         what = "What is left is noise" if stage.effects else "Nothing is missing"
         return Decision(None, f"{what}: noise alone looks like this in {found.p_value:.0%} of cases.")
     candidates = [f for f in found.findings if f.verdict is Verdict.MISSING and f.fit is not None]
-    before = stage.fit.evaluation
     trifle = _trifle(stage, found, candidates)
     if trifle:
         return Decision(None, f"Nothing that matters is missing: {trifle}.", negligible=True)
@@ -41,12 +42,8 @@ def decide(stage: Stage, found: Diagnosis) -> Decision:
         what = f"The {name.replace('_', ' ')} explains {numerics[name]:.0%} of what is left"
         return Decision(None, f"{what}: refine it first.")
     if not candidates:
-        return Decision(None, _none_convinces(found))
-    best = candidates[0]
-    if left_out_squares(best.fit.evaluation) >= left_out_squares(before):
-        what = f"{best.effect} fits better but predicts runs left out of the fit worse"
-        return Decision(None, f"{what}: it is not accepted.")
-    return Decision(best)
+        return Decision(None, _none_convinces(found), none_alone=True)
+    return Decision(candidates[0])
 
 
 def _trifle(stage: Stage, found: Diagnosis, candidates: Sequence[Finding]) -> str:
@@ -68,7 +65,13 @@ def _none_convinces(found: Diagnosis) -> str:
             f"None of the listed effects explains what is left: the best removes {found.explained:.0%} of the error "
             f"above the noise, {learned}."
         )
+    best = min(
+        (finding for finding in found.findings if finding.fit is not None),
+        key=lambda finding: finding.fit.evaluation.sum_of_squares,
+    )
+    at_edge = on_own_bound(best.effect, best.fit)
+    refuted = "only at the edge of its range" if at_edge else "foretells runs left out of the fit worse"
     return (
-        f"None of the listed effects explains what is left with a plausible value: one removes {found.explained:.0%} "
-        f"of the error above the noise, but only at the edge of its range; {learned}."
+        f"None of the listed effects is a plausible explanation of what is left: {best.effect} removes "
+        f"{found.explained:.0%} of the error above the noise, but {refuted}; {learned}."
     )

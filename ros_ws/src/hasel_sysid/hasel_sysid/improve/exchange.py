@@ -27,9 +27,8 @@ def exchanged(problem: Problem, stages: Sequence[Stage], accepted: Finding) -> F
         if rival in (chosen, accepted.effect):
             continue
         try:
-            model = _with(
-                _with(before.fit.model, before.diagnosis, rival), stages[-1].diagnosis, accepted.effect
-            )
+            model = with_effect(before.fit.model, before.diagnosis, rival)
+            model = with_effect(model, stages[-1].diagnosis, accepted.effect)
             fit = fit_least_squares(problem, model, most_evaluations=8, drafts=False)
         except HaselSimError:
             continue
@@ -39,8 +38,11 @@ def exchanged(problem: Problem, stages: Sequence[Stage], accepted: Finding) -> F
     return best
 
 
-def _with(model: Model, diagnosis: Diagnosis, effect: str) -> Model:
-    """The model with an effect, at the values that its diagnosis fitted, else at a typical size."""
+def with_effect(model: Model, diagnosis: Diagnosis, effect: str) -> Model:
+    """The model with an effect, at the values that its diagnosis fitted, else at a typical size.
+
+    Raises ModelError where the effect does not go with the model's.
+    """
     finding = diagnosis.finding(effect)
     extended = model.with_effects(finding.source or effect)
     fitted = finding.fit

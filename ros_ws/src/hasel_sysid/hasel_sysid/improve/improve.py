@@ -10,10 +10,18 @@ from hasel_sysid.diagnosis.constancy import trends
 from hasel_sysid.diagnosis.search import WORTH_A_STEP
 from hasel_sysid.fit import FitResult, fit_least_squares
 from hasel_sysid.fit.refinement import changes_by_refinement, with_numerical_error
-from hasel_sysid.improve.conclusion import conclude, is_noise, last_diagnosis, left_over, near_noise
-from hasel_sysid.improve.decision import decide
+from hasel_sysid.improve.conclusion import (
+    PARTLY,
+    conclude,
+    is_noise,
+    last_diagnosis,
+    left_over,
+    near_noise,
+)
+from hasel_sysid.improve.decision import Decision, decide
 from hasel_sysid.improve.exchange import exchanged
 from hasel_sysid.improve.hindsight import with_hindsight
+from hasel_sysid.improve.pair import explaining_pair
 from hasel_sysid.improve.promise import most_promised
 from hasel_sysid.improve.prune import pruned
 from hasel_sysid.improve.result import Improvement, Stage
@@ -48,29 +56,39 @@ def improve(
         found = diagnose(problem, stages[-1].fit, only, report.part("diagnosis", *report.share(number)))
         stages[-1] = _completed(problem, replace(stages[-1], diagnosis=found), on_stage)
         decision = decide(stages[-1], found)
-        accepted, reason, negligible = decision.accepted, decision.reason, decision.negligible
-        if accepted is None:
+        reason, negligible = decision.reason, decision.negligible
+        refit = _extended(problem, stages, decision)
+        if refit is None:
             break
-        refit = pruned(problem, exchanged(problem, stages, accepted), stages[-1].effects)
         stages.append(_stage(refit, model, validation))
+        added = " and ".join(effect for effect in stages[-1].effects if effect not in stages[-2].effects)
         stages[0] = with_hindsight(stages)
         if is_noise(refit, found):
-            reason = f"What is left after adding {accepted.effect} is noise."
+            reason = f"What is left after adding {added} is noise."
             break
         if near_noise(refit, found) and most_promised(refit, found) < WORTH_A_STEP:
-            reason = f"What is left after adding {accepted.effect} is near the noise and looks like no other effect."
+            reason = f"What is left after adding {added} is near the noise and looks like no other effect."
             negligible = True
             break
         left = left_over(stages)
         if left < _ENOUGH and len(problem.experiments) == 1:
             reason = (
-                f"After adding {accepted.effect}, {left:.1%} of the error above the noise is left: with one run, "
+                f"After adding {added}, {left:.1%} of the error above the noise is left: with one run, "
                 "too little to find another effect in."
             )
             break
     if stages[-1].diagnosis is None:
         stages[-1] = _completed(problem, stages[-1], on_stage)
     return conclude(stages, reason, negligible, _contradictions(stages))
+
+
+def _extended(problem: Problem, stages: Sequence[Stage], decision: Decision) -> FitResult | None:
+    """The fit with the effect that was accepted, or with two at once where none alone explains; None to stop."""
+    if decision.accepted is not None:
+        return pruned(problem, exchanged(problem, stages, decision.accepted), stages[-1].effects)
+    if decision.none_alone and left_over(stages) > 1 - PARTLY:
+        return explaining_pair(problem, stages[0])
+    return None
 
 
 class _Reporter:

@@ -59,7 +59,7 @@ def _fits(monkeypatch):
     )
     monkeypatch.setattr(module, "noise_beyond", lambda fit, finals: None)
     monkeypatch.setattr(module, "expected_squares", lambda *of: 0.1)
-    monkeypatch.setattr(module, "plausible", lambda finals: finals)
+    monkeypatch.setattr(module, "plausible", lambda finals, fit: finals)
 
 
 def test_what_only_got_stuck_is_fitted_where_the_best_explains_too_little():
@@ -118,3 +118,22 @@ def test_a_larger_size_must_promise_nearly_what_the_best_fit_does():
     asked = []
     full_fits(None, result(Model(), 1.0), [trial("best")], lambda worth: asked.append(worth) or [], None)
     assert asked == [pytest.approx(0.9 * 0.6)]
+
+
+def test_what_runs_left_out_refute_leaves_the_next_its_turn(monkeypatch):
+    """The best explains all but is not plausible."""
+    monkeypatch.setattr(
+        module, "plausible", lambda finals, fit: {n: f for n, f in finals.items() if n != "stuck"}
+    )
+    trials = [trial("stuck"), trial("best")]
+    found = full_fits(None, result(Model(), 1.0), trials, lambda worth: [], None)
+    assert list(found) == ["stuck", "best"]
+
+
+@pytest.mark.parametrize(("promised", "fitted"), [(0.82, ["stuck", "best"]), (0.8, ["stuck"])])
+def test_what_stays_above_the_noise_stands_beside_what_promises_as_much(monkeypatch, promised, fitted):
+    """The best removes 0.9 of 0.95 above the noise, but leaves twice the noise."""
+    monkeypatch.setattr(module, "expected_squares", lambda *of: 0.05)
+    rival = trial("best", 0.7)
+    rival.promised = promised
+    assert list(full_fits(None, result(Model(), 1.0), [trial("stuck"), rival], none_larger, None)) == fitted

@@ -25,11 +25,22 @@ def fit(error):
     )
 
 
-def decided(before, after=None, chance=0.002, mesh=0.0, explained=0.9):
-    """The decision on one effect that brings the error from `before` to `after`, or on none."""
-    findings = []
-    if after is not None:
-        findings = [SimpleNamespace(effect="drag", verdict=Verdict.MISSING, fit=fit(after))]
+def finding(verdict, error, at_edge=False):
+    """Of an effect whose full fit leaves this error."""
+    fitted = fit(error)
+    size = SimpleNamespace(name="size", null=0.0)
+    fitted.model = SimpleNamespace(
+        effects=[SimpleNamespace(id="drag", parameters=[size])], values={"drag.size": 10.0}
+    )
+    fitted.at_bound, fitted.undetermined = (("drag.size",) if at_edge else ()), ()
+    return SimpleNamespace(effect="drag", verdict=verdict, fit=fitted)
+
+
+def decided(before, after=None, chance=0.002, mesh=0.0, explained=0.9, refuted=None):
+    """The decision on one effect that brings the error from `before` to `after`, or on one that did but is refuted."""
+    findings = [] if after is None else [finding(Verdict.MISSING, after)]
+    if refuted:
+        findings = [finding(Verdict.MISSING_IF_SIZE_MATTERS, 0.0025, refuted == "edge")]
     diagnosis = SimpleNamespace(
         p_value=chance,
         findings=findings,
@@ -56,7 +67,8 @@ def test_an_effect_that_removes_the_error_is_accepted():
         ({"before": 0.0029}, "the error is 1.21 times the noise's", True),
         ({"before": 0.005, "after": 0.0025, "mesh": 0.8}, "The mesh explains 80%", False),
         ({"before": 0.01, "explained": 0.3}, "None of the listed effects", False),
-        ({"before": 0.01, "explained": 0.97}, "only at the edge of its range", False),
+        ({"before": 0.01, "explained": 0.97, "refuted": "edge"}, "only at the edge of its range", False),
+        ({"before": 0.01, "explained": 0.97, "refuted": "left out"}, "foretells runs left out", False),
     ],
 )
 def test_reasons_to_add_nothing(arguments, reason, negligible):
@@ -65,3 +77,17 @@ def test_reasons_to_add_nothing(arguments, reason, negligible):
     assert decision.accepted is None
     assert reason in decision.reason
     assert decision.negligible is negligible
+
+
+@pytest.mark.parametrize(
+    ("arguments", "alone"),
+    [
+        ({"explained": 0.3}, True),
+        ({"mesh": 0.8}, False),
+        ({"chance": 0.3}, False),
+        ({"after": 0.0025}, False),
+    ],
+)
+def test_only_where_no_effect_alone_explains_are_two_worth_a_try(arguments, alone):
+    """Neither where noise or the numerics do, nor where one does."""
+    assert decided(0.01, **arguments).none_alone is alone

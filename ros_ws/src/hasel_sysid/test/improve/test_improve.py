@@ -1,0 +1,74 @@
+"""One effect after the other, and two at once where that fails."""
+
+import importlib
+from types import SimpleNamespace
+
+import pytest
+from hasel_sysid.improve import Status
+from hasel_sysid.improve.decision import Decision
+
+module = importlib.import_module("hasel_sysid.improve.improve")
+NOISE = 0.0024
+PLAIN, WITH_ONE, WITH_TWO = (), ("payload",), ("drag", "delay")
+
+
+def fit(error, effects):
+    """A fit of a model with these effects."""
+    model = SimpleNamespace(effects=[SimpleNamespace(id=effect) for effect in effects])
+    return SimpleNamespace(mean_absolute_error=error, model=model)
+
+
+@pytest.fixture
+def improved(monkeypatch):
+    """What becomes of a baseline with an error of 0.02: one effect is accepted if it leaves `one`, else none is; a pair
+    leaves noise.
+    """
+    found = SimpleNamespace(
+        p_value=0.002, noise=SimpleNamespace(mean_absolute=NOISE), best=SimpleNamespace(effect="payload")
+    )
+
+    def decide(stage, _found):
+        if stage.effects == PLAIN and decide.one:
+            return Decision(SimpleNamespace(effect="payload"))
+        return Decision(None, "None alone.", none_alone=True)
+
+    def run(one=None):
+        decide.one = one
+        stubs = {
+            "fit_least_squares": fit(0.02, PLAIN),
+            "diagnose": found,
+            "exchanged": one and fit(one, WITH_ONE),
+            "explaining_pair": fit(NOISE, WITH_TWO),
+            "most_promised": 1.0,
+            "_contradictions": [],
+        }
+        for name, answer in stubs.items():
+            monkeypatch.setattr(module, name, lambda *of, answer=answer: answer)
+        monkeypatch.setattr(module, "decide", decide)
+        monkeypatch.setattr(module, "pruned", lambda problem, refit, earlier: refit)
+        monkeypatch.setattr(module, "_completed", lambda problem, known, on_stage: known)
+        monkeypatch.setattr(module, "with_hindsight", lambda stages: stages[0])
+        return module.improve(SimpleNamespace(experiments=[1, 2]), fit(0.02, PLAIN).model)
+
+    return run
+
+
+def test_where_no_effect_alone_explains_two_are_added_at_once(improved):
+    """And named in one sentence."""
+    found = improved()
+    assert [stage.effects for stage in found.stages] == [PLAIN, WITH_TWO]
+    assert (found.status, found.missing) == (Status.EXPLAINED, WITH_TWO)
+    assert found.reason == "What is left after adding drag and delay is noise."
+
+
+def test_two_take_the_place_of_one_that_explained_nothing(improved):
+    """It had been added for a third of the error, and nothing came after it."""
+    found = improved(one=0.014)
+    assert [stage.effects for stage in found.stages] == [PLAIN, WITH_ONE, WITH_TWO]
+
+
+def test_what_explains_a_part_keeps_its_place(improved):
+    """Three quarters of the error are its."""
+    found = improved(one=0.0065)
+    assert [stage.effects for stage in found.stages] == [PLAIN, WITH_ONE]
+    assert found.status is Status.PARTLY_EXPLAINED
