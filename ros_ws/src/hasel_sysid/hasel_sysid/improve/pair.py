@@ -1,13 +1,12 @@
 """Two effects at once, where none alone is an explanation."""
 
-from collections.abc import Sequence
 from itertools import combinations
 
 import numpy as np
 from hasel_sim.errors import HaselSimError
 
 from hasel_sysid.diagnosis import Diagnosis
-from hasel_sysid.diagnosis.context import Context, plausible
+from hasel_sysid.diagnosis.context import plausible
 from hasel_sysid.diagnosis.significance import drops, orthonormal
 from hasel_sysid.fit import FitResult, fit_least_squares
 from hasel_sysid.improve.conclusion import EXPLAINED, share_left
@@ -49,16 +48,12 @@ def promising_pairs(found: Diagnosis) -> list[tuple[str, str]]:
     Effects that look alike make no pair.
     """
     context = found.context
-    promised = {
-        pair: _promised(context, pair)
-        for pair in combinations(context.signatures, 2)
-        if not any(set(pair) <= set(group) for group in found.groups)
-    }
+    evaluation = context.fit.evaluation
+    imitable = orthonormal(evaluation.jacobian)
+    promised = {}
+    for pair in combinations(context.signatures, 2):
+        if not any(set(pair) <= set(group) for group in found.groups):
+            columns = np.column_stack([context.signatures[effect].columns for effect in pair])
+            promised[pair] = float(drops(columns, imitable, evaluation.residual))
     enough = [pair for pair, drop in promised.items() if drop >= _PROMISING * context.excess]
     return sorted(enough, key=lambda pair: -promised[pair])
-
-
-def _promised(context: Context, pair: Sequence[str]) -> float:
-    evaluation = context.fit.evaluation
-    columns = np.column_stack([context.signatures[effect].columns for effect in pair])
-    return float(drops(columns, orthonormal(evaluation.jacobian), evaluation.residual))
