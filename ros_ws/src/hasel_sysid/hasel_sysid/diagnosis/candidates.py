@@ -61,19 +61,17 @@ def starts(effect: Effect) -> list[Start]:
 
 def larger_starts(effect: Effect) -> list[Start]:
     """The same starts with whatever is one-sided at twice its typical size; none where nothing is one-sided."""
-    return [
-        replace(start, values=larger)
-        for start in starts(effect)
-        if (larger := _enlarged(start)) != start.values
-    ]
+    return [larger for start in starts(effect) if (larger := resized(start, _LARGER)).values != start.values]
 
 
-def _enlarged(start: Start) -> dict[str, float]:
-    values = dict(start.values)
+def resized(start: Start, factor: float) -> Start:
+    """The start with whatever is one-sided at `factor` times its size, as far as its range allows."""
+    values, typical = dict(start.values), dict(start.typical)
     for p in start.effect.parameters:
         if not p.scan and not _signed(p):
-            values[f"{start.effect.id}.{p.name}"] = min(_LARGER * p.typical, p.upper)
-    return values
+            name = f"{start.effect.id}.{p.name}"
+            values[name] = typical[name] = float(np.clip(factor * values[name], p.lower, p.upper))
+    return replace(start, values=values, typical=typical)
 
 
 def _start(effect: Effect, fixed: dict[str, float]) -> Start:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 from hasel_sim.effects.base import Effect
 
-from hasel_sysid.diagnosis.candidates import larger_starts, starts
+from hasel_sysid.diagnosis.candidates import Start, larger_starts, resized, starts
 from hasel_sysid.diagnosis.trial import Trial, Trials
 
 _ROUNDS = (9, 5)
@@ -12,6 +12,10 @@ _ROUNDS = (9, 5)
 _BATCH = 8
 _FAR = 2.0
 """A start that makes the sum of squares this many times worse is too far off for its promise to be believed, or not."""
+_HALVINGS = 2
+"""How often what starts too far off is tried again from half of its size."""
+_SOME_HOPE = 0.2
+"""What by its change and derivatives from far off could lower the sum of squares by less than this share is not."""
 _RIVAL = 0.5
 """What could lower the sum of squares by less than this share of what the best one could is no rival to it."""
 WORTH_A_STEP = 0.05
@@ -25,7 +29,8 @@ def search(
 ) -> tuple[list[Trial], list[Trial]]:
     """The best trial of every effect, best first, and the first trial at every start.
 
-    The first round tries every start of every effect; later rounds take further steps with the most promising.
+    The first round tries every start of every effect, and from half the size what starts too far off; later rounds take
+    further steps with the most promising.
     """
     every = [start for effect in effects for start in starts(effect)]
     every.sort(key=lambda start: not start.changes_nothing)
@@ -35,7 +40,25 @@ def search(
         if progress:
             done = min(1.0, (begin + _BATCH) / len(every))
             progress(f"tried {len(first)} of {len(every)} starts", 0.5 * done)
+    first += _nearer(trials, every, first)
     return _steps(trials, _best_of_each(first), progress), first
+
+
+def _nearer(trials: Trials, tried: Sequence[Start], found: Sequence[Trial]) -> list[Trial]:
+    """Trials from half the size, or a quarter, of what could not be simulated or made the sum of squares far worse."""
+    squares = trials.fitted.sum_of_squares
+    nearer: list[Trial] = []
+    for _ in range(_HALVINGS):
+        done = {
+            id(t.start)
+            for t in found
+            if t.sum_of_squares <= _FAR * squares or t.promised < _SOME_HOPE * squares
+        }
+        halved = [(start, resized(start, 0.5)) for start in tried if id(start) not in done]
+        tried = [half for start, half in halved if half.values != start.values]
+        found = trials.first(tried) if tried else []
+        nearer += found
+    return nearer
 
 
 def search_from_larger(

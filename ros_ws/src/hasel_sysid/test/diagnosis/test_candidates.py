@@ -2,7 +2,7 @@
 
 import pytest
 from hasel_sim.effects.registry import catalogue
-from hasel_sysid.diagnosis.candidates import larger_starts, starts
+from hasel_sysid.diagnosis.candidates import larger_starts, resized, starts
 
 
 def test_what_is_one_sided_starts_at_twice_its_typical_size_too():
@@ -17,6 +17,16 @@ def test_what_may_have_either_sign_starts_at_its_null_only():
     effect = catalogue()["muscle_asymmetry"]
     assert [start.changes_nothing for start in starts(effect)] == [True]
     assert larger_starts(effect) == []
+
+
+def test_a_start_of_half_the_size_is_typical_of_its_own():
+    """A payload of 5 g, whose signature is that of 5 g; a relaxation time keeps its length."""
+    start = resized(starts(catalogue()["payload"])[0], 0.5)
+    assert start.values == start.typical == {"payload.mass": 0.005}
+    creep = starts(catalogue()["viscoelastic_creep"])[0]
+    half = resized(creep, 0.5).values
+    assert half["viscoelastic_creep.modulus_ratio"] == 0.5 * creep.values["viscoelastic_creep.modulus_ratio"]
+    assert half["viscoelastic_creep.relaxation_time"] == creep.values["viscoelastic_creep.relaxation_time"]
 
 
 @pytest.mark.parametrize("name", catalogue())

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
+import pytest
 from hasel_sysid.diagnosis import search as module
 from hasel_sysid.diagnosis.search import search, search_from_larger
 
@@ -41,6 +42,11 @@ class FakeTrials:
         ]
 
 
+@pytest.fixture(autouse=True)
+def _no_sizes(monkeypatch):
+    monkeypatch.setattr(module, "resized", lambda start, by: start)
+
+
 def test_a_first_try_far_off_gets_a_second(monkeypatch):
     """What promises less than nothing from far away is not dropped for it."""
     monkeypatch.setattr(module, "starts", _one_start)
@@ -77,8 +83,56 @@ def test_larger_sizes_are_tried_of_what_has_hope(monkeypatch):
     assert search_from_larger(FakeTrials(), best, worth=0.05) == []
 
 
+@dataclass
+class HeavyAndStiff(FakeTrials):
+    """What is far too heavy at its size looks promising at a quarter of it; what is too stiff cannot be simulated."""
+
+    promised: float = 0.3
+
+    def first(self, starts):
+        """By size."""
+        kinds = {1.0: (12.0, 2.8, self.promised), 0.5: (3.0, 1.5, 0.3), 0.25: (1.2, 0.2, 0.8)}
+        simulated = [s for s in starts if s.effect.id != "stiff" or s.values["size"] < 1.0]
+        return [FakeTrial(start, *kinds[start.values["size"]]) for start in simulated]
+
+
+def test_what_starts_far_off_is_tried_at_half_its_size_and_at_a_quarter(monkeypatch):
+    """As what cannot be simulated at its typical size; the trials at that come first, for the signatures."""
+    monkeypatch.setattr(module, "starts", lambda effect: [_sized(effect, 1.0)])
+    monkeypatch.setattr(module, "resized", lambda start, by: _sized(start.effect, by * start.values["size"]))
+    best, first = search(HeavyAndStiff(), [SimpleNamespace(id="heavy"), SimpleNamespace(id="stiff")])
+    assert [(t.start.effect.id, t.start.values["size"]) for t in first] == [
+        ("heavy", 1.0),
+        ("heavy", 0.5),
+        ("stiff", 0.5),
+        ("heavy", 0.25),
+        ("stiff", 0.25),
+    ]
+    assert [t.start.values["size"] for t in best] == [0.25, 0.25]
+
+
+def test_what_could_remove_little_from_far_off_is_not_tried_nearer(monkeypatch):
+    """Its change looks like nothing in the residual."""
+    monkeypatch.setattr(module, "starts", lambda effect: [_sized(effect, 1.0)])
+    monkeypatch.setattr(module, "resized", lambda start, by: _sized(start.effect, by * start.values["size"]))
+    _, first = search(HeavyAndStiff(promised=0.1), [SimpleNamespace(id="heavy")])
+    assert len(first) == 1
+
+
+def test_what_has_no_size_is_not_tried_twice(monkeypatch):
+    """A signed effect starts at its null."""
+    monkeypatch.setattr(module, "starts", lambda effect: [_sized(effect, 1.0)])
+    monkeypatch.setattr(module, "resized", lambda start, by: start)
+    _, first = search(HeavyAndStiff(), [SimpleNamespace(id="heavy")])
+    assert len(first) == 1
+
+
+def _sized(effect, size):
+    return SimpleNamespace(effect=effect, values={"size": size}, changes_nothing=False)
+
+
 def _one_start(effect):
-    return [SimpleNamespace(effect=effect, changes_nothing=False)]
+    return [SimpleNamespace(effect=effect, values={}, changes_nothing=False)]
 
 
 def _effects(last: str) -> list[SimpleNamespace]:
