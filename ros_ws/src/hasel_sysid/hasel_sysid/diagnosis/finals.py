@@ -135,10 +135,10 @@ def _least_drop_worth_larger_sizes(fit: FitResult, finals: dict[str, FitResult])
     """By how much an effect must promise to lower the sum of squares for a larger size of it to be tried; or infinite.
 
     No less than the best fit so far does, or nearly: what is to take its place must do better. Infinite where that one
-    removes most of the error or comes near the noise.
+    comes near the noise.
     """
     base, lowest, floor = _squares(fit, finals)
-    if lowest - floor <= max(_MUCH * floor, (1 - _MOST) * (base - floor)):
+    if lowest - floor <= _MUCH * floor:
         return float("inf")
     return max(_WORTH * (base - floor), _MOST * (base - lowest))
 

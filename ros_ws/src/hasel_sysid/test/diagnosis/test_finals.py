@@ -132,8 +132,13 @@ def test_what_runs_left_out_refute_leaves_the_next_its_turn(monkeypatch):
 
 @pytest.mark.parametrize(("promised", "fitted"), [(0.82, ["stuck", "best"]), (0.8, ["stuck"])])
 def test_what_stays_above_the_noise_stands_beside_what_promises_as_much(monkeypatch, promised, fitted):
-    """The best removes 0.9 of 0.95 above the noise, but leaves twice the noise."""
+    """The best removes 0.9 of 0.95 above the noise, but leaves twice the noise: larger sizes are tried, too."""
     monkeypatch.setattr(module, "expected_squares", lambda *of: 0.05)
     rival = trial("best", 0.7)
     rival.promised = promised
-    assert list(full_fits(None, result(Model(), 1.0), [trial("stuck"), rival], none_larger, None)) == fitted
+    asked = []
+    found = full_fits(
+        None, result(Model(), 1.0), [trial("stuck"), rival], lambda worth: asked.append(worth) or [], None
+    )
+    assert list(found) == fitted
+    assert asked == [pytest.approx(0.9 * 0.9)]
