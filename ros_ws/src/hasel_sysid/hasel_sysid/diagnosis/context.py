@@ -46,7 +46,7 @@ class Context:
         """Sum of squares above the noise; never less than what the noise's own uncertainty could hide."""
         return max(self.base - self.floor, _LEAST_EXCESS * self.floor)
 
-    @property
+    @cached_property
     def winner(self) -> str | None:
         """The effect with the best score of those with a plausible full fit, if what it removes is not noise."""
         found = plausible(self.finals, self.fit)

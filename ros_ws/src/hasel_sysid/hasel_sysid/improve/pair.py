@@ -36,8 +36,8 @@ def explaining_pair(problem: Problem, stage: Stage) -> FitResult | None:
         except HaselSimError:
             continue
         left = share_left(stage.fit, fit, found.noise.mean_absolute)
-        possible = all(plausible({effect: fit}, stage.fit) for effect in pair)
-        if possible and left <= 1 - EXPLAINED:
+        both_plausible = len(plausible(dict.fromkeys(pair, fit), stage.fit)) == len(pair)
+        if both_plausible and left <= 1 - EXPLAINED:
             return fit
     return None
 
