@@ -142,3 +142,21 @@ def test_what_stays_above_the_noise_stands_beside_what_promises_as_much(monkeypa
     )
     assert list(found) == fitted
     assert asked == [pytest.approx(0.9 * 0.9)]
+
+
+def test_the_best_and_what_comes_close_to_it_are_fitted_to_the_end(monkeypatch):
+    """Broken off after eight evaluations; what is further behind stays as it is."""
+    ends = {"best": iter([0.4, 0.39]), "stuck": iter([0.405, 0.38]), "never": iter([0.5])}
+
+    def fitted(problem, model, **how):
+        brief = result(model, next(ends[model.effects[0].id]))
+        return SimpleNamespace(**{**vars(brief), "iterations": how.get("most_evaluations", 12)})
+
+    monkeypatch.setattr(module, "fit_least_squares", fitted)
+    trials = [trial(name, 0.4) for name in ends]
+    found = full_fits(None, result(Model(), 1.0), trials, lambda worth: [], None)
+    assert {name: final.evaluation.sum_of_squares for name, final in found.items()} == {
+        "best": 0.39,
+        "stuck": 0.38,
+        "never": 0.5,
+    }
