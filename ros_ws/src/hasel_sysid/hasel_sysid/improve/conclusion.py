@@ -17,7 +17,9 @@ NOISE = 1.05
 """A mean error up to this many times the noise's is noise."""
 NEAR_NOISE = 1.25
 """Correlated noise of nine runs is known to 8 %: a mean error within three times that of the noise's is near it."""
-_ALL_BUT_NOTHING = 0.03
+_ALL_BUT_NOTHING, _FEW = 0.03, 2
+"""Of a large error this share is all but nothing, but only so many effects may leave it and still be an explanation:
+three imitate much that is not listed."""
 
 
 def last_diagnosis(stages: Sequence[Stage]) -> Diagnosis:
@@ -65,7 +67,8 @@ def conclude(
     added = stages[-1].effects
     rest = stages[-1].diagnosis
     nothing_left = negligible or (rest is not None and rest.p_value >= SIGNIFICANT)
-    near = near_noise(stages[-1].fit, last) or unexplained <= _ALL_BUT_NOTHING
+    nearly_all = len(added) <= _FEW and unexplained <= _ALL_BUT_NOTHING
+    near = near_noise(stages[-1].fit, last) or nearly_all
     if first.p_value >= SIGNIFICANT:
         status, unexplained = Status.NOTHING_MISSING, 0.0
     elif not added:

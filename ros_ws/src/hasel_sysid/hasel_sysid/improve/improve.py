@@ -77,6 +77,8 @@ def improve(
                 "too little to find another effect in."
             )
             break
+    else:
+        reason = f"Step {most_effects} was the last: more effects could imitate anything."
     if stages[-1].diagnosis is None:
         stages[-1] = _completed(problem, stages[-1], on_stage)
     return conclude(stages, reason, negligible, _contradictions(stages))

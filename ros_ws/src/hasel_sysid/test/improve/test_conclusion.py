@@ -25,6 +25,9 @@ def stage(error, *effects, chance=None):
         # of a large error all but nothing is gone
         ([stage(0.0444, chance=SOMETHING), stage(0.0036, "drag")], Status.EXPLAINED, ("drag",)),
         ([stage(0.0444, chance=SOMETHING), stage(0.0040, "drag")], Status.PARTLY_EXPLAINED, ("drag",)),
+        # three effects may imitate what is not listed, unless they come near the noise
+        ([stage(0.0444, chance=SOMETHING), stage(0.0036, *"abc")], Status.PARTLY_EXPLAINED, ("a", "b", "c")),
+        ([stage(0.0444, chance=SOMETHING), stage(0.0029, *"abc")], Status.EXPLAINED, ("a", "b", "c")),
         (
             [stage(0.0444, chance=SOMETHING), stage(0.0029, "drag", chance=SOMETHING)],
             Status.EXPLAINED,

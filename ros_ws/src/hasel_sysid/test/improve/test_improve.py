@@ -32,7 +32,7 @@ def improved(monkeypatch):
             return Decision(SimpleNamespace(effect="payload"))
         return Decision(None, "None alone.", none_alone=True)
 
-    def run(one=None):
+    def run(one=None, most_effects=3):
         decide.one = one
         stubs = {
             "fit_least_squares": fit(0.02, PLAIN),
@@ -48,7 +48,9 @@ def improved(monkeypatch):
         monkeypatch.setattr(module, "pruned", lambda problem, refit, earlier: refit)
         monkeypatch.setattr(module, "_completed", lambda problem, known, on_stage: known)
         monkeypatch.setattr(module, "with_hindsight", lambda stages: stages[0])
-        return module.improve(SimpleNamespace(experiments=[1, 2]), fit(0.02, PLAIN).model)
+        return module.improve(
+            SimpleNamespace(experiments=[1, 2]), fit(0.02, PLAIN).model, most_effects=most_effects
+        )
 
     return run
 
@@ -72,3 +74,10 @@ def test_what_explains_a_part_keeps_its_place(improved):
     found = improved(one=0.0065)
     assert [stage.effects for stage in found.stages] == [PLAIN, WITH_ONE]
     assert found.status is Status.PARTLY_EXPLAINED
+
+
+def test_a_search_broken_off_says_so(improved):
+    """After its last step something is left, and nobody looked any further."""
+    found = improved(one=0.0065, most_effects=1)
+    assert [stage.effects for stage in found.stages] == [PLAIN, WITH_ONE]
+    assert found.reason == "Step 1 was the last: more effects could imitate anything."
