@@ -122,3 +122,19 @@ def test_command_goes_on_from_the_page_alone(tmp_path, monkeypatch, measured):
     measured.clear()
     assert command.main([*asked, str(tmp_path / "elsewhere"), "--resume"]) == 0
     assert (measured, page.read_text(encoding="utf-8")) == ([], first)
+
+
+def test_command_hides_what_nobody_has_looked_at(tmp_path, monkeypatch, measured):
+    """With --first-seed the draws are others, and the page is not the one of the whole benchmark."""
+    monkeypatch.setattr(command, "explain", lambda laboratory, pool: ANSWER)
+    asked = ["--seeds", "2", "--first-seed", "6", "--effects", "payload", "--only", "single", "--jobs", "1"]
+    assert command.main([*asked, "--output", str(tmp_path)]) == 0
+    assert [case.seed for case in measured] == [6, 7]
+    assert (tmp_path / "hidden_effects.md").is_file()
+
+
+def test_command_refuses_a_seed_below_zero(capsys):
+    """Said in one sentence."""
+    with pytest.raises(SystemExit):
+        command.main(["--first-seed", "-1"])
+    assert "'-1' is no seed; give a whole number, 0 or more" in capsys.readouterr().err

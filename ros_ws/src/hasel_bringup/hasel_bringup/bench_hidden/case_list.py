@@ -30,15 +30,18 @@ PAIRS = (
 """Of effects that act in different ways, so that each leaves something of its own."""
 
 
-def list_cases(kinds: Sequence[str], seeds: int, effects: Sequence[str], numerics: str) -> list[Case]:
+def list_cases(
+    kinds: Sequence[str], seeds: Sequence[int], effects: Sequence[str], numerics: str
+) -> list[Case]:
     """All cases of these kinds, seed by seed, so that a benchmark broken off early is a smaller whole one.
 
-    effects: only cases that hide one of these; empty for all. Raises BringupError for an unknown effect.
+    seeds: from which each effect's size, sign, noise and muscles follow; effects: only cases that hide one of these,
+    empty for all. Raises BringupError for an unknown effect.
     """
     for name in effects:
         if name not in known_effects():
             raise BringupError(f"There is no effect '{name}' to hide; {nearest_name(name, known_effects())}.")
-    listed = chain.from_iterable(_of_seed(seed, numerics) for seed in range(seeds))
+    listed = chain.from_iterable(_of_seed(seed, numerics) for seed in seeds)
     chosen = set(effects)
     return [case for case in listed if case.kind in kinds and (not chosen or chosen & set(case.effects))]
 

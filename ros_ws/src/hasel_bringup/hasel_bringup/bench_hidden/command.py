@@ -33,6 +33,13 @@ def parser() -> argparse.ArgumentParser:
     options.add_argument(
         "--seeds", type=int, default=5, metavar="N", help="per effect (default: %(default)s)"
     )
+    options.add_argument(
+        "--first-seed",
+        type=_seed,
+        default=0,
+        metavar="N",
+        help="with 5 or more, cases that no rule was made on (default: %(default)s)",
+    )
     options.add_argument("--effects", default="", metavar="A,B", help="only cases that hide one of these")
     options.add_argument("--only", choices=list(_KINDS), help="only cases of this kind")
     options.add_argument(
@@ -47,6 +54,12 @@ def parser() -> argparse.ArgumentParser:
     options.add_argument("--jobs", type=int, metavar="N", help="cases at once (default: one per core)")
     options.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, instead of processes")
     return options
+
+
+def _seed(text: str) -> int:
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"'{text}' is no seed; give a whole number, 0 or more")
+    return int(text)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -98,11 +111,12 @@ def _cases(options: argparse.Namespace) -> list[Case]:
         return quick_cases(options.truth)
     kinds = list(_KINDS.values()) if options.only is None else [_KINDS[options.only]]
     effects = [name for name in options.effects.split(",") if name]
-    return list_cases(kinds, options.seeds, effects, options.truth)
+    seeds = range(options.first_seed, options.first_seed + options.seeds)
+    return list_cases(kinds, seeds, effects, options.truth)
 
 
 def _default_page(options: argparse.Namespace) -> Path:
-    part = options.quick or options.only or options.effects
+    part = options.quick or options.only or options.effects or options.first_seed
     return options.output / _PAGE.name if part else _PAGE
 
 
