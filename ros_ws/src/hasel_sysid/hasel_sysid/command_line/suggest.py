@@ -51,7 +51,7 @@ def _suggest(options: argparse.Namespace) -> None:
         )
         ranked = suggest(
             pool,
-            rivals(found),
+            rivals(problem, found, named=bool(options.effects)),
             found.noise,
             options.max_voltage,
             lambda text, share: progress(text, 0.75 + 0.25 * share),

@@ -1,6 +1,7 @@
 """The next experiment that would best tell the remaining explanations apart."""
 
 from hasel_sysid.suggest.manoeuvre import Manoeuvre, manoeuvres
-from hasel_sysid.suggest.suggest import Suggestion, in_doubt, rivals, suggest
+from hasel_sysid.suggest.rivals import in_doubt, rivals
+from hasel_sysid.suggest.suggest import Suggestion, suggest
 
 __all__ = ["Manoeuvre", "Suggestion", "in_doubt", "manoeuvres", "rivals", "suggest"]

@@ -1,6 +1,6 @@
 """Which experiment would make the remaining explanations differ most, in units of the noise."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from itertools import combinations
@@ -10,7 +10,6 @@ from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 from hasel_sim.simulate import simulate
 
-from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.draft import draft
 from hasel_sysid.errors import SysidError
 from hasel_sysid.noise import NoiseModel
@@ -37,32 +36,6 @@ class Suggestion:
     def __str__(self) -> str:
         names = sorted({name for pair in self.pairs for name in pair})
         return f"{self.manoeuvre}: {', '.join(names)} would differ by {self.difference:.1f} times the noise."
-
-
-def rivals(diagnosis: Diagnosis) -> dict[str, Model]:
-    """The refitted models of the explanations that are still in the running, at least two.
-
-    Raises SysidError when there are not two to tell apart.
-    """
-    fitted = {finding.effect: finding.fit.model for finding in diagnosis.findings if finding.fit is not None}
-    if len(fitted) < 2:
-        raise SysidError(
-            "fewer than two explanations are left, so there is nothing to tell apart; "
-            "name two with --effects to compare them all the same"
-        )
-    return fitted
-
-
-def in_doubt(diagnosis: Diagnosis, accepted: Sequence[str]) -> dict[str, Model]:
-    """The refitted models that these recordings cannot tell from the first accepted effect's, itself among them.
-
-    Where nothing was accepted, all that were refitted; fewer than two leave nothing to tell apart.
-    """
-    fitted = {finding.effect: finding.fit.model for finding in diagnosis.findings if finding.fit is not None}
-    if not accepted:
-        return fitted
-    group = next((group for group in diagnosis.groups if accepted[0] in group), ())
-    return {effect: model for effect, model in fitted.items() if effect in group}
 
 
 def suggest(

@@ -1,46 +1,14 @@
 """Which run would tell the remaining explanations apart."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from hasel_sim.model import load_model
 from hasel_sim.parallel import executor
 from hasel_sim.simulate import simulate
-from hasel_sysid.errors import SysidError
 from hasel_sysid.noise import NoiseModel
-from hasel_sysid.suggest import in_doubt, rivals, suggest
+from hasel_sysid.suggest import suggest
 
 NOISE = NoiseModel(white=9e-6, coloured=0.0, correlation=0.5)
-
-
-def finding(effect, fitted=True):
-    """A finding with or without a refitted model, of which only the name matters here."""
-    return SimpleNamespace(effect=effect, fit=SimpleNamespace(model=f"with {effect}") if fitted else None)
-
-
-DIAGNOSIS = SimpleNamespace(
-    findings=[
-        finding("linear_drag"),
-        finding("quadratic_drag"),
-        finding("pre_bend"),
-        finding("tether", False),
-    ],
-    groups=[("linear_drag", "quadratic_drag", "tether")],
-)
-
-
-def test_in_doubt_is_what_looks_like_the_accepted_effect():
-    """Only refitted members of its group; with nothing accepted, all that were refitted."""
-    assert set(in_doubt(DIAGNOSIS, ["quadratic_drag"])) == {"linear_drag", "quadratic_drag"}
-    assert set(in_doubt(DIAGNOSIS, ["pre_bend"])) == set()
-    assert set(in_doubt(DIAGNOSIS, [])) == {"linear_drag", "quadratic_drag", "pre_bend"}
-
-
-def test_one_explanation_leaves_nothing_to_suggest():
-    """A sentence says so, and how to ask all the same."""
-    with pytest.raises(SysidError, match="fewer than two explanations"):
-        rivals(SimpleNamespace(findings=[finding("linear_drag")]))
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,62 @@
+"""Which explanations are to be told apart."""
+
+from collections.abc import Sequence
+
+from hasel_sim.errors import HaselSimError
+from hasel_sim.model import Model
+
+from hasel_sysid.diagnosis import Diagnosis
+from hasel_sysid.errors import SysidError
+from hasel_sysid.fit import fit_least_squares
+from hasel_sysid.improve.exchange import with_effect
+from hasel_sysid.problem import Problem
+
+_BRIEF = 8
+"""Evaluations for a fit of what the diagnosis did not think worth one."""
+
+
+def rivals(problem: Problem, diagnosis: Diagnosis, named: bool = False) -> dict[str, Model]:
+    """The refitted models of the explanations that are still in the running, at least two, by effect.
+
+    named: somebody asked for these effects; where one alone is in the running, the next of the ranking is compared
+    with it all the same. Raises SysidError when there are not two to tell apart.
+    """
+    fitted = _refitted(diagnosis)
+    if named:
+        fitted = _at_least_two(problem, diagnosis, fitted)
+    if len(fitted) < 2:
+        raise SysidError(
+            "fewer than two explanations are left, so there is nothing to tell apart; "
+            "name two with --effects to compare them all the same"
+        )
+    return fitted
+
+
+def in_doubt(diagnosis: Diagnosis, accepted: Sequence[str]) -> dict[str, Model]:
+    """The refitted models that these recordings cannot tell from the first accepted effect's, itself among them.
+
+    Where nothing was accepted, all that were refitted; fewer than two leave nothing to tell apart.
+    """
+    fitted = _refitted(diagnosis)
+    if not accepted:
+        return fitted
+    group = next((group for group in diagnosis.groups if accepted[0] in group), ())
+    return {effect: model for effect, model in fitted.items() if effect in group}
+
+
+def _refitted(diagnosis: Diagnosis) -> dict[str, Model]:
+    return {finding.effect: finding.fit.model for finding in diagnosis.findings if finding.fit is not None}
+
+
+def _at_least_two(problem: Problem, diagnosis: Diagnosis, fitted: dict[str, Model]) -> dict[str, Model]:
+    found = dict(fitted)
+    rest = [finding.effect for finding in diagnosis.findings if finding.effect not in fitted]
+    for effect in rest:
+        if len(found) >= 2:
+            break
+        try:
+            model = with_effect(diagnosis.context.fit.model, diagnosis, effect)
+            found[effect] = fit_least_squares(problem, model, most_evaluations=_BRIEF, drafts=False).model
+        except HaselSimError:
+            continue
+    return found
