@@ -1,22 +1,12 @@
 """The commands `improve` and `diagnose` from end to end, on a coarse model with a hidden effect."""
 
 import json
-from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 import pytest
-from hasel_recording import Recording, write_recording
-from hasel_sim.drive.voltage import VoltageSchedule
-from hasel_sim.model import load_model, save_model
-from hasel_sim.run import Run
-from hasel_sim.simulate import simulate
+from hasel_sim.model import load_model
 from hasel_sysid.command_line import improve
 
-COARSE = {"mesh_density": 0.5, "quadrature_order": 2, "steps_per_second": 120.0}
-TRUTH = {"mesh_density": 0.8, "quadrature_order": 2, "steps_per_second": 480.0, "spectral_radius": 1.0}
-VALUES = {"amplitude_3500": 0.027, "amplitude_5500": 0.062, "slope": 0.3}
-CONDITIONS = ((3500.0, 1.0), (3500.0, 2.0), (5500.0, 1.0), (5500.0, 2.0), (4500.0, 1.5))
 OWN = '''
 import numpy as np
 from hasel_sim.effects.base import EffectParameter, ForceEffect
@@ -38,57 +28,25 @@ class WaveDrag(ForceEffect):
 '''
 
 
-@dataclass(frozen=True)
-class Laboratory:
-    """Where the recordings and the model without the effect lie."""
-
-    folder: Path
-    effect: str
-
-    def improve(self, output: Path, rivals: str) -> dict:
-        """The content of `improve --json`: four runs fitted, one unseen."""
-        fitted = sorted(str(path) for path in self.folder.glob("[35]*V*.csv"))
-        arguments = [*fitted, "--validate", str(self.folder / "4500V_1.5Hz.csv")]
-        arguments += ["--model", str(self.folder / "coarse.yaml"), "--effects", f"{self.effect},{rivals}"]
-        arguments += ["--jobs", "1", "--output", str(output), "--json", str(output / "i.json")]
-        assert improve.main(arguments) == 0
-        return json.loads((output / "i.json").read_text())
-
-
-def laboratory(folder: Path, effect: str, values: dict[str, float]) -> Laboratory:
-    """Record a swimmer with an effect, on another mesh and with other time steps than the model's."""
-    coarse = load_model("swimmer").with_numerics(**COARSE)
-    save_model(coarse, folder / "coarse.yaml")
-    truth = load_model("swimmer").with_numerics(**TRUTH).with_levels(np.array([3500.0, 5500.0]))
-    truth = truth.with_effects(effect).with_values({**VALUES, **values})
-    for seed, (voltage, frequency) in enumerate(CONDITIONS):
-        frames = np.arange(0, 2 / frequency, 1 / 120)
-        side = np.mod(frames * frequency, 1) < 0.5
-        drive = voltage * np.column_stack([side, ~side])
-        angle = simulate(truth, Run("r", frames, VoltageSchedule(frames, drive))).sin_theta
-        noise = 0.002 * np.random.default_rng(seed).normal(size=len(frames))
-        name = f"{voltage:.0f}V_{frequency:g}Hz"
-        write_recording(Recording(name, frames, angle + noise, drive), folder / f"{name}.csv")
-    return Laboratory(folder, effect)
+def improved(laboratory, output: Path, rivals: str) -> dict:
+    """The content of `improve --json`, with one unseen run."""
+    unseen = ["--validate", str(laboratory.folder / "4500V_1.5Hz.csv")]
+    written = ["--output", str(output), "--json", str(output / "i.json")]
+    assert improve.main([*laboratory.arguments(rivals), *unseen, *written]) == 0
+    return json.loads((output / "i.json").read_text())
 
 
 @pytest.fixture(scope="module")
-def with_drag(tmp_path_factory) -> Laboratory:
-    """A swimmer in a liquid that the model leaves out."""
-    return laboratory(tmp_path_factory.mktemp("drag"), "quadratic_drag", {"quadratic_drag.coefficient": 0.25})
-
-
-@pytest.fixture(scope="module")
-def with_waves(tmp_path_factory) -> Laboratory:
+def with_waves(tmp_path_factory, record):
     """A swimmer with an effect that stands in no catalogue but in a file of the user's."""
     folder = tmp_path_factory.mktemp("waves")
     (folder / "wave_drag.py").write_text(OWN)
-    return laboratory(folder, f"{folder}/wave_drag.py:WaveDrag", {"wave_drag.coefficient": 400.0})
+    return record(folder, f"{folder}/wave_drag.py:WaveDrag", {"wave_drag.coefficient": 400.0})
 
 
 def test_improve_adds_the_hidden_effect(with_drag, tmp_path, capsys):
     """The drag is named, added with its value, and the error falls to the noise on fitted and unseen runs."""
-    content = with_drag.improve(tmp_path, "muscle_asymmetry")
+    content = improved(with_drag, tmp_path, "muscle_asymmetry")
     assert content["verdict"]["status"] == "explained"
     assert content["verdict"]["missing"] == ["quadratic_drag"]
     first, last = content["stages"][0], content["stages"][-1]
@@ -110,11 +68,11 @@ def test_improve_adds_the_hidden_effect(with_drag, tmp_path, capsys):
 
 def test_improve_adds_an_effect_of_the_users_own(with_waves, tmp_path):
     """An effect from a file of the user's is ranked, added, fitted and written to the model like the built-in ones."""
-    content = with_waves.improve(tmp_path, "muscle_asymmetry,linear_drag")
+    content = improved(with_waves, tmp_path, "muscle_asymmetry,linear_drag")
     assert content["ranking"][0]["effect"] == "wave_drag"
     assert content["verdict"]["missing"] == ["wave_drag"]
     first, last = content["stages"][0], content["stages"][-1]
     assert last["mae_validation"] < 0.002 < 0.2 * first["mae_validation"]
-    improved = load_model(tmp_path / "improved_model.yaml")
-    assert improved.effects[0].id == "wave_drag"
-    assert improved.values["wave_drag.coefficient"] == pytest.approx(400.0, rel=0.1)
+    model = load_model(tmp_path / "improved_model.yaml")
+    assert model.effects[0].id == "wave_drag"
+    assert model.values["wave_drag.coefficient"] == pytest.approx(400.0, rel=0.1)
