@@ -125,12 +125,13 @@ def test_command_goes_on_from_the_page_alone(tmp_path, monkeypatch, measured):
 
 
 def test_command_hides_what_nobody_has_looked_at(tmp_path, monkeypatch, measured):
-    """With --first-seed the draws are others, and the page is not the one of the whole benchmark."""
+    """With --first-seed the draws are others, of all kinds, and the page is not the one of the whole benchmark."""
+    monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(command, "explain", lambda laboratory, pool: ANSWER)
-    asked = ["--seeds", "2", "--first-seed", "6", "--effects", "payload", "--only", "single", "--jobs", "1"]
-    assert command.main([*asked, "--output", str(tmp_path)]) == 0
-    assert [case.seed for case in measured] == [6, 7]
-    assert (tmp_path / "hidden_effects.md").is_file()
+    assert command.main(["--seeds", "2", "--first-seed", "6", "--jobs", "1", "--output", "fresh"]) == 0
+    for kind in ("single", "pair", "unlisted"):
+        assert {case.seed for case in measured if case.kind == kind} == {6, 7}
+    assert (tmp_path / "fresh" / "hidden_effects.md").is_file()
 
 
 def test_command_refuses_a_seed_below_zero(capsys):

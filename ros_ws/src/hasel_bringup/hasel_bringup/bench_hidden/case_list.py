@@ -41,7 +41,9 @@ def list_cases(
     for name in effects:
         if name not in known_effects():
             raise BringupError(f"There is no effect '{name}' to hide; {nearest_name(name, known_effects())}.")
-    listed = chain.from_iterable(_of_seed(seed, numerics) for seed in seeds)
+    listed = chain.from_iterable(
+        _of_seed(seed, numerics, strangers=number < UNLISTED_SEEDS) for number, seed in enumerate(seeds)
+    )
     chosen = set(effects)
     return [case for case in listed if case.kind in kinds and (not chosen or chosen & set(case.effects))]
 
@@ -51,7 +53,7 @@ def known_effects() -> list[str]:
     return [*catalogue(), *UNLISTED]
 
 
-def _of_seed(seed: int, numerics: str) -> list[Case]:
+def _of_seed(seed: int, numerics: str, strangers: bool) -> list[Case]:
     size = SIZES[seed % len(SIZES)]
     cases = [
         Case("nothing", (), 0.0, seed * NOTHING_PER_SEED + n, ("white", "coloured")[n % 2], numerics)
@@ -59,7 +61,7 @@ def _of_seed(seed: int, numerics: str) -> list[Case]:
     ]
     for kind, hidden in (
         *(("single", (identity,)) for identity in catalogue()),
-        *(("unlisted", (identity,)) for identity in UNLISTED if seed < UNLISTED_SEEDS),
+        *(("unlisted", (identity,)) for identity in UNLISTED if strangers),
         *(("pair", pair) for pair in PAIRS[seed % 2 :: 2]),
     ):
         sign = -1.0 if seed % 2 and kind != "pair" and both_signs(hidden[0]) else 1.0
