@@ -62,12 +62,20 @@ class SpeedReport:
 
     def _speed_table(self) -> Table:
         table = Table(title=f"Processor time on one core, 240 steps/s; cost grows as nodes^{self.slope:.2f}")
-        for heading in ("nodes", "ms/frame", "x real time", "all sensitivities", "adjoint sweep"):
+        for heading in (
+            "nodes",
+            "ms/frame",
+            "x real time",
+            "all sensitivities",
+            "adjoint sweep",
+            "LAPACK/step",
+        ):
             table.add_column(heading, justify="right")
         for speed in self.sizes:
             ratios = [f"{part / speed.forward:.2f} x" for part in (speed.sensitivities, speed.adjoint)]
             frame = f"{speed.milliseconds(speed.forward):.2f}"
-            table.add_row(str(speed.nodes), frame, f"{speed.real_time_factor:.1f}", *ratios)
+            solutions = f"{speed.solutions_per_step:.1f}"
+            table.add_row(str(speed.nodes), frame, f"{speed.real_time_factor:.1f}", *ratios, solutions)
         return table
 
     def _parameter_table(self) -> Table:

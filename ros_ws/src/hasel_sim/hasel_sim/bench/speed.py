@@ -6,6 +6,7 @@ import numpy as np
 
 from hasel_sim.adjoint import DifferentiableRun
 from hasel_sim.bench.cases import FRAMES_PER_SECOND, box_run, fitted_swimmer, node_count, with_nodes
+from hasel_sim.bench.reference import band_solutions
 from hasel_sim.bench.timing import processor_seconds
 from hasel_sim.model import Model
 from hasel_sim.simulate import simulate
@@ -23,25 +24,34 @@ MANY_PARAMETERS = (
 
 @dataclass(frozen=True)
 class Speed:
-    """Processor seconds per second of motion on a mesh; adjoint: the sweep back alone."""
+    """Processor seconds per second of motion on a mesh.
+
+    adjoint: the sweep back alone; band_solutions: LAPACK solving one linear system per time step (`bench.reference`).
+    """
 
     nodes: int
     parameters: int
     forward: float
     sensitivities: float
     adjoint: float
+    band_solutions: float
 
     @property
     def real_time_factor(self) -> float:
         """Seconds of motion simulated per second."""
         return 1 / self.forward
 
+    @property
+    def solutions_per_step(self) -> float:
+        """Cost of a time step in solutions of its linear system by LAPACK, which no machine's speed enters."""
+        return self.forward / self.band_solutions
+
     def __str__(self) -> str:
         sensitivities, adjoint = self.sensitivities / self.forward, self.adjoint / self.forward
         return (
             f"{self.nodes} nodes: {self.milliseconds(self.forward):.2f} ms a frame, "
             f"{self.real_time_factor:.1f} x real time; with all sensitivities {sensitivities:.2f} x, "
-            f"adjoint sweep {adjoint:.2f} x"
+            f"adjoint sweep {adjoint:.2f} x; a step costs {self.solutions_per_step:.1f} LAPACK solutions"
         )
 
     @staticmethod
@@ -59,10 +69,17 @@ def measure_speed(model: Model) -> Speed:
         values = differentiable.values().requires_grad_()
         differentiable.angle(values=values).square().sum().backward()
 
-    forward = processor_seconds(lambda: simulate(model, run), REPEATS)
-    both = processor_seconds(there_and_back, REPEATS)
-    sensitivities = processor_seconds(lambda: simulate(model, run, names), REPEATS)
-    return Speed(node_count(model), len(names), forward, sensitivities, both - forward)
+    steps = round(model.description.numerics.steps_per_second * run.time[-1])
+    forward, both, sensitivities, reference = processor_seconds(
+        [
+            lambda: simulate(model, run),
+            there_and_back,
+            lambda: simulate(model, run, names),
+            band_solutions(model, steps),
+        ],
+        REPEATS,
+    )
+    return Speed(node_count(model), len(names), forward, sensitivities, both - forward, reference)
 
 
 def by_nodes(wanted: tuple[int, ...]) -> tuple[list[Speed], float]:
@@ -75,8 +92,8 @@ def by_nodes(wanted: tuple[int, ...]) -> tuple[list[Speed], float]:
 def by_parameters() -> list[tuple[int, float]]:
     """Number of parameters and cost with all their sensitivities over the forward cost, on one model with effects."""
     model, run = fitted_swimmer().with_effects(*MANY_PARAMETERS), box_run()
-    forward = processor_seconds(lambda: simulate(model, run), 3)
     names = list(model.parameters)
-    counts = sorted({1, 2, 4, len(names)})
-    costs = [processor_seconds(lambda n=n: simulate(model, run, names[-n:]), 3) for n in counts]
-    return [(0, 1.0), *((n, cost / forward) for n, cost in zip(counts, costs, strict=True))]
+    counts = sorted({0, 1, 2, 4, len(names)})
+    works = [lambda n=n: simulate(model, run, names[len(names) - n :]) for n in counts]
+    costs = processor_seconds(works, 3)
+    return [(n, cost / costs[0]) for n, cost in zip(counts, costs, strict=True)]

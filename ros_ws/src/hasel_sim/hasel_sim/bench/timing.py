@@ -5,7 +5,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -20,15 +20,19 @@ print(time.perf_counter() - start)
 """
 
 
-def processor_seconds(work: Callable[[], object], repeats: int) -> float:
-    """Median processor time [s] of a call, after one call that is not counted."""
+def processor_seconds(works: Sequence[Callable[[], object]], repeats: int) -> list[float]:
+    """Median processor time [s] of a call of each, after one that is not counted.
+
+    They take turns, so that a machine whose speed drifts is as fast for one as for another.
+    """
+    times = [[_seconds(work) for work in works] for _ in range(1 + repeats)]
+    return np.median(times[1:], axis=0).tolist()
+
+
+def _seconds(work: Callable[[], object]) -> float:
+    start = time.process_time()
     work()
-    times = []
-    for _ in range(repeats):
-        start = time.process_time()
-        work()
-        times.append(time.process_time() - start)
-    return float(np.median(times))
+    return time.process_time() - start
 
 
 def first_run_seconds() -> float:

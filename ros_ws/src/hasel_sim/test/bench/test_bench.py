@@ -4,13 +4,17 @@ import json
 
 import numpy as np
 import pytest
+from hasel_sim.bench import reference
 from hasel_sim.bench.cases import box_run, fitted_swimmer, node_count, with_nodes
 from hasel_sim.bench.convergence import mesh_errors, step_errors
 from hasel_sim.bench.report import Bar, SpeedReport
-from hasel_sim.bench.speed import measure_speed
-from hasel_sim.bench.timing import first_run_seconds
+from hasel_sim.bench.speed import Speed, measure_speed
+from hasel_sim.bench.timing import first_run_seconds, processor_seconds
 from hasel_sim.bench.where_time_goes import shares
+from hasel_sim.build import model_mesh
 from hasel_sim.commands import bench
+from hasel_sim.mechanics.banded import BandMatrix
+from threadpoolctl import threadpool_limits
 
 
 def test_a_mesh_of_about_so_many_nodes_is_found():
@@ -27,13 +31,41 @@ def test_the_run_alternates_at_its_frequency():
     assert schedule.at(np.array([0.1, 0.3])).tolist() == [[5500, 0], [0, 5500]]
 
 
-def test_the_default_mesh_runs_far_ahead_of_real_time():
-    """Twice the bar's half on a busy machine; sensitivities and adjoint cost about another run each."""
-    speed = measure_speed(fitted_swimmer())
-    assert speed.real_time_factor > 5
+def test_a_step_costs_few_solutions_of_its_linear_system():
+    """No more than 1.5 times what they cost today (1.9); sensitivities and adjoint about another run each."""
+    with threadpool_limits(1):
+        speed = measure_speed(fitted_swimmer())
+    assert speed.solutions_per_step < 2.8
     assert speed.sensitivities / speed.forward < 2.5
     assert speed.adjoint / speed.forward < 2.0
     assert "336 nodes" in str(speed)
+
+
+def test_speed_is_stated_beside_real_time():
+    """A second of motion in 0.1 s is 10 times real time, and twice what LAPACK takes in 0.05 s."""
+    speed = Speed(336, 4, forward=0.1, sensitivities=0.2, adjoint=0.1, band_solutions=0.05)
+    assert speed.real_time_factor == pytest.approx(10)
+    assert speed.solutions_per_step == pytest.approx(2)
+
+
+def test_works_are_timed_in_turns():
+    """Each as often as said, after a first round that does not count."""
+    calls = []
+    processor_seconds([lambda: calls.append("a"), lambda: calls.append("b")], repeats=2)
+    assert "".join(calls) == "ababab"
+
+
+def test_the_reference_solves_as_large_and_wide_a_system(monkeypatch):
+    """As many unknowns and diagonals as the default mesh's matrix, so many times."""
+    seen = []
+    monkeypatch.setattr(reference.lapack, "dgbsv", lambda *arguments: seen.append(arguments))
+    reference.band_solutions(fitted_swimmer(), 3)()
+    below, above, band, right_hand_side = seen[0]
+    matrix = BandMatrix(model_mesh(fitted_swimmer()).reach)
+    assert len(seen) == 3
+    assert below == above == matrix.half_bandwidth
+    assert band.shape == (3 * below + 1, matrix.unknowns)
+    assert right_hand_side.shape == (2 * 336,)
 
 
 def test_the_profile_accounts_for_all_time():
