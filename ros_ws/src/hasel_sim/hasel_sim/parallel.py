@@ -2,6 +2,7 @@
 
 import multiprocessing
 import os
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
@@ -27,8 +28,15 @@ class SerialExecutor(Executor):
         return future
 
 
-def _one_thread() -> None:
+def _start_worker() -> None:
     threadpool_limits(1)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    # a worker in the middle of a task would not notice that its parent was killed, and keep a core busy for minutes
+    multiprocessing.parent_process().join()
+    os._exit(1)
 
 
 def worker_count(jobs: int | None) -> int:
@@ -61,7 +69,7 @@ def executor(jobs: int | None = None, scheduler: str | None = None) -> Iterator[
             yield SerialExecutor()
         return
     context = multiprocessing.get_context("forkserver")
-    with ProcessPoolExecutor(count, mp_context=context, initializer=_one_thread) as pool:
+    with ProcessPoolExecutor(count, mp_context=context, initializer=_start_worker) as pool:
         try:
             yield pool
         except BaseException:

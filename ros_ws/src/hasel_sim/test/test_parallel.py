@@ -1,5 +1,8 @@
 """Many runs by one code path."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from hasel_sim.errors import ModelError, SimulationError
@@ -31,6 +34,24 @@ def test_an_error_in_another_process_keeps_its_sentence(swimmer, boxes):
     """A ModelError survives the way back."""
     with executor(jobs=2) as pool, pytest.raises(ModelError, match="not a parameter"):
         simulate_all(pool, swimmer, [boxes(duration=0.1)], ["nothing"])
+
+
+_BUSY = """
+import time
+from hasel_sim.parallel import executor
+with executor(jobs=2) as pool:
+    print(pool.submit(abs, -1).result(), flush=True)
+    for future in [pool.submit(time.sleep, 60) for _ in range(3)]:
+        future.result()
+"""
+
+
+def test_workers_end_with_a_parent_that_is_killed():
+    """In the middle of a task, instead of keeping the cores busy; the output they share is closed when all ended."""
+    parent = subprocess.Popen([sys.executable, "-c", _BUSY], stdout=subprocess.PIPE, text=True)
+    assert parent.stdout.readline() == "1\n"
+    parent.kill()
+    parent.communicate(timeout=20)
 
 
 def test_a_scheduler_that_does_not_answer_is_reported():
