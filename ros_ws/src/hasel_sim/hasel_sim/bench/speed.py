@@ -43,7 +43,7 @@ class Speed:
 
     @property
     def solutions_per_step(self) -> float:
-        """Cost of a time step in solutions of its linear system by LAPACK, which no machine's speed enters."""
+        """Cost of a time step in solutions of its linear system by LAPACK; the machine's speed all but cancels."""
         return self.forward / self.band_solutions
 
     def __str__(self) -> str:

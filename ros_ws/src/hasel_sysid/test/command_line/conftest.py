@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hasel_recording import Recording, write_recording
 from hasel_sim.drive.voltage import VoltageSchedule
-from hasel_sim.model import load_model, save_model
+from hasel_sim.model import Model, load_model, save_model
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 
@@ -32,21 +32,43 @@ class Laboratory:
         return [*fitted, *model, "--effects", f"{self.effect},{rivals}"]
 
 
+def coarse_swimmer() -> Model:
+    """The swimmer on a mesh and with steps that are soon simulated."""
+    return load_model("swimmer").with_numerics(**COARSE)
+
+
+def write_boxes(
+    truth: Model, path: Path, voltage: float, frequency: float, periods: float, seed: int
+) -> None:
+    """Record alternating boxes of a voltage [V] with white noise as a CSV file."""
+    frames = np.arange(0, periods / frequency, 1 / 120)
+    side = np.mod(frames * frequency, 1) < 0.5
+    drive = voltage * np.column_stack([side, ~side])
+    angle = simulate(truth, Run("r", frames, VoltageSchedule(frames, drive))).sin_theta
+    noise = 0.002 * np.random.default_rng(seed).normal(size=len(frames))
+    write_recording(Recording(path.stem, frames, angle + noise, drive), path)
+
+
 def laboratory(folder: Path, effect: str, values: dict[str, float]) -> Laboratory:
     """Record a swimmer with an effect, on another mesh and with other time steps than the model's."""
-    coarse = load_model("swimmer").with_numerics(**COARSE)
-    save_model(coarse, folder / "coarse.yaml")
+    save_model(coarse_swimmer(), folder / "coarse.yaml")
     truth = load_model("swimmer").with_numerics(**TRUTH).with_levels(np.array([3500.0, 5500.0]))
     truth = truth.with_effects(effect).with_values({**VALUES, **values})
     for seed, (voltage, frequency) in enumerate(CONDITIONS):
-        frames = np.arange(0, 2 / frequency, 1 / 120)
-        side = np.mod(frames * frequency, 1) < 0.5
-        drive = voltage * np.column_stack([side, ~side])
-        angle = simulate(truth, Run("r", frames, VoltageSchedule(frames, drive))).sin_theta
-        noise = 0.002 * np.random.default_rng(seed).normal(size=len(frames))
-        name = f"{voltage:.0f}V_{frequency:g}Hz"
-        write_recording(Recording(name, frames, angle + noise, drive), folder / f"{name}.csv")
+        write_boxes(truth, folder / f"{voltage:.0f}V_{frequency:g}Hz.csv", voltage, frequency, 2, seed)
     return Laboratory(folder, effect)
+
+
+@pytest.fixture(scope="session")
+def coarse() -> Model:
+    """The swimmer on a mesh and with steps that are soon simulated."""
+    return coarse_swimmer()
+
+
+@pytest.fixture(scope="session")
+def record_boxes() -> Callable[..., None]:
+    """Records a model under alternating boxes."""
+    return write_boxes
 
 
 @pytest.fixture(scope="session")

@@ -8,33 +8,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hasel_recording import Recording, read_recording, write_recording
-from hasel_sim.drive.voltage import VoltageSchedule
 from hasel_sim.model import load_model, save_model
-from hasel_sim.run import Run
-from hasel_sim.simulate import simulate
 from hasel_sysid.command_line import compare, convert, fit
 
 FREQUENCY = 2.0
-COARSE = {"mesh_density": 0.5, "quadrature_order": 2, "steps_per_second": 120.0}
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory) -> Path:
+def folder(tmp_path_factory, coarse, record_boxes) -> Path:
     """A coarse model with known parameters, and recordings of it with noise at three voltages."""
     folder = tmp_path_factory.mktemp("runs")
     values = {"amplitude_3500": 0.027, "amplitude_5500": 0.062, "slope": 0.3}
-    truth = load_model("swimmer").with_numerics(**COARSE)
-    truth = truth.with_levels(np.array([3500.0, 5500.0])).with_values(values)
+    truth = coarse.with_levels(np.array([3500.0, 5500.0])).with_values(values)
     save_model(truth, folder / "truth.yaml")
-    save_model(load_model("swimmer").with_numerics(**COARSE), folder / "coarse.yaml")
-    frames = np.arange(0, 1.5 / FREQUENCY, 1 / 120)
+    save_model(coarse, folder / "coarse.yaml")
     for seed, voltage in enumerate((3500.0, 5500.0, 4250.0)):
-        side = np.mod(frames * FREQUENCY, 1) < 0.5
-        drive = voltage * np.column_stack([side, ~side])
-        angle = simulate(truth, Run("r", frames, VoltageSchedule(frames, drive))).sin_theta
-        noise = 0.002 * np.random.default_rng(seed).normal(size=len(frames))
-        name = f"run_{voltage:.0f}"
-        write_recording(Recording(name, frames, angle + noise, drive), folder / f"{name}.csv")
+        record_boxes(truth, folder / f"run_{voltage:.0f}.csv", voltage, FREQUENCY, 1.5, seed)
     return folder
 
 
