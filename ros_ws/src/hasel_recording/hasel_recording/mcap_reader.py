@@ -117,5 +117,7 @@ def _markers(file: McapFile, measured: list[Any], frame_ns: np.ndarray) -> tuple
         }
         lost = [[np.nan, np.nan]] * 3
         return np.array([at_frame.get(stamp, lost) for stamp in frame_ns]), "m"
+    if not len(measured[0].marker_x):
+        return None, "m"
     pixels = np.array([[m.marker_x, m.marker_y] for m in measured]).transpose(0, 2, 1)
     return (pixels, "px") if np.isfinite(pixels).any() else (None, "m")

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from hasel_recording.bending_angle_message import bending_angle_message
 from hasel_recording.mcap_recorder import McapRecorder
-from hasel_recording.recording import Recording
+from hasel_recording.recording import MARKER_NAMES, Recording
 from hasel_recording.topics import MARKERS, MEASURED, SIMULATED, STATE
 
 ACTIVE = 2  # SupplyState.ACTIVE
 UNKNOWN_PAIR = [math.nan] * 2
-UNKNOWN_TRIPLE = [math.nan] * 3
 
 
 def write_mcap(recording: Recording, path: Path) -> None:
@@ -67,14 +67,9 @@ def _angles(
         yield (
             _nanoseconds(time),
             topic,
-            {
-                "sin_theta": sine,
-                "theta": math.asin(max(-1.0, min(1.0, sine))),
-                "marker_x": UNKNOWN_TRIPLE if pixels is None else pixels[index, :, 0].tolist(),
-                "marker_y": UNKNOWN_TRIPLE if pixels is None else pixels[index, :, 1].tolist(),
-                "marker_quality": UNKNOWN_TRIPLE,
-                "valid": math.isfinite(sine),
-            },
+            bending_angle_message(
+                sine, marker_names=MARKER_NAMES, pixels=None if pixels is None else pixels[index]
+            ),
         )
 
 

@@ -3,6 +3,7 @@ import math
 import numpy as np
 import pytest
 from hasel_recording import McapRecorder, RecordingError, RecordingWarning, read_recording
+from hasel_recording.bending_angle_message import bending_angle_message
 from hasel_recording.topics import COMMAND, MEASURED, SIMULATED, STATE
 from mcap.writer import Writer
 
@@ -11,15 +12,9 @@ EPOCH_NS = 1_790_000_000_000_000_000
 
 def angle(sin_theta: float, valid: bool = True) -> dict:
     """Return a BendingAngle."""
-    pixels = [400.0, 800.0, 1200.0]
-    return {
-        "sin_theta": sin_theta,
-        "theta": math.asin(sin_theta) if valid else math.nan,
-        "marker_x": pixels,
-        "marker_y": [540.0, 540.0, 540.0 - 400 * sin_theta],
-        "marker_quality": [1.0, 1.0, 1.0],
-        "valid": valid,
-    }
+    pixels = [[400.0, 540.0], [800.0, 540.0], [1200.0, 540.0 - 400 * sin_theta]]
+    names = ("head", "middle", "tail")
+    return bending_angle_message(sin_theta, marker_names=names, pixels=pixels) | {"valid": valid}
 
 
 def state(upper: float, lower: float) -> dict:

@@ -14,7 +14,6 @@ from visualization_msgs.msg import Marker, MarkerArray
 from hasel_sim.live.body_picture import COLOURS, region_triangles, skin_line
 from hasel_sim.mesh.mesh import Mesh
 
-_UNKNOWN = [math.nan] * 3
 _OUTLINE_WIDTH_M = 0.0006
 _MARKER_SIZE_M = 0.005
 
@@ -30,11 +29,11 @@ def to_nanoseconds(stamp: Time) -> int:
 
 
 def angle_message(stamp_ns: int, sin_theta: float, frame_id: str) -> BendingAngle:
-    """A simulated angle; it has no marker positions in pixels, so they are NaN."""
+    """A simulated angle; no camera has seen it, so there are no marker positions."""
     message = BendingAngle(header=Header(stamp=to_time(stamp_ns), frame_id=frame_id))
     message.sin_theta = sin_theta
     message.theta = math.asin(max(-1.0, min(1.0, sin_theta)))
-    message.marker_x = message.marker_y = message.marker_quality = _UNKNOWN
+    message.sin_theta_std = math.nan
     message.valid = math.isfinite(sin_theta)
     return message
 

@@ -25,6 +25,7 @@ def angle_message(tracked: TrackedFrame, stamp_ns: int, frame_id: str) -> Bendin
     message = BendingAngle()
     message.header.stamp, message.header.frame_id = stamp(stamp_ns), frame_id
     message.sin_theta, message.theta, message.valid = tracked.sin_theta, tracked.theta, tracked.valid
+    message.sin_theta_std, message.marker_name = float("nan"), MARKER_NAMES
     message.marker_x = tracked.markers.positions[:, 0]
     message.marker_y = tracked.markers.positions[:, 1]
     message.marker_quality = tracked.markers.quality

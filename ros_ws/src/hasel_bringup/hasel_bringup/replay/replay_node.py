@@ -18,7 +18,7 @@ from hasel_bringup.replay.timeline import ReplayedFrame
 
 EVERY_MESSAGE = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.RELIABLE)
 _SETTLED_S = 1.0
-_UNKNOWN_PAIR, _UNKNOWN_TRIPLE = [math.nan] * 2, [math.nan] * 3
+_UNKNOWN_PAIR = [math.nan] * 2
 
 
 class ReplayNode(Node):
@@ -87,5 +87,5 @@ class ReplayNode(Node):
             return
         angle = BendingAngle(header=header, sin_theta=frame.sin_theta, valid=math.isfinite(frame.sin_theta))
         angle.theta = math.asin(max(-1.0, min(1.0, frame.sin_theta))) if angle.valid else math.nan
-        angle.marker_x = angle.marker_y = angle.marker_quality = _UNKNOWN_TRIPLE
+        angle.sin_theta_std = math.nan
         self._angles.publish(angle)

@@ -5,11 +5,13 @@ from pathlib import Path
 
 import numpy as np
 from hasel_recording import McapRecorder, Recording, RecordingError, RecordingWarning, write_recording
+from hasel_recording.bending_angle_message import bending_angle_message
 from hasel_recording.topics import MEASURED, STATE
 
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.offline.drive import Alignment, Drive
 from hasel_tracker.offline.tracked_run import TrackedRun
+from hasel_tracker.tracking.marker_set import MARKER_NAMES
 
 ACTIVE = 2  # SupplyState.ACTIVE
 UNKNOWN = [float("nan")] * 2
@@ -55,14 +57,13 @@ def _write_mcap(path: Path, run: TrackedRun, drive: Drive | None, metadata: dict
 
 
 def _angle(run: TrackedRun, index: int) -> dict[str, object]:
-    return {
-        "sin_theta": float(run.sin_theta[index]),
-        "theta": float(run.theta[index]),
-        "marker_x": run.markers_px[index, :, 0].tolist(),
-        "marker_y": run.markers_px[index, :, 1].tolist(),
-        "marker_quality": run.quality[index].tolist(),
-        "valid": bool(run.valid[index]),
-    }
+    return bending_angle_message(
+        float(run.sin_theta[index]),
+        float(run.theta[index]),
+        marker_names=MARKER_NAMES,
+        pixels=run.markers_px[index],
+        quality=run.quality[index],
+    )
 
 
 def _states(drive: Drive, end_s: float) -> list[tuple[float, str, dict[str, object]]]:
