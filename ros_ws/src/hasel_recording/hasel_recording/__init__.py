@@ -1,5 +1,6 @@
 """Crash-safe recordings of experiments: MCAP and CSV."""
 
+from hasel_recording.drive_channel import HASEL_PAIR, DriveChannel, parse_column
 from hasel_recording.errors import RecordingError, RecordingWarning
 from hasel_recording.marker_angle import sin_theta_from_markers
 from hasel_recording.mcap_recorder import McapRecorder
@@ -7,10 +8,13 @@ from hasel_recording.reading import read_recording, read_recordings, write_recor
 from hasel_recording.recording import Recording
 
 __all__ = [
+    "HASEL_PAIR",
+    "DriveChannel",
     "McapRecorder",
     "Recording",
     "RecordingError",
     "RecordingWarning",
+    "parse_column",
     "read_recording",
     "read_recordings",
     "sin_theta_from_markers",

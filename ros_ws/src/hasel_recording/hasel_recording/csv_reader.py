@@ -11,7 +11,7 @@ import numpy as np
 from hasel_recording.csv_columns import KNOWN, SIN_THETA, TIME, VOLTAGES, check_columns, marker_columns
 from hasel_recording.errors import RecordingError, RecordingWarning
 from hasel_recording.marker_angle import sin_theta_from_markers
-from hasel_recording.recording import MAXIMUM_VOLTAGE, Recording
+from hasel_recording.recording import Recording
 
 
 def read_csv(path: Path) -> Recording:
@@ -30,7 +30,7 @@ def read_csv(path: Path) -> Recording:
         path=path,
         metadata=metadata,
         time_s=table[TIME],
-        voltage=np.column_stack([table[name] for name in VOLTAGES]) if VOLTAGES[0] in table else None,
+        drive_signal=np.column_stack([table[name] for name in VOLTAGES]) if VOLTAGES[0] in table else None,
         sin_theta=table[SIN_THETA] if SIN_THETA in table else _angle(markers, unit, lines, path),
         markers=markers,
         marker_unit=unit,
@@ -101,14 +101,6 @@ def _check_numbers(table: dict[str, np.ndarray], lines: list[int], path: Path) -
             f"{path}, line {lines[row]}: time_s {times[row]:g} does not come after {times[row - 1]:g}; "
             "sort the rows by time and remove doubles."
         )
-    for name in VOLTAGES:
-        excess = np.flatnonzero(np.abs(table.get(name, np.zeros(0))) > MAXIMUM_VOLTAGE)
-        if excess.size:
-            row = excess[0]
-            raise RecordingError(
-                f"{path}, line {lines[row]}: {name} is {table[name][row]:g} V, but the supply ends at "
-                f"{MAXIMUM_VOLTAGE:g} V; is the column in volts?"
-            )
 
 
 def _markers(table: dict[str, np.ndarray]) -> tuple[np.ndarray | None, str]:

@@ -11,7 +11,7 @@ from hasel_recording.errors import RecordingError, RecordingWarning, nearest
 from hasel_recording.mcap_file import McapFile, read_file
 from hasel_recording.mcap_recorder import HEADER_RECORD, TIME_RECORD
 from hasel_recording.message_fields import nanoseconds
-from hasel_recording.recording import MAXIMUM_VOLTAGE, Recording
+from hasel_recording.recording import Recording
 from hasel_recording.topics import MARKERS, MEASURED, SIMULATED, STATE, TOPIC_TYPES
 
 
@@ -94,17 +94,17 @@ def _drive(
     if not states:
         return {}
     voltage = np.array([state.commanded_voltage for state in states], dtype=float)
-    bad = np.flatnonzero(~(np.abs(voltage).max(axis=1) <= MAXIMUM_VOLTAGE))
+    bad = np.flatnonzero(~np.isfinite(voltage).all(axis=1))
     if bad.size:
         raise RecordingError(
             f"{path}: message {bad[0] + 1} on {STATE} commands {voltage[bad[0]].tolist()} V, "
-            f"but the supply ends at {MAXIMUM_VOLTAGE:g} V; is it in volts?"
+            "but two numbers are expected: was the supply in a fault? Record the run again."
         )
     changes = np.concatenate([[0], 1 + np.flatnonzero(np.any(np.diff(voltage, axis=0) != 0, axis=1))])
-    sampled = {"voltage": voltage[np.searchsorted(state_ns, frame_ns, side="right") - 1]}
+    sampled = {"drive_signal": voltage[np.searchsorted(state_ns, frame_ns, side="right") - 1]}
     if np.isin(state_ns[changes], frame_ns).all():
         return sampled
-    return sampled | {"drive_time_s": _seconds(state_ns[changes], origin), "drive_voltage": voltage[changes]}
+    return sampled | {"drive_time_s": _seconds(state_ns[changes], origin), "drive_values": voltage[changes]}
 
 
 def _markers(file: McapFile, measured: list[Any], frame_ns: np.ndarray) -> tuple[np.ndarray | None, str]:

@@ -5,38 +5,58 @@ from pathlib import Path
 
 import numpy as np
 
+from hasel_recording.drive_channel import HASEL_PAIR, DriveChannel
+from hasel_recording.errors import RecordingError
+
 MARKER_NAMES = ("head", "middle", "tail")
-MAXIMUM_VOLTAGE = 10_000.0  # [V], what the supply can give
 
 
 @dataclass(frozen=True)
 class Recording:
-    """A run: the voltage on the muscles and the bending that was measured, frame by frame.
+    """A run: what drove the body and the bending that was measured, frame by frame.
 
     name: short name, unique enough for a table; path: the file it came from.
     metadata: the header lines, such as `model` or `initial_time_s`, as text.
     time_s: [n], increasing.
     sin_theta: [n]; NaN in a frame in which a marker was lost.
-    voltage: [n, 2] in V, signed, upper and lower muscle, each row holding until the next; None: passive body.
-    markers: [n, 3, 2], head, middle and tail, x and y, in `marker_unit`; None when not recorded.
+    drive_signal: [n, channels] in the channels' SI units, signed, each row holding until the next; None: passive.
+    channels: what the columns of the drive are; the rig's two voltages unless said otherwise.
+    markers: [n, m, 2], in the order of marker_names along the body, x and y, in `marker_unit`; None: not recorded.
     marker_unit: "m" (y up) or "px" (y down, as in an image).
-    drive_time_s [m], drive_voltage [m, 2]: the exact instants at which the voltage changed and what it
+    drive_time_s [k], drive_values [k, channels]: the exact instants at which the drive changed and what it
     changed to, where these do not all coincide with frames; otherwise None.
     simulated_time_s, simulated_sin_theta: [k], what a simulator said during the run; None when not recorded.
+
+    Raises RecordingError where drive or markers do not have one column per name.
     """
 
     name: str
     time_s: np.ndarray
     sin_theta: np.ndarray
-    voltage: np.ndarray | None = None
+    drive_signal: np.ndarray | None = None
     markers: np.ndarray | None = None
     marker_unit: str = "m"
     metadata: dict[str, str] = field(default_factory=dict)
     path: Path | None = None
     drive_time_s: np.ndarray | None = None
-    drive_voltage: np.ndarray | None = None
+    drive_values: np.ndarray | None = None
     simulated_time_s: np.ndarray | None = None
     simulated_sin_theta: np.ndarray | None = None
+    channels: tuple[DriveChannel, ...] = HASEL_PAIR
+    marker_names: tuple[str, ...] = MARKER_NAMES
+
+    def __post_init__(self) -> None:
+        for signal in (self.drive_signal, self.drive_values):
+            if signal is not None and signal.shape[1] != len(self.channels):
+                raise RecordingError(
+                    f"{self.name} is driven by {signal.shape[1]} signals, but names {len(self.channels)} channels: "
+                    "name every channel."
+                )
+        if self.markers is not None and self.markers.shape[1] != len(self.marker_names):
+            raise RecordingError(
+                f"{self.name} has {self.markers.shape[1]} markers, but names {len(self.marker_names)}: "
+                "name every marker."
+            )
 
     @property
     def duration_s(self) -> float:
@@ -48,16 +68,38 @@ class Recording:
         """Which frames have an angle, [n]."""
         return np.isfinite(self.sin_theta)
 
-    def drive(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return (times [s] [m], voltages [V] [m, 2]), each voltage holding until the next time.
+    @property
+    def driven(self) -> bool:
+        """Whether a drive was recorded, be it zero throughout."""
+        return self.drive_signal is not None or self.drive_values is not None
 
-        The passive body's drive is 0 V from the first frame on.
+    @property
+    def voltage(self) -> np.ndarray | None:
+        """Voltage [V] of the upper and the lower muscle, [n, 2]; None for a passive body.
+
+        Raises RecordingError where the body is driven by anything but the rig's two voltages.
+        """
+        self.check_hasel_pair()
+        return self.drive_signal
+
+    def check_hasel_pair(self) -> None:
+        """Raise RecordingError where anything but the rig's two voltages drives the body."""
+        if self.driven and self.channels != HASEL_PAIR:
+            raise RecordingError(
+                f"{self.name} is driven by {', '.join(c.column for c in self.channels)}, where "
+                f"{' and '.join(c.column for c in HASEL_PAIR)} are expected: give a recording of the HASEL rig."
+            )
+
+    def drive(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return (times [s] [k], values in SI units [k, channels]), each value holding until the next time.
+
+        The passive body's drive is zero from the first frame on.
         """
         if self.drive_time_s is not None:
-            return self.drive_time_s, self.drive_voltage
-        if self.voltage is not None:
-            return self.time_s, self.voltage
-        return self.time_s[:1], np.zeros((1, 2))
+            return self.drive_time_s, self.drive_values
+        if self.drive_signal is not None:
+            return self.time_s, self.drive_signal
+        return self.time_s[:1], np.zeros((1, len(self.channels)))
 
     def __str__(self) -> str:
         frames = len(self.time_s)
@@ -66,8 +108,15 @@ class Recording:
             text += f" ({1 / np.median(np.diff(self.time_s)):.4g} frames/s)"
         lost = frames - int(self.valid.sum())
         text += f", {lost} without an angle" if lost else ""
-        _, voltage = self.drive()
-        text += f", up to {np.abs(voltage).max():.5g} V" if voltage.any() else ", passive"
+        _, values = self.drive()
+        text += f", {self._largest(values)}" if values.any() else ", passive"
         return text + (
             f", |sin θ| up to {np.abs(self.sin_theta[self.valid]).max():.3g}" if lost < frames else ""
         )
+
+    def _largest(self, values: np.ndarray) -> str:
+        """The largest magnitude per unit that drives the body: "up to 3500 V"."""
+        largest: dict[str, float] = {}
+        for channel, column in zip(self.channels, values.T, strict=True):
+            largest[channel.unit] = max(largest.get(channel.unit, 0.0), float(np.abs(column).max()))
+        return "up to " + " and ".join(f"{value:.5g} {unit}" for unit, value in largest.items())

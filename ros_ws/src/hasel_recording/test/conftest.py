@@ -32,6 +32,6 @@ def driven() -> Recording:
         name="driven",
         time_s=time_s,
         sin_theta=np.round(0.1 * np.sin(4 * np.pi * time_s), 6),
-        voltage=np.column_stack([upper, upper - 3500.0]),
+        drive_signal=np.column_stack([upper, upper - 3500.0]),
         metadata={"model": "swimmer", "note": "filled with oil: 2.5 ml"},
     )

@@ -7,7 +7,7 @@ from hasel_recording import RecordingError, RecordingWarning, read_recording, wr
 
 def test_gives_back_the_same_numbers(driven, tmp_path):
     """What is written is read back to the last bit, header included."""
-    run = replace(driven, sin_theta=np.sin(driven.time_s), voltage=driven.voltage / 3)
+    run = replace(driven, sin_theta=np.sin(driven.time_s), drive_signal=driven.voltage / 3)
     write_recording(run, tmp_path / "run.csv")
     again = read_recording(tmp_path / "run.csv")
     for name in ("time_s", "sin_theta", "voltage"):
@@ -27,7 +27,7 @@ def test_frames_without_an_angle_are_left_out_aloud(driven, tmp_path):
 def test_switching_between_frames_is_rounded_aloud(driven, tmp_path):
     """Instants of switching that are not frames cannot be kept in CSV, which is said."""
     exact = replace(
-        driven, drive_time_s=np.array([0.0, 0.2501]), drive_voltage=np.array([[3500.0, 0], [0, 0]])
+        driven, drive_time_s=np.array([0.0, 0.2501]), drive_values=np.array([[3500.0, 0], [0, 0]])
     )
     with pytest.warns(RecordingWarning, match="each switch moves to the next frame"):
         write_recording(exact, tmp_path / "run.csv")

@@ -6,7 +6,7 @@ from hasel_recording import read_recording, write_recording
 from hasel_recording.topics import MARKERS, MEASURED, STATE
 from rosbags.highlevel import AnyReader
 
-ARRAYS = ("time_s", "sin_theta", "voltage", "markers", "drive_time_s", "drive_voltage")
+ARRAYS = ("time_s", "sin_theta", "voltage", "markers", "drive_time_s", "drive_values")
 
 
 def assert_same(again, original):
@@ -28,7 +28,9 @@ def test_markers_and_times_before_zero(driven, unit, tmp_path):
     markers = np.random.default_rng(1).normal(size=(240, 3, 2))
     sin_theta = np.where(np.arange(240) == 5, np.nan, driven.sin_theta)
     time_s = np.round(driven.time_s - 0.5, 6)
-    run = replace(driven, time_s=time_s, sin_theta=sin_theta, markers=markers, marker_unit=unit, voltage=None)
+    run = replace(
+        driven, time_s=time_s, sin_theta=sin_theta, markers=markers, marker_unit=unit, drive_signal=None
+    )
     write_recording(run, tmp_path / "run.mcap")
     assert_same(read_recording(tmp_path / "run.mcap"), run)
 
@@ -37,10 +39,10 @@ def test_exact_switching_survives(driven, tmp_path):
     """Instants of switching between the frames are kept beside the frames' voltages."""
     drive = {
         "drive_time_s": np.array([0.0, 0.0101, 1.5]),
-        "drive_voltage": np.array([[0.0, 0], [5000, 0], [0, 9000]]),
+        "drive_values": np.array([[0.0, 0], [5000, 0], [0, 9000]]),
     }
     held = np.searchsorted(drive["drive_time_s"], driven.time_s, side="right") - 1
-    run = replace(driven, voltage=drive["drive_voltage"][held], **drive)
+    run = replace(driven, drive_signal=drive["drive_values"][held], **drive)
     write_recording(run, tmp_path / "run.mcap")
     assert_same(read_recording(tmp_path / "run.mcap"), run)
 

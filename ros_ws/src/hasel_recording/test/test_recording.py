@@ -1,6 +1,8 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
+from hasel_recording import DriveChannel, RecordingError
 
 
 def test_prints_as_a_sentence(driven):
@@ -18,5 +20,23 @@ def test_lost_frames_are_counted(driven):
 def test_drive_prefers_the_exact_instants(driven):
     """The drive is the instants of switching where they are known, else the frames."""
     assert driven.drive()[0] is driven.time_s
-    run = replace(driven, drive_time_s=np.array([0.1]), drive_voltage=np.array([[1.0, 2.0]]))
+    run = replace(driven, drive_time_s=np.array([0.1]), drive_values=np.array([[1.0, 2.0]]))
     assert run.drive()[0].tolist() == [0.1]
+
+
+def test_any_channel_may_drive_a_body(driven):
+    """A pressure run prints with its unit; who needs the rig's two voltages gets one sentence."""
+    chamber = DriveChannel("chamber", "pressure", "Pa")
+    run = replace(driven, drive_signal=np.full((240, 1), 25000.0), channels=(chamber,))
+    assert "up to 25000 Pa" in str(run)
+    assert run.drive()[1].shape == (240, 1)
+    with pytest.raises(RecordingError, match="driven by pressure_chamber_pa, where voltage_upper_v"):
+        _ = run.voltage
+
+
+def test_every_signal_and_marker_has_a_name(driven):
+    """Drive and markers need one column per name."""
+    with pytest.raises(RecordingError, match="3 signals, but names 2 channels"):
+        replace(driven, drive_signal=np.zeros((240, 3)))
+    with pytest.raises(RecordingError, match="4 markers, but names 3"):
+        replace(driven, markers=np.zeros((240, 4, 2)))

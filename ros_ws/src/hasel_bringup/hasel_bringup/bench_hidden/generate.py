@@ -86,8 +86,8 @@ def _experiment(simulation: Simulation, noise: np.ndarray, switch_on_frames: boo
         run.name,
         run.time,
         simulation.sin_theta + noise,
-        voltage=run.schedule.at(run.time),
+        drive_signal=run.schedule.at(run.time),
         drive_time_s=None if exact is None else exact.time,
-        drive_voltage=None if exact is None else exact.voltage,
+        drive_values=None if exact is None else exact.voltage,
     )
     return Experiment(recording, run)

@@ -25,8 +25,9 @@ def timeline(recording: Recording) -> list[ReplayedFrame]:
     """One entry for every frame and every switch of the voltage, in order of time.
 
     Frames before the header's initial_time_s, which no comparison uses, are left out. Raises BringupError when nothing
-    is left.
+    is left, RecordingError for a body that the rig's two voltages do not drive.
     """
+    recording.check_hasel_pair()
     drive_time, drive_voltage = recording.drive()
     start = float(recording.metadata.get("initial_time_s", min(recording.time_s[0], drive_time[0])))
     if start > recording.time_s[-1]:

@@ -22,7 +22,7 @@ def test_a_frame_carries_its_voltage_and_angle():
 def test_a_switch_between_frames_is_a_state_of_its_own():
     """It comes at its exact time and without an angle; frames hold the voltage in force."""
     recording = Recording(
-        "run", TIME, np.zeros(3), VOLTAGE, drive_time_s=np.array([0.05, 0.15]), drive_voltage=VOLTAGE[[0, 2]]
+        "run", TIME, np.zeros(3), VOLTAGE, drive_time_s=np.array([0.05, 0.15]), drive_values=VOLTAGE[[0, 2]]
     )
     frames = timeline(recording)
     assert [(frame.stamp_ns // 10**6, frame.voltage[0], frame.sin_theta is None) for frame in frames] == [

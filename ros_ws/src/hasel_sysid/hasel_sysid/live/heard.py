@@ -106,5 +106,5 @@ def _part(origin: int, drive: tuple, measured: tuple, begin: float, stop: float)
         sin_theta[seen],
         None if passive else voltage,
         drive_time_s=None if passive else drive_time[driven] - begin,
-        drive_voltage=None if passive else drive_voltage[driven],
+        drive_values=None if passive else drive_voltage[driven],
     )

@@ -32,7 +32,7 @@ def _without_rows(recording: Recording, rows) -> Recording:
         recording,
         time_s=recording.time_s[kept],
         sin_theta=recording.sin_theta[kept],
-        voltage=recording.voltage[kept],
+        drive_signal=recording.voltage[kept],
     )
 
 
@@ -55,7 +55,7 @@ def _early_camera(recording: Recording) -> Recording:
     late = round(0.3 * 120)
     voltage = np.vstack([np.zeros((rest + late, 2)), recording.voltage[:-late]])
     return replace(
-        recording, time_s=time, sin_theta=np.concatenate([still, recording.sin_theta]), voltage=voltage
+        recording, time_s=time, sin_theta=np.concatenate([still, recording.sin_theta]), drive_signal=voltage
     )
 
 
@@ -109,15 +109,15 @@ FAULTS = {
         "error",
     ),
     "one step": (
-        lambda r: replace(r, voltage=np.tile([4500.0, 0.0], (len(r.time_s), 1))),
+        lambda r: replace(r, drive_signal=np.tile([4500.0, 0.0], (len(r.time_s), 1))),
         "too little excitation",
         "warning",
     ),
-    "kilovolts": (lambda r: replace(r, voltage=r.voltage / 1e3), "unit of the voltage", "error"),
-    "no command": (lambda r: replace(r, voltage=0 * r.voltage), "no command", "warning"),
-    "unused channel": (lambda r: replace(r, voltage=r.voltage * (1, 0)), "dead channel", "warning"),
+    "kilovolts": (lambda r: replace(r, drive_signal=r.voltage / 1e3), "unit of the voltage", "error"),
+    "no command": (lambda r: replace(r, drive_signal=0 * r.voltage), "no command", "warning"),
+    "unused channel": (lambda r: replace(r, drive_signal=r.voltage * (1, 0)), "dead channel", "warning"),
     "dead by the header": (
-        lambda r: replace(r, voltage=r.voltage * (0, 1), metadata={"muscles": "both"}),
+        lambda r: replace(r, drive_signal=r.voltage * (0, 1), metadata={"muscles": "both"}),
         "dead channel",
         "error",
     ),
@@ -127,7 +127,7 @@ FAULTS = {
         "error",
     ),
     "same voltage twice": (
-        lambda r: replace(r, voltage=np.repeat(r.voltage[:, :1], 2, axis=1)),
+        lambda r: replace(r, drive_signal=np.repeat(r.voltage[:, :1], 2, axis=1)),
         "doubled channel",
         "error",
     ),
@@ -136,11 +136,15 @@ FAULTS = {
         "clipped command",
         "error",
     ),
-    "one channel clipped": (lambda r: replace(r, voltage=r.voltage * (1, 0.9)), "clipped command", "warning"),
+    "one channel clipped": (
+        lambda r: replace(r, drive_signal=r.voltage * (1, 0.9)),
+        "clipped command",
+        "warning",
+    ),
     "clipped sine": (
         lambda r: replace(
             r,
-            voltage=np.minimum(
+            drive_signal=np.minimum(
                 4000.0, 4500 * np.abs(np.sin(2 * np.pi * 2 * r.time_s + 1e-9))[:, None] * (r.voltage > 0)
             ),
         ),
@@ -150,7 +154,7 @@ FAULTS = {
     "one switch late": (
         lambda r: replace(
             r,
-            voltage=r.voltage[
+            drive_signal=r.voltage[
                 np.where(np.abs(np.arange(len(r.time_s)) - 95) <= 5, 89, np.arange(len(r.time_s)))
             ],
         ),
@@ -169,7 +173,7 @@ FAULTS = {
     ),
     "sign flip": (lambda r: replace(r, sin_theta=-r.sin_theta), "sign flip or swapped channels", "error"),
     "swapped channels": (
-        lambda r: replace(r, voltage=r.voltage[:, ::-1]),
+        lambda r: replace(r, drive_signal=r.voltage[:, ::-1]),
         "sign flip or swapped channels",
         "error",
     ),

@@ -21,7 +21,7 @@ def trials() -> Trials:
     """Of a swimmer that is bent once, against an angle that it does not follow."""
     time = np.arange(0.0, 0.3, 1 / 60)
     schedule = VoltageSchedule(np.zeros(1), np.array([[4500.0, 0.0]]))
-    measured = Recording("bent", time, 0.2 * time, voltage=schedule.at(time))
+    measured = Recording("bent", time, 0.2 * time, drive_signal=schedule.at(time))
     problem = Problem([Experiment(measured, Run("bent", time, schedule))], SerialExecutor())
     model = load_model("swimmer").with_levels([4500.0]).with_values({"amplitude_4500": 0.03})
     model = model.with_numerics(mesh_density=0.5, quadrature_order=2, steps_per_second=120.0)
