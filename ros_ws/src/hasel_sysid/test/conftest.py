@@ -104,7 +104,7 @@ def made_recording() -> Callable[..., Recording]:
             "name": "run",
             "time_s": time,
             "sin_theta": oscillator_angle(time, frequency) + noise,
-            "voltage": box_voltage(time, frequency, voltage),
+            "drive_signal": box_voltage(time, frequency, voltage),
         }
         return Recording(**{**own, **fields})
 
