@@ -40,6 +40,11 @@ class PreparedRun:
             raise SimulationError(
                 f"run '{run.name}' has no frame after {run.start} s; expected initial_time_s within it"
             )
+        if run.schedule is not None and frames[-1] <= run.start:
+            raise SimulationError(
+                f"run '{run.name}' is driven but has no frame after its start at {run.start:g} s; expected at least one "
+                "more frame to see what the drive does"
+            )
         self._skipped = len(run.time) - len(frames)
         self.plan: StepPlan = plan_steps(
             frames, numerics.steps_per_second, numerics.spectral_radius, run.start, frames[-1] + ahead
@@ -59,7 +64,7 @@ class PreparedRun:
     @property
     def load_factor(self) -> float:
         """Share of all loads under which the body is in equilibrium when it starts."""
-        return self.run.initial_load_factor if self.run.initial_state == "static_equilibrium" else 0.0
+        return self.run.initial_load_factor if self.run.initial_state == "static_equilibrium" else 1.0
 
     @property
     def held_shape(self) -> np.ndarray | None:
@@ -81,7 +86,7 @@ class PreparedRun:
         if self._chain is None:
             return np.zeros((len(times), 2))
         values = values or self.model.values
-        every = np.concatenate([[min(self.run.start, times[0])], times])
+        every = np.concatenate([[min([self.run.start, *times[:1]])], times])
         return self._chain.contraction(self.schedule, every, values, self.model.effect_values(values))[1:]
 
     def contraction_slopes(self, times: np.ndarray) -> np.ndarray:

@@ -5,15 +5,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.errors import SimulationError
 
 
 @dataclass(frozen=True)
 class Run:
     """One experiment: frames [s], the commanded voltage (None for a passive body) and how it starts.
 
-    initial_state: "rest" (relaxed, without loads), "static_equilibrium" under initial_load_factor times all loads, or
-    "held_shape", the nodal positions initial_shape [m] [nodes, 2] (such as one of `Simulation.shapes`); let go without
-    speed at initial_time [s] (default: the first frame or switch, whichever comes first).
+    initial_state: "rest" (in equilibrium with all that acts on it undriven), "static_equilibrium" under
+    initial_load_factor times all loads, or "held_shape", the nodal positions initial_shape [m] [nodes, 2] (such as
+    one of `Simulation.shapes`); let go without speed at initial_time [s] (default: the first frame or switch,
+    whichever comes first). Raises SimulationError for frames or a shape that are no numbers.
     """
 
     name: str
@@ -23,6 +25,21 @@ class Run:
     initial_load_factor: float = 1.0
     initial_time: float | None = None
     initial_shape: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        if len(self.time) == 0:
+            raise SimulationError(f"run '{self.name}' has no frame; expected the time of at least one")
+        broken = np.flatnonzero(~np.isfinite(self.time))
+        if len(broken):
+            raise SimulationError(
+                f"frame {broken[0] + 1} of run '{self.name}' is at {self.time[broken[0]]} s; expected finite times: "
+                "repair or remove that frame"
+            )
+        if self.initial_shape is not None and not np.isfinite(self.initial_shape).all():
+            raise SimulationError(
+                f"the shape in which run '{self.name}' starts has a node that is nowhere; expected finite positions: "
+                "take it from a simulation with the same body"
+            )
 
     @property
     def start(self) -> float:

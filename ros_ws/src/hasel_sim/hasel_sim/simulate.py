@@ -38,13 +38,11 @@ def simulate(model: Model, run: Run, slopes_by: Sequence[str] = (), keep_shapes:
     shapes = [state.position]
     drives = prepared.drives(prepared.contraction(plan.balance_times))
     for step, (drive, c) in enumerate(zip(drives, plan.coefficients, strict=True)):
-        after, motion = stepper.step(state, drive, c)
-        if moves:
-            slopes = stepper.step_slopes(
-                state, after, motion, drive, c, slopes, moving, contraction_slopes[step]
-            )
-            d_seen.append(rows.local(slopes.position))
-        state = after
+        for part in stepper.follow(state, drive, c):
+            if moves:
+                slopes = stepper.step_slopes(part, slopes, moving, contraction_slopes[step])
+            state = part.after
+        d_seen.append(rows.local(slopes.position))
         seen.append(rows.local(state.position))
         if keep_shapes:
             shapes.append(state.position)

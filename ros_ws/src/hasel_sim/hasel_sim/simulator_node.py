@@ -47,7 +47,7 @@ PARAMETERS = (
         60.0,
     ),
     NodeParameter(
-        "load_factor", 0.0, "a run starts in equilibrium under this many times all loads", "1", 0.0, 10.0
+        "load_factor", 1.0, "a run starts in equilibrium under this many times all loads", "1", 0.0, 10.0
     ),
     NodeParameter("frame_id", "swimmer", "frame of the stamped messages"),
 )

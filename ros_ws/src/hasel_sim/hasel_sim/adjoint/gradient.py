@@ -36,25 +36,19 @@ def gradient(trajectory: Trajectory, weights: np.ndarray, with_outline: bool) ->
     totals = np.array([weights @ series for series in seen] + [0.0] * coefficients)
     where, across = reverse_observation(trajectory, weights)
 
-    steps, states = prepared.plan.coefficients, trajectory.states
-    contraction = np.zeros((len(steps), 2))
-    current = no_weights(states[-1])
+    steps = trajectory.steps
+    contraction = np.zeros((len(steps), len(prepared.start_drive.contraction)))
+    current = no_weights(steps[-1][-1].after if steps else trajectory.start)
     for step in range(len(steps) - 1, -1, -1):
         prepared.rows.add_pulled_back(where[step + 1], across[step + 1], current.position)
-        current, contraction[step], by_parameter = reverse_step(
-            prepared.stepper,
-            states[step],
-            states[step + 1],
-            trajectory.drives[step],
-            steps[step],
-            current,
-            slopes,
-        )
-        totals += by_parameter
+        for part in reversed(steps[step]):
+            current, by_contraction, by_parameter = reverse_step(prepared.stepper, part, current, slopes)
+            contraction[step] += by_contraction
+            totals += by_parameter
     prepared.rows.add_pulled_back(where[0], across[0], current.position)
     totals += reverse_start(
         prepared.stepper.system,
-        states[0],
+        trajectory.start,
         prepared.start_drive,
         prepared.load_factor,
         prepared.held_shape is None,

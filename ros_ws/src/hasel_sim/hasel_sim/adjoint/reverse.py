@@ -9,28 +9,24 @@ the multiplier mu = -A^-T g gives every derivative: mu . dR/dc by the contractio
 import numpy as np
 
 from hasel_sim.adjoint.weights import StateWeights, green_pulled_back, history_pulled_back
-from hasel_sim.mechanics.generalised_alpha import StepCoefficients
 from hasel_sim.mechanics.initial import start_of_motion
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.residual_slopes import NoSlope, ResidualSlope, SolidSlope
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.statics import equilibrium_multiplier
-from hasel_sim.mechanics.stepper import Stepper, balance_motion
+from hasel_sim.mechanics.stepper import Part, Stepper
 from hasel_sim.mechanics.system import Linearisation, System
 
 
 def reverse_step(
     stepper: Stepper,
-    before: State,
-    after: State,
-    drive: DriveState,
-    c: StepCoefficients,
+    part: Part,
     weights: StateWeights,
     parameters: list[ResidualSlope],
 ) -> tuple[StateWeights, np.ndarray, np.ndarray]:
-    """Weights of the state before, of the contraction [2] and of the parameters [n], from those of the state after."""
+    """Weights of the state before, of the contraction [muscles] and of the parameters [n], from those of the state after."""
+    before, after, motion, drive, c = part.before, part.after, part.motion, part.drive, part.coefficients
     system, solid = stepper.system, stepper.system.solid
-    motion = balance_motion(before, c, after.acceleration)
     line = system.linearise(motion, drive, stepper.memory(before, c.at))
     position = weights.position
     if weights.branch is not None:
@@ -54,7 +50,7 @@ def reverse_step(
         kept, gained = solid.branches.factors(c.at)
         earlier.branch = left[:, None, None, None] * weights.branch + np.multiply.outer(kept, history)
         earlier.green = -np.tensordot(gain, weights.branch, 1) - gained.sum() * history
-    contraction = line.by_contraction(drive).reshape(2, -1) @ multiplier.ravel()
+    contraction = np.tensordot(line.by_contraction(drive), multiplier, 2)
     by_parameter = _by_parameter(parameters, motion, drive, line, before, c.at, multiplier)
     if weights.branch is not None:
         for column, parameter in enumerate(parameters):

@@ -5,22 +5,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from hasel_sim.mechanics.initial import initial_state
-from hasel_sim.mechanics.motion import DriveState
 from hasel_sim.mechanics.state import State
+from hasel_sim.mechanics.stepper import Part
 from hasel_sim.observation import observe
 from hasel_sim.prepared_run import PreparedRun
 
 
 @dataclass(frozen=True)
 class Trajectory:
-    """States at the step boundaries [steps + 1], the drive at every balance [steps], and what the camera sees.
+    """The first state, every step in the parts it was followed in, and what the camera sees.
 
     markers and lines across the body through them: [steps + 1, 3, 2].
     """
 
     prepared: PreparedRun
-    states: list[State]
-    drives: list[DriveState]
+    start: State
+    steps: list[list[Part]]
     markers: np.ndarray
     lines: np.ndarray
 
@@ -38,8 +38,10 @@ def follow(prepared: PreparedRun, contraction: np.ndarray) -> Trajectory:
     state, _ = initial_state(
         stepper.system, prepared.start_drive, prepared.load_factor, [], prepared.held_shape
     )
-    states = [state]
+    positions, steps, start = [state.position], [], state
     for drive, c in zip(drives, prepared.plan.coefficients, strict=True):
-        states.append(stepper.step(states[-1], drive, c)[0])
-    markers, lines = prepared.rows(np.array([state.position for state in states]))
-    return Trajectory(prepared, states, drives, markers, lines)
+        steps.append(stepper.follow(state, drive, c))
+        state = steps[-1][-1].after
+        positions.append(state.position)
+    markers, lines = prepared.rows(np.array(positions))
+    return Trajectory(prepared, start, steps, markers, lines)

@@ -42,7 +42,7 @@ class LiveSimulator:
     """Moves the body on to the stamp of every state message, under the voltage that held until then.
 
     history: how far back [s] drive and observation effects remember; gap, reset, late: see `StampOrder`;
-    load_factor: a run starts in equilibrium under this many times all loads, 0: relaxed.
+    load_factor: a run starts in equilibrium under this many times all loads, 0: unloaded.
     The angles agree with those of `simulate` on the same schedule.
     """
 
@@ -53,7 +53,7 @@ class LiveSimulator:
         gap: float = 0.1,
         reset: float = 2.0,
         late: float = 0.5,
-        load_factor: float = 0.0,
+        load_factor: float = 1.0,
     ) -> None:
         self.history, self.load_factor = history, load_factor
         self.order = StampOrder(gap, reset, late)
@@ -151,7 +151,7 @@ class LiveSimulator:
             positions = []
             for index, coefficients in enumerate(plan.coefficients):
                 drive = DriveState(voltage[index], contraction[index], instants[index])
-                self._state, _ = self._stepper.step(self._state, drive, coefficients)
+                self._state = self._stepper.follow(self._state, drive, coefficients)[-1].after
                 positions.append(self._state.position)
             self._see(plan.boundaries[1:], positions)
             self._time = time

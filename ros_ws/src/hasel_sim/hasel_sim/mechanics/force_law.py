@@ -167,7 +167,7 @@ class ForceLaw:
             "acceleration": (2, s.shape),
             "tangent": (0, s.slope),
         }
-        for name in self.effect.depends_on:
+        for name in self._moved_by:
             row, interpolation = places[name]
             pulled = np.einsum("nij,ni->nj", self._slopes[name], here)
             np.subtract.at(out[row], s.nodes, interpolation[:, :, None] * pulled[:, None, :])

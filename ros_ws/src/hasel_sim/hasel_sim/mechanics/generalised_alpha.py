@@ -5,7 +5,7 @@ mid-point"); rho = 1 is the implicit mid-point rule, which keeps momentum and an
 J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -29,6 +29,15 @@ class StepCoefficients:
     end_position: float
     end_velocity_a: float
     end_velocity: float
+
+    def halved(self) -> "StepCoefficients":
+        """Those of a step of half the length."""
+        half = {name: 0.5 * getattr(self, name) for name in _LIKE_THE_STEP}
+        return replace(self, **half, **{name: 0.25 * getattr(self, name) for name in _LIKE_ITS_SQUARE})
+
+
+_LIKE_THE_STEP = ("step", "at", "position_v", "velocity_a", "velocity", "end_velocity_a", "end_velocity")
+_LIKE_ITS_SQUARE = ("position_a", "position", "end_position_a", "end_position")
 
 
 def step_coefficients(step: float, rho: float) -> StepCoefficients:

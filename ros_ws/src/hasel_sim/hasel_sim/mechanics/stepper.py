@@ -1,5 +1,7 @@
 """One time step of the body, and of the derivatives of its state by parameters."""
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 
 from hasel_sim.errors import SimulationError
@@ -12,6 +14,8 @@ from hasel_sim.mechanics.state import State, StateSlopes
 from hasel_sim.mechanics.system import Linearisation, System
 
 _MOST_ITERATIONS = 25
+_MOST_HALVINGS = 8
+"""A step that cannot be followed is halved up to this often: to 1/256 of its length."""
 _SLOW = 0.1
 """A correction shrinking by less than this makes a kept factorisation not worth keeping."""
 
@@ -28,6 +32,17 @@ def balance_motion(state: State, c: StepCoefficients, acceleration: np.ndarray) 
     )
 
 
+@dataclass(frozen=True)
+class Part:
+    """A step, or a part of one that had to be divided: the states around it, the motion and the drive in between."""
+
+    before: State
+    after: State
+    motion: Motion
+    drive: DriveState
+    coefficients: StepCoefficients
+
+
 class Stepper:
     """Advances a `System` by generalised-alpha steps; one factorisation a step is enough but for violent motion.
 
@@ -41,7 +56,7 @@ class Stepper:
         self._factors: BandFactors | None = None
         corners = system.nodes[system.mesh.elements]
         self._length = float(np.ptp(corners, axis=1).max(axis=1).min())
-        self._change: np.ndarray | None = None
+        self._jerk: np.ndarray | None = None
         self._stress: np.ndarray | None = None
         self.iterations = self.factorisations = 0
 
@@ -57,18 +72,36 @@ class Stepper:
         self.factorisations += 1
         return self._factors
 
+    def follow(
+        self, state: State, drive: DriveState, c: StepCoefficients, halvings: int = _MOST_HALVINGS
+    ) -> list[Part]:
+        """Make a step, in as few parts as it can be followed in; the drive's contraction holds throughout.
+
+        Raises SimulationError where even the smallest part fails.
+        """
+        try:
+            after, motion = self.step(state, drive, c)
+        except SimulationError:
+            if halvings == 0:
+                raise
+            half, start = c.halved(), drive.time - c.at
+            first = self.follow(state, replace(drive, time=start + half.at), half, halvings - 1)
+            later = replace(drive, time=start + half.step + half.at)
+            return first + self.follow(first[-1].after, later, half, halvings - 1)
+        return [Part(state, after, motion, drive, c)]
+
     def step(self, state: State, drive: DriveState, c: StepCoefficients) -> tuple[State, Motion]:
         """The state after a step and the motion at which forces balance. Raises SimulationError when Newton fails."""
         memory = self.memory(state, c.at)
         kept = state.acceleration
-        guesses = [kept] if self._change is None else [kept + self._change, kept]
+        guesses = [kept] if self._jerk is None else [kept + c.step * self._jerk, kept]
         for guess in guesses:
             acceleration = self._balance(state, drive, c, memory, guess)
             if acceleration is not None:
                 break
         else:
             self._fail(drive)
-        self._change = acceleration - state.acceleration
+        self._jerk = (acceleration - state.acceleration) / c.step
         motion = balance_motion(state, c, acceleration)
         self._stress = self.system.second_piola(motion, drive, memory)
         return self._end(state, c, acceleration), motion
@@ -106,8 +139,9 @@ class Stepper:
 
     def _fail(self, drive: DriveState) -> None:
         raise SimulationError(
-            f"the motion could not be followed beyond t = {drive.time:.4f} s; expected parameters at which the body "
-            "stays whole: move extreme values back into their plausible range or raise numerics.steps_per_second"
+            f"the motion could not be followed beyond t = {drive.time:.4f} s, not even with steps divided by "
+            f"{2**_MOST_HALVINGS}; expected parameters at which the body stays whole: move extreme values back into "
+            "their plausible range or raise numerics.steps_per_second"
         )
 
     def _end(self, state: State, c: StepCoefficients, acceleration: np.ndarray) -> State:
@@ -127,19 +161,16 @@ class Stepper:
 
     def step_slopes(
         self,
-        state: State,
-        after: State,
-        motion: Motion,
-        drive: DriveState,
-        c: StepCoefficients,
+        part: Part,
         slopes: StateSlopes,
         parameters: list[ResidualSlope],
         contraction_slopes: np.ndarray,
     ) -> StateSlopes:
-        """Derivatives of `after`, exact to the tolerance of the step: one factorisation serves every column.
+        """Derivatives of the state after a part, exact to the tolerance of the step: one factorisation serves all.
 
-        slopes: derivatives of `state`; contraction_slopes: of the contraction at the balance, [columns, 2].
+        slopes: derivatives of the state before; contraction_slopes: of the contraction at the balance, [columns, muscles].
         """
+        state, motion, drive, c = part.before, part.motion, part.drive, part.coefficients
         line = self.system.linearise(motion, drive, self.memory(state, c.at))
         shift = slopes.position + c.position_v * slopes.velocity + c.position_a * slopes.acceleration
         rate = slopes.velocity + c.velocity_a * slopes.acceleration
@@ -148,7 +179,7 @@ class Stepper:
         instead = shift / c.position
         inertia = c.acceleration_a * slopes.acceleration - c.acceleration * instead
         right = line.along(None, rate - c.velocity * instead, inertia, stress)
-        right += (contraction_slopes @ line.by_contraction(drive).reshape(2, -1)).reshape(right.shape)
+        right += np.tensordot(contraction_slopes, line.by_contraction(drive), 1)
         for column, parameter in enumerate(parameters):
             parameter.add(motion, drive, line, state, c.at, right[column])
         self.system.held_to_zero(right)
@@ -162,7 +193,7 @@ class Stepper:
             acceleration,
         )
         if slopes.branch is not None:
-            self._advance_branch_slopes(state, after, c, slopes, parameters, out)
+            self._advance_branch_slopes(state, part.after, c, slopes, parameters, out)
         return out
 
     def _history_stress(self, line: Linearisation, slopes: StateSlopes, at: float) -> np.ndarray:

@@ -168,6 +168,13 @@ class Linearisation:
             law.add_directions(share * shift, share * rate, share * acceleration, out)
         return self.system.held_to_zero(out)
 
+    def force_along(self, shift: np.ndarray) -> np.ndarray:
+        """How the surroundings resist displacements [columns, nodes, 2]: less the change of the force effects."""
+        out, still = np.zeros_like(shift), np.zeros_like(shift)
+        for law in self.system.forces:
+            law.add_directions(self._load_factor * shift, still, still, out)
+        return out
+
     def pulled_back(self, weights: np.ndarray) -> np.ndarray:
         """Transposed derivatives by position, velocity and acceleration times weights [nodes, 2], [3, nodes, 2]."""
         s, nothing = self.system.solid, np.zeros_like(weights)

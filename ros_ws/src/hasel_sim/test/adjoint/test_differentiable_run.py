@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 import torch
 from hasel_sim.adjoint import DifferentiableRun
+from hasel_sim.adjoint.trajectory import follow
 from hasel_sim.errors import ModelError, SimulationError
+from hasel_sim.prepared_run import PreparedRun
 from hasel_sim.simulate import simulate
 
 EFFECTS = ("quadratic_drag", "soft_modulus", "viscoelastic_creep", "muscle_asymmetry", "marker_offset")
@@ -139,3 +141,17 @@ def test_what_does_not_fit_is_refused(swimmer, boxes):
         run.angle(torch.zeros((3, 2), dtype=torch.float64))
     with pytest.raises(ModelError, match="crosses the spine"):
         run.angle(outline=torch.tensor([0.3, -1.0, 0.0, 0.0, 0.0, 0.0], dtype=torch.float64))
+
+
+def test_a_divided_step_is_gone_back_through_too(swimmer, boxes):
+    """A contraction of 0.2 at once, which 240 steps a second cannot follow whole: as the forward sensitivities."""
+    model = swimmer.with_values({"amplitude_5500": 0.2, "slope": 1e3}).with_numerics(tolerance_m=1e-11)
+    run, names = boxes(duration=0.34), ["amplitude_5500"]
+    differentiable = DifferentiableRun(model, run, names)
+    trajectory = follow(PreparedRun(model, run), differentiable.contraction().numpy())
+    assert any(len(parts) > 1 for parts in trajectory.steps)
+    values = differentiable.values().requires_grad_()
+    weights = _weights(len(run.time))
+    (differentiable.angle(values=values) * weights).sum().backward()
+    expected = weights.numpy() @ simulate(model, run, names).slopes
+    assert values.grad.numpy() == pytest.approx(expected, rel=1e-6)

@@ -1,8 +1,14 @@
 """Static equilibrium: its derivatives and what it says when there is none."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from hasel_sim.effects.base import EffectParameter, MaterialEffect
+from hasel_sim.effects.registry import find_effects
 from hasel_sim.errors import SimulationError
+from hasel_sim.mesh.mesh import Region
+from hasel_sim.model import Parameter
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 
@@ -71,3 +77,119 @@ def test_a_load_beyond_all_strength_is_reported(rectangle):
     model = rectangle(youngs_modulus=1e-2, gravity=1e4)
     with pytest.raises(SimulationError, match=r"static equilibrium.*check stiffness"):
         _start(model)
+
+
+def test_at_rest_means_in_the_equilibrium_of_all_that_acts(rectangle):
+    """A clamped beam under its weight, bent when relaxed, with a load at its tip, starts where it stays."""
+    model = rectangle(
+        youngs_modulus=1e5,
+        height=0.02,
+        gravity=5.0,
+        effects=find_effects(("payload", "pre_bend")),
+        values={"payload.mass": 0.3, "pre_bend.curvature": 1.0},
+        tolerance_m=1e-12,
+    )
+    found = simulate(model, Run("rest", np.arange(13) / 120)).sin_theta
+    assert abs(found[0]) > 0.05
+    assert np.ptp(found) < 1e-8
+
+
+class Pretension(MaterialEffect):
+    """Muscles that pull when relaxed."""
+
+    id = "pretension"
+    physics = "The upper film was glued on under tension."
+    equation = "tension += p"
+    parameters = (EffectParameter("stress", "p", "Pa", 0.0, 0.0, 1e4, 300.0),)
+    regions = (Region.UPPER_MUSCLE,)
+
+    def first_piola(self, at, p):
+        """Along the fibres."""
+        return at.along_fibre(np.full(len(at.deformation), p.stress))
+
+
+def test_an_unequal_pretension_of_the_muscles_bends_the_body_at_rest(swimmer):
+    """The body starts bent and stays so."""
+    stress = Parameter("pretension.stress", 300.0, "Pa", 0.0, 1e4)
+    model = swimmer.with_numerics(mesh_density=0.5, tolerance_m=1e-11)
+    model = replace(
+        model, effects=(Pretension(),), parameters={**model.parameters, "pretension.stress": stress}
+    )
+    found = simulate(model, Run("rest", np.arange(13) / 120)).sin_theta
+    assert found[0] > 0.02
+    assert np.ptp(found) < 1e-8
+
+
+FREE = {
+    "payload.mass": 0.02,
+    "pre_bend.curvature": 1.0,
+    "gravity_tilt.tilt": 0.05,
+    "tether.stiffness": 5.0,
+    "tether.position": 0.06,
+}
+
+
+def _free(swimmer, *without):
+    values = {name: value for name, value in FREE.items() if name.partition(".")[0] not in without}
+    effects = {name.partition(".")[0]: None for name in values}
+    return (
+        swimmer.with_numerics(mesh_density=0.5, tolerance_m=1e-12).with_effects(*effects).with_values(values)
+    )
+
+
+def test_a_free_body_that_nothing_holds_sets_off_without_bending_anew(swimmer):
+    """On a tilted plane it slides from the shape that it has anyhow."""
+    level, tilted = (_free(swimmer, "tether", "payload", *more) for more in (("gravity_tilt",), ()))
+    found = simulate(tilted, Run("rest", np.arange(13) / 120), keep_shapes=True)
+    expected = simulate(level, Run("rest", np.arange(13) / 120)).sin_theta
+    assert expected[0] > 0.02
+    assert found.sin_theta == pytest.approx(expected, abs=1e-6)
+    assert np.mean(found.shapes[-1][:, 1] - found.shapes[0][:, 1]) == pytest.approx(
+        0.5 * 9.81 * np.sin(0.05) * 0.1**2, rel=1e-3
+    )
+
+
+def test_a_tether_holds_a_free_body_where_its_spring_is_slack(swimmer):
+    """The bent body rests with the tethered point on the line, instead of being pulled there."""
+    found = simulate(_free(swimmer, "gravity_tilt"), Run("rest", np.arange(61) / 120)).sin_theta
+    assert found[0] > 0.02
+    assert np.ptp(found) < 1e-8
+
+
+@pytest.mark.parametrize("without", [(), ("tether",), ("gravity_tilt",)])
+def test_the_slopes_of_a_free_body_at_rest_agree_with_differences(without, swimmer):
+    """By every parameter, to 1e-6, in the first frames: the start and what it starts."""
+    model, run = _free(swimmer, *without), Run("rest", np.arange(4) / 120)
+    names = [name for name in FREE if name in model.parameters]
+    slopes = simulate(model, run, names).slopes
+    for column, name in enumerate(names):
+        value = model.parameters[name].value
+        step = 1e-4 * max(abs(value), 1e-2)
+        above, below = (
+            simulate(model.with_values({name: value + sign * step}), run).sin_theta for sign in (1, -1)
+        )
+        expected = (above - below) / (2 * step)
+        assert slopes[:, column] == pytest.approx(expected, abs=1e-6 * np.abs(expected).max() + 1e-9), name
+
+
+@pytest.mark.parametrize("poissons_ratio", [0.3, 0.499])
+def test_a_trial_shape_that_cannot_be_solved_halves_the_load(
+    poissons_ratio, rectangle, tip_force, equilibrium_of
+):
+    """A slender cantilever under three times E I / L^2, fully integrated: the tip is where the elastica puts it."""
+    length, height, stiffness = 0.1, 0.0005, 1e7
+    bending = stiffness / (1 - poissons_ratio**2) * height**3 / 12
+    model = rectangle(
+        length,
+        height,
+        youngs_modulus=stiffness,
+        poissons_ratio=poissons_ratio,
+        effects=(tip_force,),
+        values={"tip_force.force": 3 * bending / length**2},
+        quadrature_order=3,
+    )
+    shift, mesh = equilibrium_of(model)
+    tip = shift[np.argmax(mesh.nodes[:, 0])]
+    # Mattiasson, Int. J. Numer. Meth. Eng. 17 (1981) 145: w/L = 0.60325, u/L = 0.25442
+    assert tip[1] / length == pytest.approx(0.60325, abs=0.03)
+    assert -tip[0] / length == pytest.approx(0.25442, abs=0.03)

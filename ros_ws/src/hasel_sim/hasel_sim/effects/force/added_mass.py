@@ -14,7 +14,7 @@ class AddedMass(ForceEffect):
     physics = (
         "Accelerating the skin accelerates the fluid before it, as if the skin were heavier along its normal."
     )
-    equation = "f = -m_a (a.n) n per skin length and depth, n its normal at rest"
+    equation = "f = -m_a (a.n) n per skin length and depth, n its present normal"
     parameters = (
         EffectParameter(
             "added_mass",
@@ -34,9 +34,9 @@ class AddedMass(ForceEffect):
     )
     citation = "Newman, Marine Hydrodynamics (1977), section 4.15"
     sites = "skin"
-    depends_on = ("acceleration",)
+    depends_on = ("acceleration", "tangent")
 
     def force(self, at: SiteState, p: SimpleNamespace) -> np.ndarray:
         """Force per skin length [N/m^2], [n, 2]."""
-        normal = at.rest_normal
+        normal = at.normal
         return -p.added_mass * np.sum(at.acceleration * normal, axis=1)[:, None] * normal

@@ -18,7 +18,7 @@ class QuadraticDrag(ForceEffect):
         "Fluid separates from the moving skin and presses against its normal velocity, in proportion to its "
         "square."
     )
-    equation = "f = -1/2 rho_f C_d abs(v.n) (v.n) n per skin length and depth, n its normal at rest, rho_f = 920 kg/m^3"
+    equation = "f = -1/2 rho_f C_d abs(v.n) (v.n) n per skin length and depth, n its present normal, rho_f = 920 kg/m^3"
     parameters = (
         EffectParameter(
             "coefficient",
@@ -40,10 +40,10 @@ class QuadraticDrag(ForceEffect):
     )
     citation = "Morison, O'Brien, Johnson, Schaaf, Petroleum Transactions AIME 189 (1950) 149"
     sites = "skin"
-    depends_on = ("velocity",)
+    depends_on = ("velocity", "tangent")
 
     def force(self, at: SiteState, p: SimpleNamespace) -> np.ndarray:
         """Force per skin length [N/m^2], [n, 2]."""
-        normal = at.rest_normal
+        normal = at.normal
         speed = np.sum(at.velocity * normal, axis=1)
         return (-0.5 * FLUID_DENSITY * p.coefficient * np.abs(speed) * speed)[:, None] * normal
