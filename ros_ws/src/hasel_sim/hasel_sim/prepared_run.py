@@ -42,8 +42,8 @@ class PreparedRun:
             )
         if run.schedule is not None and frames[-1] <= run.start:
             raise SimulationError(
-                f"run '{run.name}' is driven but has no frame after its start at {run.start:g} s; expected at least one "
-                "more frame to see what the drive does"
+                f"run '{run.name}' is driven but has no frame after its start at {run.start:g} s; expected at least "
+                "one more frame to see what the drive does"
             )
         self._skipped = len(run.time) - len(frames)
         self.plan: StepPlan = plan_steps(

@@ -24,7 +24,7 @@ def reverse_step(
     weights: StateWeights,
     parameters: list[ResidualSlope],
 ) -> tuple[StateWeights, np.ndarray, np.ndarray]:
-    """Weights of the state before, of the contraction [muscles] and of the parameters [n], from those of the state after."""
+    """Weights of the state before, the contraction [muscles] and the parameters [n], from those of the state after."""
     before, after, motion, drive, c = part.before, part.after, part.motion, part.drive, part.coefficients
     system, solid = stepper.system, stepper.system.solid
     line = system.linearise(motion, drive, stepper.memory(before, c.at))

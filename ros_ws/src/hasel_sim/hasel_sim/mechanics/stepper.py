@@ -168,7 +168,7 @@ class Stepper:
     ) -> StateSlopes:
         """Derivatives of the state after a part, exact to the tolerance of the step: one factorisation serves all.
 
-        slopes: derivatives of the state before; contraction_slopes: of the contraction at the balance, [columns, muscles].
+        slopes: derivatives of the state before; contraction_slopes: of the contraction, [columns, muscles].
         """
         state, motion, drive, c = part.before, part.motion, part.drive, part.coefficients
         line = self.system.linearise(motion, drive, self.memory(state, c.at))

@@ -222,7 +222,7 @@ def test_another_body_starts_from_rest(swimmer, rectangle):
 
 def test_a_released_beam_swings(rectangle):
     """With a load factor of 0 the beam starts straight and falls under its weight."""
-    simulator = LiveSimulator(rectangle(gravity=9.81))
+    simulator = LiveSimulator(rectangle(gravity=9.81), load_factor=0.0)
     stamps, _ = frames(2.0, 0.2)
     heard = list(live(simulator, stamps, np.zeros((len(stamps), 2))).values())
     assert heard[0] == pytest.approx(0.0, abs=1e-9)
