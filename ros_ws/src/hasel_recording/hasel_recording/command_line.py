@@ -6,9 +6,11 @@ import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from hasel_recording.column_map import parse_map
 from hasel_recording.convert import convert
 from hasel_recording.errors import RecordingError, RecordingWarning
-from hasel_recording.reading import read_recording
+from hasel_recording.reading import drive_of_each, read_recording
+from hasel_recording.recording import Recording
 
 
 def convert_main(arguments: Sequence[str] | None = None) -> int:
@@ -27,43 +29,82 @@ def convert_main(arguments: Sequence[str] | None = None) -> int:
         help="file or folder to write (default: beside the recording)",
     )
     parser.add_argument("-f", "--force", action="store_true", help="replace files that exist")
+    add_reading_options(parser)
     options = parser.parse_args(arguments)
     if len(options.recordings) > 1 and options.output is not None and options.output.suffix:
         parser.error(
             f"--output {options.output} is one file for {len(options.recordings)} recordings: name a folder"
         )
-    return _for_each(
-        options.recordings, lambda path: f"{path} -> {convert(path, options.output, replace=options.force)}"
-    )
+
+    def work(path: Path, drive: Path | None) -> str:
+        target = convert(path, options.output, replace=options.force, mapping=options.map, drive=drive)
+        return f"{path} -> {target}"
+
+    return _for_each(options, work)
 
 
 def info_main(arguments: Sequence[str] | None = None) -> int:
     """Describe the recordings named on the command line; return an exit code."""
     parser = argparse.ArgumentParser(prog="info", description="Say what a recording holds.")
     parser.add_argument("recordings", metavar="RECORDING", nargs="+", type=Path, help="a .csv or .mcap file")
-    return _for_each(parser.parse_args(arguments).recordings, _description)
+    add_reading_options(parser)
+    options = parser.parse_args(arguments)
+    return _for_each(options, lambda path, drive: _description(read_recording(path, options.map, drive)))
 
 
-def _description(path: Path) -> str:
-    recording = read_recording(path)
-    lines = [str(recording), *(f"    {key}: {value}" for key, value in recording.metadata.items())]
+def add_reading_options(parser: argparse.ArgumentParser) -> None:
+    """Add --map and --drive."""
+    parser.add_argument(
+        "--map",
+        metavar="NAME=COLUMN,…",
+        type=_mapping,
+        default={},
+        help="names and units of your own CSV columns, such as time=t,sin_theta=angle_deg,voltage_upper=U1_kV",
+    )
+    parser.add_argument(
+        "--drive",
+        metavar="FILE",
+        nargs="+",
+        type=Path,
+        default=[],
+        help="the drive as a file of its own: one for each recording in their order, or one for all",
+    )
+
+
+def _mapping(text: str) -> dict[str, str]:
+    try:
+        return parse_map(text)
+    except RecordingError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def _description(recording: Recording) -> str:
+    lines = [str(recording), *(f"    {sentence}" for sentence in recording.understood)]
+    lines += [*(f"    {key}: {value}" for key, value in recording.metadata.items())]
+    if recording.driven:
+        lines.append(f"    driven by {', '.join(map(str, recording.channels))}")
     if recording.markers is not None:
-        lines.append(f"    markers in {recording.marker_unit}")
+        lines.append(f"    markers {', '.join(recording.marker_names)} in {recording.marker_unit}")
     if recording.drive_time_s is not None:
-        lines.append(f"    voltage changes at {len(recording.drive_time_s)} instants, not all on frames")
+        lines.append(f"    drive changes at {len(recording.drive_time_s)} instants, not all on frames")
     if recording.simulated_time_s is not None:
         lines.append(f"    simulated angle at {len(recording.simulated_time_s)} instants")
     return "\n".join(lines)
 
 
-def _for_each(paths: Sequence[Path], work: Callable[[Path], str]) -> int:
-    """Print the work's result for each path; errors and warnings go to stderr, one line each."""
+def _for_each(options: argparse.Namespace, work: Callable[[Path, Path | None], str]) -> int:
+    """Print the work's result for each recording; errors and warnings go to stderr, one line each."""
+    try:
+        drives = drive_of_each(options.recordings, options.drive)
+    except RecordingError as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 1
     failed = False
-    for path in paths:
+    for path, drive in zip(options.recordings, drives, strict=True):
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", RecordingWarning)
             try:
-                print(work(path))
+                print(work(path, drive))
             except RecordingError as error:
                 failed = True
                 print(f"error: {error}", file=sys.stderr)

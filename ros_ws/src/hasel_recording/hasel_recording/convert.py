@@ -1,7 +1,9 @@
 """Turn a recording of one kind into the other, without losing a digit."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
+from hasel_recording.csv_writer import drive_path
 from hasel_recording.errors import RecordingError
 from hasel_recording.reading import read_recording, write_recording
 
@@ -20,15 +22,26 @@ def target_path(source: Path, output: Path | None = None) -> Path:
     return folder / (source.stem + suffix)
 
 
-def convert(source: Path, output: Path | None = None, *, replace: bool = False) -> Path:
+def convert(
+    source: Path,
+    output: Path | None = None,
+    *,
+    replace: bool = False,
+    mapping: Mapping[str, str] | None = None,
+    drive: Path | None = None,
+) -> Path:
     """Convert CSV to MCAP or MCAP to CSV and return the new file; raises RecordingError.
 
-    An existing file is replaced only when `replace` is set.
+    An existing file is replaced only when `replace` is set. mapping, drive: as of read_recording.
     """
-    recording = read_recording(source)
+    recording = read_recording(source, mapping, drive)
     target = target_path(source, output)
-    if target.exists() and not replace:
-        raise RecordingError(f"{target} exists already: give --force to replace it, or another --output.")
+    written = [target]
+    if target.suffix.lower() == ".csv" and recording.drive_time_s is not None:
+        written.append(drive_path(target))
+    for path in written:
+        if path.exists() and not replace:
+            raise RecordingError(f"{path} exists already: give --force to replace it, or another --output.")
     target.parent.mkdir(parents=True, exist_ok=True)
     write_recording(recording, target)
     return target

@@ -1,72 +1,60 @@
 """Read a run from the messages of an MCAP file."""
 
 import warnings
-from itertools import compress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from hasel_recording.errors import RecordingError, RecordingWarning, nearest
+from hasel_recording.mcap_drive import StampedDrive, stamped_drive, stamped_messages
 from hasel_recording.mcap_file import McapFile, read_file
 from hasel_recording.mcap_recorder import HEADER_RECORD, TIME_RECORD
-from hasel_recording.message_fields import nanoseconds
-from hasel_recording.recording import Recording
+from hasel_recording.recording import MARKER_NAMES, Recording
+from hasel_recording.stand_in import as_meant
 from hasel_recording.topics import MARKERS, MEASURED, SIMULATED, STATE, TOPIC_TYPES
 
 
 def read_mcap(path: Path) -> Recording:
     """Read one run, sampled at the stamps of the measured angle.
 
-    Frames before the first supply state, whose voltage is not known, are left out with a RecordingWarning.
+    Frames before the first known drive are left out with a RecordingWarning.
     """
     file = read_file(path)
-    measured, frame_ns = _messages(file, MEASURED)
+    measured, frame_ns = stamped_messages(file, MEASURED)
     if not measured:
         raise file.missing(MEASURED)
-    states, state_ns = _messages(file, STATE)
-    if not states and nearest(STATE, set(file.messages) - set(TOPIC_TYPES)):
+    drive = stamped_drive(file)
+    if drive is None and nearest(STATE, set(file.messages) - set(TOPIC_TYPES)):
         raise file.missing(STATE)
-    first_ns = int(np.concatenate([frame_ns[:1], state_ns[:1]]).min())
-    origin = int(file.metadata.get(TIME_RECORD, {}).get("time_origin_ns", first_ns))
-    driven = frame_ns >= state_ns[0] if states else np.ones(len(frame_ns), dtype=bool)
-    _warn_of_undriven(path, driven)
-    markers, unit = _markers(file, measured, frame_ns)
-    simulated, simulated_ns = _messages(file, SIMULATED)
+    driven = np.ones(len(frame_ns), dtype=bool) if drive is None else frame_ns >= drive.stamps[0]
+    _warn_of_undriven(path, driven, drive)
+    origin = time_origin(file, frame_ns[:1] if drive is None else np.append(frame_ns[:1], drive.stamps[:1]))
+    markers, unit, names = _markers(file, measured, frame_ns)
+    simulated, simulated_ns = stamped_messages(file, SIMULATED)
+    metadata = file.metadata.get(HEADER_RECORD, {})
     return Recording(
         name=path.stem,
         path=path,
-        metadata=file.metadata.get(HEADER_RECORD, {}),
-        time_s=_seconds(frame_ns, origin)[driven],
+        metadata=metadata,
+        time_s=seconds(frame_ns, origin)[driven],
         sin_theta=_angles(measured)[driven],
         markers=None if markers is None else markers[driven],
         marker_unit=unit,
-        **_drive(path, states, state_ns, frame_ns[driven], origin),
-        simulated_time_s=_seconds(simulated_ns, origin) if simulated else None,
+        marker_names=names,
+        **_drive(path, metadata, drive, frame_ns[driven], origin),
+        simulated_time_s=seconds(simulated_ns, origin) if simulated else None,
         simulated_sin_theta=_angles(simulated) if simulated else None,
     )
 
 
-def _messages(file: McapFile, topic: str) -> tuple[list[Any], np.ndarray]:
-    """Return a topic's messages and their stamps [ns], which must increase.
-
-    A supply may repeat its state with the same stamp; the last one counts.
-    """
-    messages = file.decoded(topic, TOPIC_TYPES[topic])
-    stamps = np.array([nanoseconds(message.header.stamp) for message in messages], dtype=np.int64)
-    if topic == STATE:
-        last = np.append(np.diff(stamps) != 0, True)[: len(stamps)]
-        messages, stamps = list(compress(messages, last)), stamps[last]
-    late = np.flatnonzero(np.diff(stamps) <= 0)
-    if late.size:
-        raise RecordingError(
-            f"{file.path}: message {late[0] + 2} on {topic} is not later than the one before; "
-            "was the topic published by two nodes, or the clock set during the run?"
-        )
-    return messages, stamps
+def time_origin(file: McapFile, stamps: np.ndarray) -> int:
+    """Return the stamp [ns] that is time 0 of a run: what the file says, else the earliest of `stamps`."""
+    return int(file.metadata.get(TIME_RECORD, {}).get("time_origin_ns", stamps.min()))
 
 
-def _seconds(stamps_ns: np.ndarray, origin_ns: int) -> np.ndarray:
+def seconds(stamps_ns: np.ndarray, origin_ns: int) -> np.ndarray:
+    """Return stamps [ns] as times [s] after the origin."""
     return (stamps_ns - origin_ns) / 1e9
 
 
@@ -74,50 +62,62 @@ def _angles(messages: list[Any]) -> np.ndarray:
     return np.array([message.sin_theta if message.valid else np.nan for message in messages])
 
 
-def _warn_of_undriven(path: Path, driven: np.ndarray) -> None:
+def _warn_of_undriven(path: Path, driven: np.ndarray, drive: StampedDrive | None) -> None:
     if not driven.any():
         raise RecordingError(
-            f"{path}: every frame comes before the first {STATE}: start the driver before the run."
+            f"{path}: every frame comes before the first {drive.topic} whose values are known: "
+            "start the driver before the run."
         )
     if not driven.all():
         warnings.warn(
-            f"{path}: {np.count_nonzero(~driven)} frames before the first {STATE} were left out.",
+            f"{path}: {np.count_nonzero(~driven)} frames before the first {drive.topic} were left out.",
             RecordingWarning,
             stacklevel=4,
         )
 
 
 def _drive(
-    path: Path, states: list[Any], state_ns: np.ndarray, frame_ns: np.ndarray, origin: int
-) -> dict[str, np.ndarray]:
-    """Return the voltage at the frames and, where it switches between frames, the instants of switching."""
-    if not states:
+    path: Path, metadata: dict[str, str], drive: StampedDrive | None, frame_ns: np.ndarray, origin: int
+) -> dict[str, Any]:
+    """Return the drive at the frames and, where it switches between frames, the instants of switching."""
+    if drive is None:
         return {}
-    voltage = np.array([state.commanded_voltage for state in states], dtype=float)
-    bad = np.flatnonzero(~np.isfinite(voltage).all(axis=1))
-    if bad.size:
-        raise RecordingError(
-            f"{path}: message {bad[0] + 1} on {STATE} commands {voltage[bad[0]].tolist()} V, "
-            "but two numbers are expected: was the supply in a fault? Record the run again."
-        )
-    changes = np.concatenate([[0], 1 + np.flatnonzero(np.any(np.diff(voltage, axis=0) != 0, axis=1))])
-    sampled = {"drive_signal": voltage[np.searchsorted(state_ns, frame_ns, side="right") - 1]}
-    if np.isin(state_ns[changes], frame_ns).all():
+    channels, values, stand_in = as_meant(drive.channels, drive.values, metadata, str(path))
+    drive = StampedDrive(drive.topic, channels, drive.stamps, values)
+    sampled = {
+        "channels": channels,
+        "drive_signal": drive.at(frame_ns),
+        "understood": (stand_in,) if stand_in else (),
+    }
+    changes = drive.changes()
+    if np.isin(drive.stamps[changes], frame_ns).all():
         return sampled
-    return sampled | {"drive_time_s": _seconds(state_ns[changes], origin), "drive_values": voltage[changes]}
+    return sampled | {
+        "drive_time_s": seconds(drive.stamps[changes], origin),
+        "drive_values": drive.values[changes],
+    }
 
 
-def _markers(file: McapFile, measured: list[Any], frame_ns: np.ndarray) -> tuple[np.ndarray | None, str]:
-    """Return the markers [n, 3, 2] and their unit: metres from their own topic, else the angle's pixels."""
-    poses, pose_ns = _messages(file, MARKERS)
+def _markers(
+    file: McapFile, measured: list[Any], frame_ns: np.ndarray
+) -> tuple[np.ndarray | None, str, tuple[str, ...]]:
+    """Return the markers [n, m, 2], their unit, metres before pixels, and their names."""
+    poses, pose_ns = stamped_messages(file, MARKERS)
     if poses:
         at_frame = {
             stamp: [[p.position.x, p.position.y] for p in m.poses]
             for stamp, m in zip(pose_ns, poses, strict=True)
         }
-        lost = [[np.nan, np.nan]] * 3
-        return np.array([at_frame.get(stamp, lost) for stamp in frame_ns]), "m"
-    if not len(measured[0].marker_x):
-        return None, "m"
-    pixels = np.array([[m.marker_x, m.marker_y] for m in measured]).transpose(0, 2, 1)
-    return (pixels, "px") if np.isfinite(pixels).any() else (None, "m")
+        lost = [[np.nan, np.nan]] * len(MARKER_NAMES)
+        return np.array([at_frame.get(stamp, lost) for stamp in frame_ns]), "m", MARKER_NAMES
+    names = tuple(getattr(measured[0], "marker_name", MARKER_NAMES))
+    for unit, fields in (("m", ("marker_x_m", "marker_y_m")), ("px", ("marker_x", "marker_y"))):
+        coordinates = [[getattr(message, field, ()) for field in fields] for message in measured]
+        if {len(axis) for pair in coordinates for axis in pair} - {len(names)}:
+            continue
+        positions = (
+            np.array(coordinates, dtype=float).reshape(len(measured), 2, len(names)).transpose(0, 2, 1)
+        )
+        if np.isfinite(positions).any():
+            return positions, unit, names
+    return None, "m", MARKER_NAMES

@@ -1,27 +1,35 @@
 """Read and write recordings of either kind."""
 
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from hasel_recording.csv_reader import read_csv
 from hasel_recording.csv_writer import write_csv
+from hasel_recording.drive_file import with_drive
 from hasel_recording.errors import RecordingError, RecordingWarning, nearest
 from hasel_recording.mcap_reader import read_mcap
 from hasel_recording.mcap_writer import write_mcap
-from hasel_recording.recording import Recording
+from hasel_recording.recording import DRIVE_KEY, Recording
+from hasel_recording.switch_times import with_placed_switches
 
-READERS = {".csv": read_csv, ".mcap": read_mcap}
+SUFFIXES = (".csv", ".mcap")
 WRITERS = {".csv": write_csv, ".mcap": write_mcap}
 
 
-def read_recording(path: str | Path) -> Recording:
-    """Read a `.csv` or `.mcap` file, or the folder that `ros2 bag record` made; raises RecordingError."""
+def read_recording(
+    path: str | Path, mapping: Mapping[str, str] | None = None, drive: str | Path | None = None
+) -> Recording:
+    """Read a `.csv` or `.mcap` file, or the folder that `ros2 bag record` made; raises RecordingError.
+
+    mapping: {name that is known here: the file's own column} for CSV files, as of column_map.parse_map.
+    drive: the file that holds the drive, instead of what the recording or its header line `drive` says.
+    """
     path = Path(path)
     if path.is_dir():
         path = _only_mcap(path)
-    reader = READERS.get(path.suffix.lower())
-    if reader is None:
+    if path.suffix.lower() not in SUFFIXES:
         raise RecordingError(f"{path} is not a recording: give a .mcap or a .csv file.")
     if not path.is_file():
         folder = path.parent
@@ -29,20 +37,38 @@ def read_recording(path: str | Path) -> Recording:
         hint = f"did you mean {folder / near}?" if near else "check the name."
         raise RecordingError(f"There is no file {path}: {hint}")
     try:
-        return reader(path)
+        return _read(path, mapping, None if drive is None else Path(drive))
     except OSError as error:
         raise RecordingError(f"{path} cannot be read ({error.strerror}): check its permissions.") from None
 
 
-def read_recordings(paths: Iterable[str | Path]) -> list[Recording]:
+def _read(path: Path, mapping: Mapping[str, str] | None, drive: Path | None) -> Recording:
+    in_rows = path.suffix.lower() == ".csv"
+    recording = read_csv(path, mapping, drive is None) if in_rows else read_mcap(path)
+    if drive is None and DRIVE_KEY in recording.metadata:
+        drive = path.parent / recording.metadata[DRIVE_KEY]
+        others = {key: value for key, value in recording.metadata.items() if key != DRIVE_KEY}
+        recording = replace(recording, metadata=others)
+    if drive is not None:
+        return with_drive(recording, drive, mapping)
+    return with_placed_switches(recording) if in_rows else recording
+
+
+def read_recordings(
+    paths: Iterable[str | Path],
+    mapping: Mapping[str, str] | None = None,
+    drives: Sequence[str | Path | None] | None = None,
+) -> list[Recording]:
     """Read all that can be read; the others are skipped, each with a RecordingWarning.
 
+    mapping: as of read_recording. drives: one file per recording, or one for all of them.
     Raises RecordingError when none can be read.
     """
     recordings, errors = [], []
-    for path in paths:
+    paths = list(paths)
+    for path, drive in zip(paths, drive_of_each(paths, drives), strict=True):
         try:
-            recordings.append(read_recording(path))
+            recordings.append(read_recording(path, mapping, drive))
         except RecordingError as error:
             errors.append(str(error))
     if not recordings:
@@ -52,6 +78,20 @@ def read_recordings(paths: Iterable[str | Path]) -> list[Recording]:
     for error in errors:
         warnings.warn(f"Skipped: {error}", RecordingWarning, stacklevel=2)
     return recordings
+
+
+def drive_of_each(
+    paths: Sequence[str | Path], drives: Sequence[str | Path | None] | None
+) -> Sequence[str | Path | None]:
+    """Return the drive file of each recording, None where it has its own; raises RecordingError for a wrong number."""
+    if not drives:
+        return [None] * len(paths)
+    if len(drives) not in (1, len(paths)):
+        raise RecordingError(
+            f"{len(drives)} drive files were given for {len(paths)} recordings: give one for each, one for all, "
+            "or name each in its recording's header (#drive: FILE)."
+        )
+    return drives if len(drives) == len(paths) else list(drives) * len(paths)
 
 
 def write_recording(recording: Recording, path: str | Path) -> None:

@@ -9,6 +9,7 @@ from hasel_recording.drive_channel import HASEL_PAIR, DriveChannel
 from hasel_recording.errors import RecordingError
 
 MARKER_NAMES = ("head", "middle", "tail")
+DRIVE_KEY = "drive"  # header line that names the file of the drive, beside the recording
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,7 @@ class Recording:
     drive_time_s [k], drive_values [k, channels]: the exact instants at which the drive changed and what it
     changed to, where these do not all coincide with frames; otherwise None.
     simulated_time_s, simulated_sin_theta: [k], what a simulator said during the run; None when not recorded.
+    understood: what the reader made of columns that are not called as expected, one sentence each.
 
     Raises RecordingError where drive or markers do not have one column per name.
     """
@@ -44,6 +46,7 @@ class Recording:
     simulated_sin_theta: np.ndarray | None = None
     channels: tuple[DriveChannel, ...] = HASEL_PAIR
     marker_names: tuple[str, ...] = MARKER_NAMES
+    understood: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for signal in (self.drive_signal, self.drive_values):

@@ -2,13 +2,15 @@
 
 COMMAND = "/hasel/command"
 STATE = "/hasel/state"
+DRIVE = "/hasel/drive"  # of bodies that other channels than the supply's two voltages drive
 MEASURED = "/hasel/bending/measured"
 SIMULATED = "/hasel/bending/simulated"
-MARKERS = "/hasel/markers/measured"  # head, middle, tail [m]; the pixels are in MEASURED
+MARKERS = "/hasel/markers/measured"  # head, middle, tail [m] of recordings from before MEASURED had metres
 
 TOPIC_TYPES = {
     COMMAND: "hasel_interfaces/msg/Actuation",
     STATE: "hasel_interfaces/msg/SupplyState",
+    DRIVE: "hasel_interfaces/msg/DriveSignal",
     MEASURED: "hasel_interfaces/msg/BendingAngle",
     SIMULATED: "hasel_interfaces/msg/BendingAngle",
     MARKERS: "geometry_msgs/msg/PoseArray",

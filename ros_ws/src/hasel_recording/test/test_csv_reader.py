@@ -58,12 +58,29 @@ BAD_FILES = {
         "time_s,sin_teta\n0,0.1\n",
         r"'sin_teta' that is not known: did you mean 'sin_theta'",
     ),
-    "missing column": ("time_s,temperature\n0,21\n", r"no column 'sin_theta', only time_s, temperature"),
+    "missing column": (
+        "time_s,temperature\n0,21\n",
+        r"no column 'sin_theta' .*only time_s, temperature.*--map",
+    ),
     "no time": ("sin_theta\n0.1\n", r"no column 'time_s'"),
-    "one voltage": ("time_s,voltage_upper_v,sin_theta\n0,1,0.1\n", r"no column 'voltage_lower_v'"),
+    "unknown unit": (
+        "time_s,pressure_chamber_torr,sin_theta\n0,1,0.1\n",
+        r"pressure_chamber_torr: 'torr' is no unit of pressure that is known, expected pa, hpa, kpa",
+    ),
+    "no channel": ("time_s,pressure_mbar,sin_theta\n0,1,0.1\n", r"such as pressure_main_mbar"),
+    "angle of what": (
+        "time_s,angle_deg\n0,1\n",
+        r"is 'angle_deg' the bending angle\? Then call it theta_deg",
+    ),
+    "channel twice": (
+        "time_s,voltage_upper_v,voltage_upper_kv,sin_theta\n0,1,0.001,0.1\n",
+        r"voltage of upper \[V\] twice, as 'voltage_upper_v' and 'voltage_upper_kv'",
+    ),
     "one marker": ("time_s,head_x_m,sin_theta\n0,1,0.1\n", r"no column 'head_y_m'"),
     "twice": ("time_s,time_s,sin_theta\n0,0,0.1\n", r"'time_s' twice"),
-    "NaN": (GOOD + "0.1,3500,0,nan\n", r"line 3: sin_theta is nan"),
+    "no time in a row": (GOOD + ",3500,0,0.1\n", r"line 3: a blank cell in column time_s"),
+    "unknown voltage": (GOOD + "0.1,nan,0,0.1\n", r"line 3: voltage_upper_v is nan"),
+    "no angle at all": ("time_s,sin_theta\n0,nan\n0.1,\n", r"no frame with an angle"),
     "infinite": (GOOD + "0.1,inf,0,0.1\n", r"line 3: voltage_upper_v is inf"),
     "text": (
         "#model: beam\n" + GOOD + "\n0.1,3500,O,0.1\n",
@@ -78,7 +95,7 @@ BAD_FILES = {
     "binary": (b"\x89\xff\x00", r"not a text file"),
     "markers coincide": (
         "time_s,head_x_m,head_y_m,middle_x_m,middle_y_m,tail_x_m,tail_y_m\n0,0,0,0,0,1,0\n",
-        r"line 2: two markers coincide",
+        r"no frame with an angle",
     ),
 }
 
@@ -92,3 +109,49 @@ def test_bad_file_is_one_sentence(name, tmp_path):
     with pytest.raises(RecordingError, match=message) as caught:
         read_recording(path)
     assert "\n" not in str(caught.value)
+
+
+def test_semicolons_decimal_commas_and_units(tmp_path):
+    """A spreadsheet's export: semicolons, decimal commas, padded header lines, milliseconds, degrees and kV."""
+    path = tmp_path / "export.csv"
+    path.write_bytes(
+        "sep=;\n#model: swimmer;;;\n#Prüfer: Jörg;;;\ntime_ms;theta_deg;voltage_upper_kv;voltage_lower_kV\n"
+        "0;0;0;0\n8,5;30;-5,5;1,5\n".encode("latin-1")
+    )
+    run = read_recording(path)
+    assert run.metadata == {"model": "swimmer", "Prüfer": "Jörg"}
+    assert run.time_s == pytest.approx([0, 0.0085])
+    assert run.sin_theta == pytest.approx([0, 0.5])
+    assert run.voltage.tolist() == [[0, 0], [-5500, 1500]]
+    assert "cells are separated by semicolons" in run.understood
+
+
+def test_a_blank_or_nan_angle_is_a_missing_one(tmp_path):
+    """The frame stays with its drive, so that a switch in it is not moved."""
+    path = tmp_path / "blank.csv"
+    path.write_text("time_s,voltage_upper_v,sin_theta\n0,0,0.1\n0.01,0,\n0.02,5000,nan\n0.03,5000,0.2\n")
+    run = read_recording(path)
+    assert run.valid.tolist() == [True, False, False, True]
+    assert run.drive_signal[:, 0].tolist() == [0, 0, 5000, 5000]
+    assert run.drive_time_s is None
+
+
+def test_any_number_of_markers(tmp_path):
+    """Five markers in millimetres keep their order along the body; one that was not seen is NaN, its angle too."""
+    names = ("head", "neck", "middle", "fin_root", "tail")
+    top = "time_s," + ",".join(f"{name}_{axis}_mm" for name in names for axis in "xy")
+    path = tmp_path / "five.csv"
+    path.write_text(top + "\n0,0,0,5,0,10,0,15,0,20,10\n0.01,0,0,5,0,,,15,0,20,10\n")
+    run = read_recording(path)
+    assert run.marker_names == names
+    assert run.markers[0].tolist() == [[0, 0], [0.005, 0], [0.01, 0], [0.015, 0], [0.02, 0.01]]
+    assert run.sin_theta == pytest.approx([np.sqrt(0.5), np.nan], nan_ok=True)
+
+
+def test_any_channel_of_any_quantity(tmp_path):
+    """Any channel of any quantity is read; its limits are not the reader's business."""
+    path = tmp_path / "arm.csv"
+    path.write_text("time_s,pressure_chamber_mbar,travel_tendon_mm,sin_theta\n0,250,7,0\n0.01,99999,7,0.1\n")
+    run = read_recording(path)
+    assert [channel.column for channel in run.channels] == ["pressure_chamber_pa", "travel_tendon_m"]
+    assert run.drive_signal[0] == pytest.approx([25000, 0.007])

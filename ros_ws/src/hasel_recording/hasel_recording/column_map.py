@@ -1,0 +1,68 @@
+"""Names and units of a lab's own columns, from an option such as `--map time=t,sin_theta=angle_deg`."""
+
+import re
+from collections.abc import Iterable, Mapping
+
+from hasel_recording.csv_columns import MARKER_UNITS, SIN_THETA, THETA_UNITS, TIME_UNITS
+from hasel_recording.drive_channel import SI_UNITS, UNITS, is_drive_column
+from hasel_recording.errors import RecordingError, nearest
+
+
+def parse_map(text: str) -> dict[str, str]:
+    """Return {what is meant: the file's column} of `time=t,sin_theta=angle_deg`; raises RecordingError."""
+    found: dict[str, str] = {}
+    for part in filter(None, (part.strip() for part in text.split(","))):
+        meant, equals, column = (piece.strip() for piece in part.partition("="))
+        if not (equals and meant and column):
+            raise RecordingError(
+                f"--map has {part!r}, expected pairs such as time=t,sin_theta=angle_deg: write NAME=COLUMN."
+            )
+        if meant in found:
+            raise RecordingError(f"--map gives {meant!r} twice: keep one of them.")
+        found[meant] = column
+    return found
+
+
+def meant_names(
+    mapping: Mapping[str, str], columns: Iterable[str], source: str, all_here: bool = True
+) -> dict[str, str]:
+    """Return {the file's column: the full name it is read as}, units included.
+
+    mapping: as of parse_map. A unit that is not given is taken from the end of the file's own name (`angle_deg`,
+    `t [ms]`), else it is the SI unit. all_here: raise RecordingError for a column that the file has not got; otherwise
+    the columns may be spread over two files.
+    """
+    columns = list(columns)
+    names: dict[str, str] = {}
+    for meant, column in mapping.items():
+        if column not in columns:
+            if not all_here:
+                continue
+            near = nearest(column, columns)
+            hint = f"did you mean {near!r}?" if near else f"choose among {', '.join(columns)}."
+            raise RecordingError(f"{source} has no column {column!r} for --map {meant}={column}: {hint}")
+        names[column] = _full_name(meant, column)
+    return names
+
+
+def _full_name(meant: str, column: str) -> str:
+    if meant == SIN_THETA:
+        unit = _unit(column, THETA_UNITS)
+        return f"theta_{unit}" if unit else SIN_THETA
+    if meant == "theta":
+        return f"theta_{_unit(column, THETA_UNITS) or 'rad'}"
+    if meant == "time":
+        return f"time_{_unit(column, TIME_UNITS) or 's'}"
+    if re.fullmatch(r".+_[xy]", meant):
+        return f"{meant}_{_unit(column, MARKER_UNITS) or 'm'}"
+    if is_drive_column(meant):
+        quantity = meant.lower().split("_")[0]
+        if meant.lower().rsplit("_", 1)[-1] not in UNITS[quantity]:
+            return f"{meant}_{_unit(column, UNITS[quantity]) or SI_UNITS[quantity].lower()}"
+    return meant
+
+
+def _unit(column: str, units: Iterable[str]) -> str | None:
+    """The unit that a lab's own name ends in, of those that are known here."""
+    words = re.findall(r"[a-z]+", column.lower().replace("°", "_deg").replace("µ", "u"))
+    return words[-1] if len(words) > 1 and words[-1] in units else None

@@ -1,0 +1,109 @@
+"""A drive recorded as a file of its own: rows of time and channels, each holding until the next."""
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from hasel_recording.column_map import meant_names
+from hasel_recording.csv_columns import understand
+from hasel_recording.csv_numbers import CsvNumbers
+from hasel_recording.csv_reader import drive_columns
+from hasel_recording.csv_text import read_text
+from hasel_recording.drive_channel import DriveChannel
+from hasel_recording.errors import RecordingError, RecordingWarning
+from hasel_recording.mcap_drive import stamped_drive
+from hasel_recording.mcap_file import read_file
+from hasel_recording.mcap_reader import seconds, time_origin
+from hasel_recording.recording import Recording
+from hasel_recording.stand_in import as_meant
+
+
+def with_drive(recording: Recording, path: Path, mapping: Mapping[str, str] | None = None) -> Recording:
+    """Return the recording with the drive of another file in place of its own.
+
+    path: a .csv file with time and drive columns, or an .mcap file with the drive's topic, counting time as the
+    recording does. mapping: as of column_map.parse_map; pairs for columns that this file has not got are passed over.
+    A RecordingWarning says where the drive does not reach over the whole run; raises RecordingError where it does not
+    overlap with it at all.
+    """
+    if not path.is_file():
+        raise RecordingError(f"{recording.name}: there is no drive file {path}: check the name.")
+    read = _read_mcap if path.suffix.lower() == ".mcap" else _read_csv
+    channels, time_s, values, stand_in = read(path, mapping or {}, recording.metadata)
+    _check_cover(recording, path, channels, time_s, values)
+    row = np.searchsorted(time_s, recording.time_s, side="right") - 1
+    held = np.where(row[:, None] >= 0, values[np.maximum(row, 0)], 0.0)
+    started = max(0, int(row[0]))  # what was before the run matters only if the body was driven then
+    first = started if not values[: started + 1].any() else 0
+    said = f"the drive comes from {path.name}: {', '.join(map(str, channels))}"
+    return replace(
+        recording,
+        channels=channels,
+        drive_signal=held,
+        drive_time_s=time_s[first:],
+        drive_values=values[first:],
+        understood=(*recording.understood, *filter(None, [said, stand_in])),
+    )
+
+
+def _read_csv(
+    path: Path, mapping: Mapping[str, str], metadata: Mapping[str, str]
+) -> tuple[tuple[DriveChannel, ...], np.ndarray, np.ndarray, str]:
+    text = read_text(path)
+    text = replace(text, metadata={**metadata, **text.metadata})
+    meant = meant_names(mapping, text.names, str(path), all_here=False)
+    columns = understand(text.names, meant, str(path), angle=False)
+    numbers = CsvNumbers(text)
+    time_s = numbers.times(columns.time)
+    channels, values, stand_in = drive_columns(columns, numbers, text)
+    if values is None:
+        raise RecordingError(
+            f"{path} has no drive, only {', '.join(text.names)}: expected columns such as voltage_upper_v or "
+            "pressure_chamber_kpa, or say which they are with --map."
+        )
+    return channels, time_s, values, stand_in
+
+
+def _read_mcap(
+    path: Path, mapping: Mapping[str, str], metadata: Mapping[str, str]
+) -> tuple[tuple[DriveChannel, ...], np.ndarray, np.ndarray, str]:
+    file = read_file(path)
+    drive = stamped_drive(file)
+    if drive is None:
+        raise RecordingError(f"{path} has neither /hasel/state nor /hasel/drive: give the drive's recording.")
+    channels, values, stand_in = as_meant(drive.channels, drive.values, metadata, str(path))
+    return channels, seconds(drive.stamps, time_origin(file, drive.stamps)), values, stand_in
+
+
+def _check_cover(
+    recording: Recording,
+    path: Path,
+    channels: tuple[DriveChannel, ...],
+    time_s: np.ndarray,
+    values: np.ndarray,
+) -> None:
+    first, last = recording.time_s[[0, -1]]
+    if time_s[0] > last:
+        raise RecordingError(
+            f"{recording.name}: the drive in {path} begins at {time_s[0]:g} s, when the recording has ended "
+            f"({last:g} s): give both the same time."
+        )
+    if time_s[0] > first:
+        _warn(recording, f"the drive in {path} begins at {time_s[0]:g} s; before, nothing is taken to drive")
+    steps = np.diff(time_s)
+    pause = max(steps.max(initial=0.0), 1.0)
+    if values[-1].any() and last - time_s[-1] > 2 * pause:
+        held = ", ".join(
+            channel.shown(value) for channel, value in zip(channels, values[-1], strict=True) if value
+        )
+        _warn(
+            recording,
+            f"the drive in {path} ends at {time_s[-1]:g} s with {held}, which is taken to hold until {last:g} s",
+        )
+
+
+def _warn(recording: Recording, sentence: str) -> None:
+    warnings.warn(f"{recording.name}: {sentence}.", RecordingWarning, stacklevel=4)
