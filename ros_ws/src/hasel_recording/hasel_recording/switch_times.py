@@ -44,6 +44,8 @@ def with_placed_switches(recording: Recording) -> Recording:
             placed[row] = due
             said = f"{gap}; the switch is placed at {due:.6g} s by the drive's period of {period:.6g} s."
         warnings.warn(f"{recording.path or recording.name}: {said}", RecordingWarning, stacklevel=3)
+    if np.array_equal(placed, time_s):
+        return recording
     kept = np.concatenate([[0], changes])
     return replace(recording, drive_time_s=placed[kept], drive_values=values[kept])
 
