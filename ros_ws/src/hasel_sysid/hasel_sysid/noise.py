@@ -1,6 +1,6 @@
 """The noise of the measured angle: white, plus a part that neighbouring frames share."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import matmul_toeplitz
@@ -9,21 +9,23 @@ from scipy.signal import lfilter
 
 _SLOW_SHARE = 3.0 / 120.0
 """Frequencies below this share of the frame rate (3 Hz at 120 frames/s) are the body's, not the noise's."""
-_LONGEST = float(np.log(0.95 / 0.05))
-"""Logit of the largest correlation between neighbouring frames that still counts as noise."""
+LONGEST_CORRELATION = 0.95
+"""Largest correlation between neighbouring frames that still counts as noise."""
 
 
 @dataclass(frozen=True)
 class NoiseModel:
     """Autocovariance white (lag 0) + coloured correlation^lag, lag in frames; the variances are of sin theta.
 
-    source: where the numbers come from, in words.
+    source: where the numbers come from, in words; upper_bound: whether the noise may be less, because nothing in the
+    recordings shows it alone.
     """
 
     white: float
     coloured: float
     correlation: float
     source: str = "what the best model leaves"
+    upper_bound: bool = False
 
     @property
     def standard_deviation(self) -> float:
@@ -61,10 +63,24 @@ class NoiseModel:
     def __str__(self) -> str:
         share = self.coloured / max(self.white + self.coloured, 1e-300)
         memory = -1 / np.log(min(max(self.correlation, 1e-9), 1 - 1e-9))
-        return (
-            f"noise of {self.standard_deviation:.2g} rms, {share:.0%} of its power shared by neighbouring frames "
-            f"over {memory:.0f} frames (from {self.source})"
-        )
+        colour = f", {share:.0%} of its power shared over {memory:.0f} frames" if share > 0.005 else ", white"
+        if self.upper_bound:
+            return (
+                f"noise of at most {self.standard_deviation:.2g} rms{colour} (from {self.source}; no frames at rest "
+                "and no repeated runs show it alone: give it with --noise)"
+            )
+        return f"noise of {self.standard_deviation:.2g} rms{colour} (from {self.source})"
+
+    def with_discrepancy(self, rms: float) -> "NoiseModel":
+        """The noise and, as slow as noise can be, an error of the model of so much rms."""
+        more = rms**2
+        coloured = self.coloured + more
+        memory = (self.coloured * self.correlation + more * LONGEST_CORRELATION) / max(coloured, 1e-300)
+        return replace(self, coloured=coloured, correlation=float(memory))
+
+
+def _logit(share: float) -> float:
+    return float(np.log(share / (1 - share)))
 
 
 def estimate_noise(residual: np.ndarray, runs: np.ndarray, fitted: np.ndarray, source: str) -> NoiseModel:
@@ -100,7 +116,7 @@ def estimate_noise(residual: np.ndarray, runs: np.ndarray, fitted: np.ndarray, s
         expected = spectrum * remaining
         return float(np.sum(np.log(expected) + periodogram / expected))
 
-    bounds = [(level - 8, level + 3), (level - 8, level + 6), (-1.0, _LONGEST)]
+    bounds = [(level - 8, level + 3), (level - 8, level + 6), (-1.0, _logit(LONGEST_CORRELATION))]
     starts = ([level, level - 2, 2.0], [level - 2, level, 2.0], [level, level - 5, 0.0])
     best = min(
         (minimize(negative_likelihood, s, bounds=bounds, method="L-BFGS-B") for s in starts),

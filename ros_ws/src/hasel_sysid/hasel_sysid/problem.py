@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from hasel_sim.errors import SimulationError
@@ -12,6 +13,8 @@ from hasel_sim.run import Simulation
 
 from hasel_sysid.dataset import Experiment
 from hasel_sysid.errors import SysidError
+from hasel_sysid.noise import NoiseModel
+from hasel_sysid.noise_sources.measured import measured_noise
 
 
 @dataclass(frozen=True)
@@ -52,11 +55,26 @@ class Evaluation:
 class Problem:
     """Measured runs to be explained; `evaluate` is the only thing that simulates."""
 
-    def __init__(self, experiments: Sequence[Experiment], pool: Executor) -> None:
+    def __init__(
+        self, experiments: Sequence[Experiment], pool: Executor, noise: NoiseModel | None = None
+    ) -> None:
+        """noise: of the measured angle, where it is known; otherwise it is looked for in the recordings."""
         if not experiments:
             raise SysidError("no recording was given; expected at least one: name .csv or .mcap files")
         self.experiments, self.pool = tuple(experiments), pool
         self.evaluations = 0
+        self._noise = noise
+
+    @cached_property
+    def measured_noise(self) -> NoiseModel | None:
+        """The noise as given, between repeated runs or at rest; None where nothing shows it alone."""
+        return self._noise or measured_noise(self.experiments)
+
+    @cached_property
+    def largest_swing(self) -> float:
+        """Largest |sin theta| from the mean of its run, in all runs."""
+        series = [e.sin_theta[np.isfinite(e.sin_theta)] for e in self.experiments]
+        return max((float(np.abs(s - s.mean()).max()) for s in series if len(s)), default=0.0)
 
     def evaluate(self, model: Model, names: Sequence[str] = ()) -> Evaluation:
         """Simulate every run with the model, with derivatives by the named parameters."""

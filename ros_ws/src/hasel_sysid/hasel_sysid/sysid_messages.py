@@ -63,7 +63,7 @@ def diagnosis_message(found: diagnosis_result.Diagnosis, status: str, stamp: Tim
         missing=[finding.effect for finding in found.findings if finding.verdict is Verdict.MISSING],
         ranking=[_ranked(finding) for finding in found.findings],
         indistinguishable=[", ".join(group) for group in found.groups],
-        noise_floor=found.noise.mean_absolute,
+        noise_floor=found.measured.mean_absolute,
         unexplained_fraction=1.0 - found.explained,
     )
 

@@ -23,7 +23,7 @@ from hasel_sysid.report.write import write_report
 
 def parser() -> argparse.ArgumentParser:
     """The command's options."""
-    return recording_options("diagnose", "Rank the effects that a model may lack.", effects=True)
+    return recording_options("diagnose", "Rank the effects that a model may lack.", effects=True, noise=True)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -35,13 +35,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _diagnose(options: argparse.Namespace) -> None:
     given = load_inputs(options)
     with executor(options.jobs, options.scheduler) as pool, progress_bar("diagnose") as progress:
-        problem = Problem(given.experiments, pool)
+        problem = Problem(given.experiments, pool, given.noise)
         fit = fit_least_squares(problem, given.model, part(progress, "fit: ", 0.0, 0.3))
         found = diagnose(problem, fit, options.effects, part(progress, "diagnosis: ", 0.3, 0.95))
         label, last = f"{given.label}, fitted", part(progress, "", 0.95, 1.0)
         comparison = compare(fit.model, given.experiments, pool, given.unseen, label, last)
     show([comparison], given.said)
     print(found)
+    print(found.adequacy)
     if options.json:
         write_json({**comparison.to_json(), **diagnosis_json(found)}, options.json)
     print(f"Wrote {write_report(diagnosis_content(found, comparison), options.output)}.")

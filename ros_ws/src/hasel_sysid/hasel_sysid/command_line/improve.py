@@ -14,7 +14,7 @@ from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.options import recording_options
 from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
-from hasel_sysid.command_line.shown import show
+from hasel_sysid.command_line.shown import show, tell
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.compare.compare import comparison_of
 from hasel_sysid.dataset import Experiment
@@ -32,7 +32,7 @@ MODEL_FILE = "improved_model.yaml"
 def parser() -> argparse.ArgumentParser:
     """The command's options."""
     what = "Add missing effects until what is left is noise or nothing known explains it."
-    return recording_options("improve", what, effects=True)
+    return recording_options("improve", what, effects=True, noise=True)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -55,7 +55,7 @@ def _improve(options: argparse.Namespace) -> None:
         with executor(options.jobs, options.scheduler) as pool, progress_bar("improve") as progress:
             start = compare(model, experiments, pool, unseen, label, part(progress, "start: ", 0.0, 0.03))
             found = improve(
-                Problem(experiments, pool),
+                Problem(experiments, pool, given.noise),
                 model,
                 Problem(unseen, pool) if unseen else None,
                 options.effects,
@@ -68,14 +68,15 @@ def _improve(options: argparse.Namespace) -> None:
         if written:
             print(f"wrote the stages so far ({len(written)}), see {ledger.path}", file=sys.stderr)
         raise
-    show([stages[0]], given.said)
+    tell(start.set_up, given.said)
+    show([stages[0]], [*given.said, *start.set_up])
     _finish(options, found, start, stages, suggestions)
 
 
 def _next_runs(found: Improvement, pool: Executor) -> list[Suggestion]:
     """The runs that would best tell apart what is still in doubt, at no more voltage than was used already."""
     candidates = in_doubt(found.diagnosis, found.missing)
-    if found.status is Status.NOTHING_MISSING or len(candidates) < 2:
+    if found.opposed or found.status is Status.NOTHING_MISSING or len(candidates) < 2:
         return []
     highest = max(found.model.levels, default=0.0)
     return suggest(pool, candidates, found.diagnosis.noise, highest, brief=True)
@@ -111,7 +112,7 @@ def _finish(
     if options.json:
         details = {
             "where_it_fails": stages[0].where.sentences(),
-            "data_gate": [finding.to_json() for finding in stages[0].set_up],
+            "data_gate": [finding.to_json() for finding in dict.fromkeys((*start.set_up, *stages[0].set_up))],
             "start": start.to_json(),
             "next_runs": [suggestion.to_json() for suggestion in suggestions],
         }

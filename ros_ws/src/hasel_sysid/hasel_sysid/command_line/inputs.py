@@ -10,6 +10,8 @@ from hasel_sim.model import Model, load_model
 from hasel_sysid.command_line.shown import announce
 from hasel_sysid.data_gate import Finding
 from hasel_sysid.dataset import Experiment, load_experiments, prepared
+from hasel_sysid.noise import NoiseModel
+from hasel_sysid.noise_sources.measured import given_noise
 
 DEFAULT_MODEL = "swimmer"
 
@@ -17,7 +19,7 @@ DEFAULT_MODEL = "swimmer"
 @dataclass(frozen=True)
 class Inputs:
     """experiments: to fit; unseen: never fitted; model: with an amplitude for every fitted voltage; label: its name;
-    said: findings of the data gate that were told already.
+    said: findings of the data gate that were told already; noise: of the measured angle, where it was given.
     """
 
     experiments: list[Experiment]
@@ -25,14 +27,17 @@ class Inputs:
     label: str
     model: Model
     said: list[Finding]
+    noise: NoiseModel | None = None
 
 
 def load_inputs(options: argparse.Namespace) -> Inputs:
     """Read the recordings, tell what the data gate finds, and choose the model."""
     experiments, unseen = load_all(options)
     said = announce([*experiments, *unseen])
+    known = getattr(options, "noise", None)
+    noise = None if known is None else given_noise(known)
     label, model = chosen_model(options.model, [*experiments, *unseen])
-    return Inputs(experiments, unseen, label, prepared(model, experiments), said)
+    return Inputs(experiments, unseen, label, prepared(model, experiments), said, noise)
 
 
 def load_all(

@@ -5,7 +5,7 @@ from pathlib import Path
 
 
 def recording_options(
-    prog: str, description: str, several_models: bool = False, effects: bool = False
+    prog: str, description: str, several_models: bool = False, effects: bool = False, noise: bool = False
 ) -> argparse.ArgumentParser:
     """What commands on recordings share: what to read, the model, candidates, where to write, on how many cores."""
     parser = argparse.ArgumentParser(prog=prog, description=description)
@@ -13,6 +13,8 @@ def recording_options(
     _add_model(parser, several_models)
     if effects:
         _add_effects(parser)
+    if noise:
+        _add_noise(parser)
     _add_results(parser)
     _add_workers(parser)
     return parser
@@ -61,6 +63,16 @@ def _add_effects(parser: argparse.ArgumentParser) -> None:
         metavar="A,B",
         type=lambda text: tuple(name.strip() for name in text.split(",") if name.strip()),
         help="consider only these effects (ids, or path/to/file.py:ClassName)",
+    )
+
+
+def _add_noise(parser: argparse.ArgumentParser) -> None:
+    """--noise."""
+    parser.add_argument(
+        "--noise",
+        metavar="RMS",
+        type=float,
+        help="standard deviation of the noise of sin θ, where neither frames at rest nor repeated runs show it",
     )
 
 

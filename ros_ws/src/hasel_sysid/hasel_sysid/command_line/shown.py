@@ -14,13 +14,13 @@ from hasel_sysid.dataset import Experiment
 def announce(experiments: Sequence[Experiment]) -> list[Finding]:
     """Check recordings before anything is simulated; faults of the set-up go to stderr and are returned."""
     found = [finding for experiment in experiments for finding in check_recording(experiment.recording)]
-    _tell(found)
+    tell(found)
     return found
 
 
 def show(comparisons: Sequence[Comparison], said: Sequence[Finding] = ()) -> None:
     """Print tables and where the models fail, and those faults of the set-up that have not been `said`."""
-    _tell([finding for finding in comparisons[0].set_up if finding not in said])
+    tell(comparisons[0].set_up, said)
     console = Console(soft_wrap=True)
     console.print(run_table(comparisons))
     if any(run.series.voltage > 0 for run in comparisons[0].runs):
@@ -31,6 +31,9 @@ def show(comparisons: Sequence[Comparison], said: Sequence[Finding] = ()) -> Non
             print(f"  {sentence}")
 
 
-def _tell(findings: Sequence[Finding]) -> None:
+def tell(findings: Sequence[Finding], said: Sequence[Finding] = ()) -> None:
+    """Print the faults of the set-up that have not been `said`."""
     for finding in findings:
+        if finding in said:
+            continue
         print(f"{finding.severity.value}: {finding}", file=sys.stderr)

@@ -24,7 +24,7 @@ _SHOWN = 5
 def parser() -> argparse.ArgumentParser:
     """The command's options."""
     what = "Propose the next run: the one in which the remaining explanations differ most."
-    options = recording_options("suggest", what, effects=True)
+    options = recording_options("suggest", what, effects=True, noise=True)
     options.add_argument(
         "--max-voltage",
         metavar="V",
@@ -44,7 +44,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _suggest(options: argparse.Namespace) -> None:
     given = load_inputs(options)
     with executor(options.jobs, options.scheduler) as pool, progress_bar("suggest") as progress:
-        problem = Problem(given.experiments, pool)
+        problem = Problem(given.experiments, pool, given.noise)
         fit = fit_least_squares(problem, given.model, lambda text, share: progress(text, 0.15 * share))
         found = diagnose(
             problem, fit, options.effects, lambda text, share: progress(text, 0.15 + 0.6 * share)

@@ -4,13 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_sim.run import Simulation
 
+from hasel_sysid.diagnosis.conditions import conditions
 from hasel_sysid.fit import FitResult
 from hasel_sysid.fit.uncertainty import parameter_covariance
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import Evaluation
-from hasel_sysid.where_it_fails.drive_cycle import drive_cycle
 
 _CERTAIN = 4.0
 """Standard errors."""
@@ -62,31 +61,10 @@ def trends(fit: FitResult, noise: NoiseModel, effects: Sequence[str]) -> list[Tr
     }
     names = [name for name in fit.evaluation.names if name in sizes and name not in fit.undetermined]
     found = []
-    for condition, values in _conditions(fit.evaluation.simulations).items():
+    for condition, values in conditions(fit.evaluation.simulations).items():
         if np.isfinite(values).all() and values.max() > _ONE_CONDITION * values.min():
             found += [_trend(fit.evaluation, noise, name, condition, values) for name in names]
     return found
-
-
-def _conditions(simulations: Sequence[Simulation]) -> dict[str, np.ndarray]:
-    return {
-        "voltage": np.array([_peak(s) for s in simulations]),
-        "frequency": np.array([_frequency(s) for s in simulations]),
-    }
-
-
-def _peak(simulation: Simulation) -> float:
-    schedule = simulation.run.schedule
-    peak = 0.0 if schedule is None else float(np.abs(schedule.voltage).max(initial=0.0))
-    return peak if peak > 0 else np.nan
-
-
-def _frequency(simulation: Simulation) -> float:
-    run = simulation.run
-    if run.schedule is None or len(run.time) < 2:
-        return np.nan
-    cycle = drive_cycle(run.time, run.schedule.at(run.time))
-    return np.nan if cycle is None else 1.0 / cycle.period
 
 
 def _trend(evaluation: Evaluation, noise: NoiseModel, name: str, condition: str, values: np.ndarray) -> Trend:

@@ -7,11 +7,12 @@ from functools import cached_property
 import numpy as np
 from hasel_sim.effects.base import Effect
 
-from hasel_sysid.diagnosis.left_out import left_out_squares
+from hasel_sysid.diagnosis.explained import share_left
+from hasel_sysid.diagnosis.left_out import foretells_better
 from hasel_sysid.diagnosis.signature import Signature
-from hasel_sysid.diagnosis.significance import orthonormal
 from hasel_sysid.fit.result import FitResult
 from hasel_sysid.noise import NoiseModel
+from hasel_sysid.projection import orthonormal
 
 SIGNIFICANT = 0.01
 """Chance that noise alone looks like this below which something is missing."""
@@ -23,7 +24,7 @@ class Context:
     """Everything a verdict rests on.
 
     effects: what is judged; squares: sum of squared residuals reached with each; changes: of the simulated series by
-    finer numerics.
+    finer numerics; noise: what a right model may leave, discrepancy allowed for; measured: the noise alone.
     """
 
     effects: Sequence[Effect]
@@ -35,6 +36,7 @@ class Context:
     floor: float
     chance: float
     changes: dict[str, np.ndarray]
+    measured: NoiseModel | None = None
 
     @property
     def base(self) -> float:
@@ -54,15 +56,36 @@ class Context:
             return None
         return max(found, key=self.score)
 
+    @cached_property
+    def refuted(self) -> frozenset[str]:
+        """Effects whose full fit stopped at the edge of their range or does not foretell runs that are left out."""
+        return frozenset(self.finals) - frozenset(plausible(self.finals, self.fit))
+
     def with_fit(self, effect: str, fit: FitResult) -> "Context":
         """The same with one more effect fitted in full."""
         squares = {**self.squares, effect: fit.evaluation.sum_of_squares}
         return replace(self, finals={**self.finals, effect: fit}, squares=squares)
 
     def removed(self, effect: str) -> float:
-        """Share of the excess over the noise that an effect removes, 0 to 1."""
+        """Share of the squares above the noise that an effect removes, 0 to 1: to compare effects, not to tell."""
         drop = self.base - self.squares.get(effect, self.base)
         return float(np.clip(drop / self.excess, 0.0, 1.0))
+
+    def error_removed(self, effect: str) -> float:
+        """Share of the mean error above the noise that an effect removes, 0 to 1.
+
+        Of what was not fitted in full only squares are known; their root stands for the mean error.
+        """
+        before = self.fit.evaluation.mean_absolute_error
+        if effect in self.finals:
+            after = self.finals[effect].evaluation.mean_absolute_error
+        else:
+            after = (
+                before * float(np.sqrt(self.squares.get(effect, self.base) / self.base))
+                if self.base > 0
+                else 0.0
+            )
+        return 1.0 - share_left(before, after, self.noise.mean_absolute)
 
     def score(self, effect: str) -> float:
         """Logarithm of an effect's weight, up to a constant: of its sum of squares, less half a logarithm of the frames
@@ -114,11 +137,10 @@ def plausible(finals: dict[str, FitResult], fit: FitResult) -> dict[str, FitResu
     """The fits, by effect, that did not have to stop at the edge of the effect's range, and foretell runs that are left
     out better than `fit` without it does.
     """
-    before = left_out_squares(fit.evaluation)
     return {
         effect: final
         for effect, final in finals.items()
-        if not on_own_bound(effect, final) and left_out_squares(final.evaluation) < before
+        if not on_own_bound(effect, final) and foretells_better(fit.evaluation, final.evaluation)
     }
 
 

@@ -1,12 +1,14 @@
 """Diagnosis: which effect, if any, explains what a fitted model leaves; no data but the fitted runs are used."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
+from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.diagnosis.candidates import candidate_effects
 from hasel_sysid.diagnosis.context import SIGNIFICANT, Context, expected_squares, lowest_squares
-from hasel_sysid.diagnosis.finals import full_fits, noise_beyond
+from hasel_sysid.diagnosis.finals import allowed_noise, full_fits, noise_of
 from hasel_sysid.diagnosis.judgement import judged
-from hasel_sysid.diagnosis.result import Diagnosis
+from hasel_sysid.diagnosis.result import Diagnosis, Verdict
 from hasel_sysid.diagnosis.search import search, search_from_larger
 from hasel_sysid.diagnosis.signature import Signature, signature
 from hasel_sysid.diagnosis.significance import largest_drops_by_noise, p_value
@@ -33,7 +35,8 @@ def diagnose(
     )
     signatures = {t.start.effect.id: _signature(t, trials, fit) for t in reversed(first)}
 
-    noise = noise_beyond(fit, finals)
+    measured = noise_of(problem, fit, finals)
+    noise = allowed_noise(problem, measured)
     base = fit.evaluation
     by_noise = largest_drops_by_noise(
         base.jacobian, [s.columns for s in signatures.values()], noise, base.runs
@@ -43,7 +46,12 @@ def diagnose(
     floor = expected_squares(base.jacobian, noise, base.runs)
     chance = p_value(base.sum_of_squares - lowest_squares(fit, finals), by_noise)
     changes = changes_by_refinement(problem, base) if chance < SIGNIFICANT else {}
-    return judged(Context(effects, fit, finals, signatures, squares, noise, floor, chance, changes))
+    found = judged(
+        Context(effects, fit, finals, signatures, squares, noise, floor, chance, changes, measured)
+    )
+    named = found.best is not None and found.best.verdict is Verdict.MISSING
+    described = adequacy((found.best.fit if named else fit).evaluation, noise)
+    return replace(found.seen_beside(described.adequate), adequacy=described)
 
 
 def _signature(trial: Trial, trials: Trials, fit: FitResult) -> Signature:

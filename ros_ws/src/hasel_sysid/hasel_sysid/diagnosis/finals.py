@@ -1,17 +1,19 @@
 """Full fits of the few most promising effects, on the model itself, and the noise that they reveal."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from hasel_sim.errors import SimulationError
 
-from hasel_sysid.diagnosis.between_periods import noise_between_periods
 from hasel_sysid.diagnosis.context import expected_squares, plausible
 from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
 from hasel_sysid.diagnosis.search import WORTH_A_STEP
 from hasel_sysid.diagnosis.trial import Trial
 from hasel_sysid.fit import FitResult, fit_least_squares
 from hasel_sysid.noise import NoiseModel, estimate_noise
+from hasel_sysid.noise_sources.above_the_band import noise_above_the_band
+from hasel_sysid.noise_sources.between_periods import noise_between_periods
 from hasel_sysid.problem import Problem
 
 _FINALISTS, _MOST_FITS = 3, 6
@@ -28,7 +30,9 @@ next step would remove this share may be worth a full fit."""
 _COULD = 0.3
 """What could never remove this share of the excess, by its promise, would not be accepted and needs no full fit."""
 _QUIETER = 0.8
-"""Differences between periods this much quieter than the residual show that it repeats itself."""
+"""A bound this much quieter than the residual shows that the residual is not noise."""
+DISCREPANCY = 0.005
+"""Share of the largest swing, as rms, by which no model is exact: of 0.3 the 0.0015 that the mesh is converged to."""
 
 Progress = Callable[[str, float], None]
 
@@ -51,7 +55,7 @@ def full_fits(
     finals = _refitted(problem, fit, chosen, progress)
     rest = [trial for trial in best if trial not in chosen]
     finals = _while_needed(problem, fit, finals, rest, _MOST_FITS - len(finals), progress)
-    worth = _least_drop_worth_larger_sizes(fit, finals)
+    worth = _least_drop_worth_larger_sizes(problem, fit, finals)
     if np.isfinite(worth):
         finals = _while_needed(problem, fit, finals, larger(worth), _FINALISTS, progress)
     return finals | _finished(problem, fit, finals)
@@ -67,12 +71,12 @@ def _while_needed(
 ) -> dict[str, FitResult]:
     """`finals` with up to `most` more full fits, in the order of `trials`, while they explain too little."""
     squares = fit.evaluation.sum_of_squares
-    next_step, promise = _least_drops_worth_a_fit(fit, finals)
+    next_step, promise = _least_drops_worth_a_fit(problem, fit, finals)
     for trial in trials:
         worth = squares - trial.predicted > next_step and trial.promised > promise
         if most > 0 and worth and not _known(trial, finals):
             finals = _better_of(finals, _refitted(problem, fit, [trial], progress))
-            next_step, promise = _least_drops_worth_a_fit(fit, finals)
+            next_step, promise = _least_drops_worth_a_fit(problem, fit, finals)
             most -= 1
     return finals
 
@@ -115,14 +119,16 @@ def _finished(problem: Problem, fit: FitResult, finals: dict[str, FitResult]) ->
     }
 
 
-def _least_drops_worth_a_fit(fit: FitResult, finals: dict[str, FitResult]) -> tuple[float, float]:
+def _least_drops_worth_a_fit(
+    problem: Problem, fit: FitResult, finals: dict[str, FitResult]
+) -> tuple[float, float]:
     """By how much a trial must lower the sum of squares, by its next step and by its promise; infinite: no more fits.
 
     More are needed while no plausible one removes most of an error well above the noise: a trial's few steps may have
     got stuck where a full fit does not, and the best may be refuted by runs left out. Where one does but stays well
     above the noise, only what promises nearly as much may take its place.
     """
-    base, lowest, floor = _squares(fit, finals)
+    base, lowest, floor = _squares(problem, fit, finals)
     excess, removed = base - floor, base - lowest
     if removed < _MOST * excess:
         needed, promise = excess > _MUCH * floor, _COULD * excess
@@ -131,22 +137,22 @@ def _least_drops_worth_a_fit(fit: FitResult, finals: dict[str, FitResult]) -> tu
     return (_WORTH * excess, promise) if needed else (np.inf, np.inf)
 
 
-def _least_drop_worth_larger_sizes(fit: FitResult, finals: dict[str, FitResult]) -> float:
+def _least_drop_worth_larger_sizes(problem: Problem, fit: FitResult, finals: dict[str, FitResult]) -> float:
     """By how much an effect must promise to lower the sum of squares for a larger size of it to be tried; or infinite.
 
     No less than the best fit so far does, or nearly: what is to take its place must do better. Infinite where that one
     comes near the noise.
     """
-    base, lowest, floor = _squares(fit, finals)
+    base, lowest, floor = _squares(problem, fit, finals)
     if lowest - floor <= _MUCH * floor:
         return float("inf")
     return max(_WORTH * (base - floor), _MOST * (base - lowest))
 
 
-def _squares(fit: FitResult, finals: dict[str, FitResult]) -> tuple[float, float, float]:
+def _squares(problem: Problem, fit: FitResult, finals: dict[str, FitResult]) -> tuple[float, float, float]:
     """Sum of squares of the fit, of the best plausible one with an effect, and expected of noise alone."""
     base = fit.evaluation
-    floor = expected_squares(base.jacobian, noise_beyond(fit, finals), base.runs)
+    floor = expected_squares(base.jacobian, allowed_noise(problem, noise_of(problem, fit, finals)), base.runs)
     squares = [final.evaluation.sum_of_squares for final in plausible(finals, fit).values()]
     return base.sum_of_squares, min([base.sum_of_squares, *squares]), floor
 
@@ -160,16 +166,28 @@ def _known(trial: Trial, finals: dict[str, FitResult]) -> bool:
     return bool(effect.exclusive) and effect.exclusive in fitted
 
 
-def noise_beyond(fit: FitResult, finals: dict[str, FitResult]) -> NoiseModel:
-    """Noise from what neither the best model nor a learned model of its residual explains.
+def noise_of(problem: Problem, fit: FitResult, finals: dict[str, FitResult]) -> NoiseModel:
+    """The noise of the runs: as measured or given, else the lowest of the upper bounds that the recordings give.
 
-    Where the residual repeats itself from period to period it is not noise, and the differences tell the noise.
+    Upper bounds are what neither the best model nor a learned model of its residual explains, what differs between
+    periods of the drive, and what is faster than the body; the first is kept unless another is clearly lower.
     """
+    if problem.measured_noise is not None:
+        return problem.measured_noise
     best = min([fit, *finals.values()], key=lambda result: result.evaluation.sum_of_squares)
     evaluation = best.evaluation
     columns = np.column_stack([evaluation.jacobian, regressors(evaluation)])
     left = unexplained_by(columns, evaluation.residual)
     whole = estimate_noise(left, evaluation.runs, columns, "what the best model and a learned residual leave")
-    between = noise_between_periods(evaluation)
-    repeats = between is not None and between.standard_deviation < _QUIETER * whole.standard_deviation
-    return between if repeats else whole
+    others = [noise_between_periods(evaluation), noise_above_the_band(evaluation)]
+    bounds = [b for b in others if b and b.standard_deviation < _QUIETER * whole.standard_deviation]
+    lowest = min(bounds, key=lambda bound: bound.standard_deviation, default=whole)
+    return replace(lowest, upper_bound=True)
+
+
+def allowed_noise(problem: Problem, noise: NoiseModel) -> NoiseModel:
+    """What a right model may leave: the noise and, where that is measured, the one discrepancy that is allowed for.
+
+    An upper bound of the noise is loud enough without it.
+    """
+    return noise if noise.upper_bound else noise.with_discrepancy(DISCREPANCY * problem.largest_swing)

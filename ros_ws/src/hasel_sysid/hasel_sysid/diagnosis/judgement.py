@@ -4,15 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from hasel_sysid.diagnosis.context import Context, lowest_squares
+from hasel_sysid.diagnosis.context import Context
 from hasel_sysid.diagnosis.groups import groups
 from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
 from hasel_sysid.diagnosis.probability import probabilities
 from hasel_sysid.diagnosis.result import Diagnosis, Finding, Verdict
 from hasel_sysid.diagnosis.signature import Signature
-from hasel_sysid.diagnosis.significance import orthonormal
 from hasel_sysid.diagnosis.suspects import numerical_suspects
 from hasel_sysid.fit.refinement import with_numerical_error
+from hasel_sysid.projection import orthonormal
 
 _MATTERS = 0.4
 """An effect that removes less than this share of the error above the noise is not what is missing."""
@@ -23,13 +23,13 @@ _DETECTION = 3.3
 def judged(context: Context) -> Diagnosis:
     """What is said of all effects of a context."""
     base = context.fit.evaluation
-    lowest = lowest_squares(context.fit, context.finals)
     chances, none = probabilities(context)
     findings = [
         replace(finding(context, effect), probability=chances.get(effect.id, 0.0))
         for effect in context.effects
     ]
     findings.sort(key=lambda one: (-one.probability, context.squares.get(one.effect, np.inf)))
+    best = context.winner or min(context.finals, key=context.squares.get, default=None)
     columns = np.column_stack([base.jacobian, regressors(base)])
     learned = unexplained_by(columns, base.residual)
     return Diagnosis(
@@ -37,7 +37,7 @@ def judged(context: Context) -> Diagnosis:
         groups(context),
         context.noise,
         context.chance,
-        float(np.clip((context.base - lowest) / context.excess, 0, 1)),
+        0.0 if best is None else context.error_removed(best),
         float(np.clip((context.base - learned @ learned) / context.excess, 0, 1)),
         none,
         numerical_suspects(context.fit, context.changes, context.excess),
@@ -66,8 +66,9 @@ def finding(context: Context, effect) -> Finding:
     removed = context.removed(name)
     verdict, limit = _verdict(context, effect, seen, removed)
     final = context.finals.get(name)
+    said = context.error_removed(name)
     return Finding(
-        name, verdict, 0.0, removed, expected, units, seen.swallowed, limit, final, source=effect.source
+        name, verdict, 0.0, said, expected, units, seen.swallowed, limit, final, source=effect.source
     )
 
 

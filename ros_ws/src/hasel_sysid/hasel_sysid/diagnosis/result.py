@@ -1,10 +1,12 @@
 """What a diagnosis says: one finding per effect, the groups that look alike, and a verdict."""
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
 import numpy as np
 
+from hasel_sysid.diagnosis.adequacy import Adequacy
 from hasel_sysid.diagnosis.context import Context
 from hasel_sysid.diagnosis.signature import Signature
 from hasel_sysid.fit.result import FitResult
@@ -12,23 +14,24 @@ from hasel_sysid.noise import NoiseModel
 
 
 class Verdict(str, Enum):
-    """The five things that can be said of an effect."""
+    """The five things that can be said of an effect, and that nothing can be said while the model describes no run."""
 
     MISSING = "missing"
     MISSING_IF_SIZE_MATTERS = "missing if its size matters"
     ABSENT = "absent"
     INCONCLUSIVE = "inconclusive"
     CANNOT_BE_SEEN = "cannot be seen"
+    NOT_JUDGED = "not judged"
 
 
 @dataclass(frozen=True)
 class Finding:
     """What is said of one effect.
 
-    expected: its values in SI units (name: value, standard error); error_removed: share of the error above the noise
-    that it explains, 0 to 1; swallowed: share of its signature that the fitted parameters imitate; visible_above: the
-    smallest size that these recordings would have shown, in the unit of its first parameter; source: where a user's own
-    effect comes from.
+    expected: its values in SI units (name: value, standard error); error_removed: share of the mean |Δ sin θ| above
+    the noise that it explains, 0 to 1; swallowed: share of its signature that the fitted parameters imitate;
+    visible_above: the smallest size that these recordings would have shown, in the unit of its first parameter; source:
+    where a user's own effect comes from.
     """
 
     effect: str
@@ -56,6 +59,8 @@ class Finding:
             if self.error_removed > 0.5:
                 return f"{self.effect} could stand in its place: it would remove {share}."
             return f"{self.effect} may be there with a size{value}, but removes only {share}."
+        if self.verdict is Verdict.NOT_JUDGED:
+            return f"{self.effect} is not judged: the model does not describe these runs yet."
         if self.verdict is Verdict.ABSENT:
             return f"{self.effect} is absent: above {self.visible_above:.2g}{unit} it would have been seen."
         if self.verdict is Verdict.INCONCLUSIVE:
@@ -67,6 +72,17 @@ class Finding:
         )
 
 
+_NEEDS_A_MODEL = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
+
+
+def _seen(finding: Finding, adequate: bool, added: Sequence[str]) -> Finding:
+    if finding.effect in added and finding.verdict is not Verdict.MISSING:
+        return replace(finding, verdict=Verdict.MISSING_IF_SIZE_MATTERS)
+    if not adequate and finding.verdict in _NEEDS_A_MODEL:
+        return replace(finding, verdict=Verdict.NOT_JUDGED)
+    return finding
+
+
 @dataclass(frozen=True)
 class Diagnosis:
     """What is said of all of them.
@@ -74,7 +90,7 @@ class Diagnosis:
     findings: most probable first; groups: effects that these recordings cannot tell apart; p_value: chance that noise
     alone makes the best effect look this good; explained: share of the error above the noise that it removes; ceiling:
     share that a small learned model of the residual removes; suspects: share removed by finer numerics, by name;
-    context: what all this rests on.
+    context: what all this rests on; adequacy: whether the model, with the effect found missing, describes its runs.
     """
 
     findings: list[Finding]
@@ -86,6 +102,7 @@ class Diagnosis:
     probability_none: float
     suspects: dict[str, float] = field(default_factory=dict)
     context: Context | None = None
+    adequacy: Adequacy | None = None
 
     @property
     def signatures(self) -> dict[str, Signature]:
@@ -99,15 +116,29 @@ class Diagnosis:
 
     @property
     def best(self) -> Finding | None:
-        """The most probable effect."""
-        return self.findings[0] if self.findings else None
+        """The one effect that could be added: first of the ranking, and not refuted; None where there is none."""
+        winner = self.context.winner if self.context else None
+        return None if winner is None else self.finding(winner)
+
+    @property
+    def measured(self) -> NoiseModel:
+        """The noise alone; `noise` is what a right model may leave, with what is allowed for discrepancy."""
+        return (self.context and self.context.measured) or self.noise
+
+    def seen_beside(self, adequate: bool, added: Sequence[str] = ()) -> "Diagnosis":
+        """The diagnosis as it may be said of a model that describes its runs, or does not.
+
+        Where it does not, no effect is absent, undecided or invisible: nobody can know yet. added: effects that turned
+        out to be missing beside the first one.
+        """
+        return replace(self, findings=[_seen(finding, adequate, added) for finding in self.findings])
 
     def finding(self, effect: str) -> Finding:
         """What is said of one effect."""
         return next(finding for finding in self.findings if finding.effect == effect)
 
     def __str__(self) -> str:
-        lines = [f"Noise floor {self.noise.mean_absolute:.4f} mean |Δ sin θ|: {self.noise}."]
+        lines = [f"Noise floor {self.measured.mean_absolute:.2g} mean |Δ sin θ|: {self.measured}."]
         lines += [str(finding) for finding in self.findings]
         lines += [f"These recordings cannot tell apart: {', '.join(group)}." for group in self.groups]
         return "\n".join(lines)

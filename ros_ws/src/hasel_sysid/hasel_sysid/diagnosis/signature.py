@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hasel_sysid.diagnosis.significance import orthonormal
 from hasel_sysid.diagnosis.trial import Trial
 from hasel_sysid.noise import NoiseModel
+from hasel_sysid.projection import orthonormal
 
 
 @dataclass(frozen=True)

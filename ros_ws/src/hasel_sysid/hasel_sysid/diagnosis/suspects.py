@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from hasel_sysid.diagnosis.significance import orthonormal
 from hasel_sysid.fit.result import FitResult
+from hasel_sysid.projection import orthonormal
 
 
 def numerical_suspects(fit: FitResult, changes: Mapping[str, np.ndarray], excess: float) -> dict[str, float]:

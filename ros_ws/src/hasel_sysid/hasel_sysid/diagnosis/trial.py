@@ -9,9 +9,10 @@ from hasel_sim.model import Model
 from scipy.optimize import lsq_linear
 
 from hasel_sysid.diagnosis.candidates import Start
-from hasel_sysid.diagnosis.significance import drops, orthonormal
+from hasel_sysid.diagnosis.significance import drops
 from hasel_sysid.draft import draft
 from hasel_sysid.problem import Evaluation, Problem
+from hasel_sysid.projection import orthonormal
 
 _MOST_CHANGE = 0.5
 """A single step changes no baseline parameter by more than this share: beyond, the derivatives say nothing."""

@@ -2,24 +2,12 @@
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from hasel_sysid.diagnosis import Diagnosis
+from hasel_sysid.diagnosis.adequacy import Misfit
 from hasel_sysid.diagnosis.context import SIGNIFICANT
+from hasel_sysid.diagnosis.explained import NEAR_NOISE, NOISE, Status, share_left, status_with
 from hasel_sysid.fit import FitResult
-from hasel_sysid.improve.result import Improvement, Stage, Status
-
-EXPLAINED = 0.9
-"""Share of the baseline's error above the noise that accepted effects must remove to be an explanation."""
-PARTLY = 0.6
-"""Share that they must remove to be part of one."""
-NOISE = 1.05
-"""A mean error up to this many times the noise's is noise."""
-NEAR_NOISE = 1.25
-"""Correlated noise of nine runs is known to 8 %: a mean error within three times that of the noise's is near it."""
-_ALL_BUT_NOTHING, _FEW = 0.03, 2
-"""Of a large error this share is all but nothing, but only so many effects may leave it and still be an explanation:
-three imitate much that is not listed."""
+from hasel_sysid.improve.result import Improvement, Stage
 
 
 def last_diagnosis(stages: Sequence[Stage]) -> Diagnosis:
@@ -29,18 +17,8 @@ def last_diagnosis(stages: Sequence[Stage]) -> Diagnosis:
 
 def left_over(stages: Sequence[Stage]) -> float:
     """Share of the baseline's mean error above the noise that the last stage leaves, 0 to 1."""
-    return share_left(stages[0].fit, stages[-1].fit, last_diagnosis(stages).noise.mean_absolute)
-
-
-def share_left(before: FitResult, after: FitResult, noise: float) -> float:
-    """Share of a fit's mean error above the noise that another fit leaves, 0 to 1.
-
-    Of the mean |Δ sin θ|, not of its square, which would call a law of the wrong shape an explanation. noise: its mean
-    |Δ sin θ|.
-    """
-    floor = NOISE * noise
-    base, left = before.mean_absolute_error, after.mean_absolute_error
-    return float(np.clip((left - floor) / max(base - floor, 1e-12), 0.0, 1.0))
+    before, after = stages[0].fit.mean_absolute_error, stages[-1].fit.mean_absolute_error
+    return share_left(before, after, last_diagnosis(stages).noise.mean_absolute)
 
 
 def is_noise(fit: FitResult, found: Diagnosis) -> bool:
@@ -54,30 +32,33 @@ def near_noise(fit: FitResult, found: Diagnosis) -> bool:
 
 
 def conclude(
-    stages: Sequence[Stage], reason: str, negligible: bool = False, contradictions: Sequence[str] = ()
+    stages: Sequence[Stage],
+    reason: str,
+    negligible: bool = False,
+    contradictions: Sequence[str] = (),
+    misfits: Sequence[Misfit] = (),
 ) -> Improvement:
     """The verdict on all stages, baseline first.
 
     reason: why the last one is the last; negligible: whether all that could be added would hardly matter;
-    contradictions: what speaks against the effects that were added, whatever they explain.
+    contradictions: what speaks against the effects that were tried, whatever they explain; misfits: regimes in which
+    the last stage does not describe its runs. Nothing is explained, or found not to be missing, by a model that does
+    not describe its runs to the noise.
     """
-    first = stages[0].diagnosis
-    last = last_diagnosis(stages)
+    first, last, rest = stages[0].diagnosis, last_diagnosis(stages), stages[-1].diagnosis
     unexplained = left_over(stages)
     added = stages[-1].effects
-    rest = stages[-1].diagnosis
+    describes = near_noise(stages[-1].fit, last) and not misfits
     nothing_left = negligible or (rest is not None and rest.p_value >= SIGNIFICANT)
-    nearly_all = len(added) <= _FEW and unexplained <= _ALL_BUT_NOTHING
-    near = near_noise(stages[-1].fit, last) or nearly_all
-    if first.p_value >= SIGNIFICANT:
-        status, unexplained = Status.NOTHING_MISSING, 0.0
-    elif not added:
-        status = Status.NOTHING_MISSING if negligible else Status.UNEXPLAINED
-    elif nothing_left or (near and unexplained <= 1 - EXPLAINED):
-        status = Status.PARTLY_EXPLAINED if contradictions else Status.EXPLAINED
+    if not added:
+        missing_nothing = describes and (negligible or first.p_value >= SIGNIFICANT)
+        status = Status.NOTHING_MISSING if missing_nothing else Status.UNEXPLAINED
+        unexplained = 0.0 if missing_nothing else unexplained
     else:
-        status = Status.PARTLY_EXPLAINED if unexplained <= 1 - PARTLY else Status.UNEXPLAINED
+        status = status_with(unexplained, describes, nothing_left)
+        if status is Status.EXPLAINED and contradictions:
+            status = Status.PARTLY_EXPLAINED
     missing = added if status in (Status.EXPLAINED, Status.PARTLY_EXPLAINED) else ()
     return Improvement(
-        list(stages), status, missing, unexplained, last.noise.mean_absolute, reason, tuple(contradictions)
+        list(stages), status, missing, unexplained, last.measured.mean_absolute, reason, tuple(contradictions)
     )

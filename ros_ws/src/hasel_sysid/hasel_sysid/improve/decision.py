@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict
 from hasel_sysid.diagnosis.context import SIGNIFICANT, on_own_bound
-from hasel_sysid.improve.conclusion import EXPLAINED, near_noise
+from hasel_sysid.diagnosis.explained import EXPLAINED
+from hasel_sysid.improve.conclusion import near_noise
 from hasel_sysid.improve.result import Stage
 
 LEAST_GAIN = 0.1
@@ -28,14 +29,25 @@ class Decision:
 
 def decide(stage: Stage, found: Diagnosis) -> Decision:
     """What to do after a stage whose left-over error has been diagnosed."""
+    near = near_noise(stage.fit, found)
+    if found.p_value >= SIGNIFICANT and not near:
+        return Decision(
+            None, f"None of the listed effects stands out from what is left, {_not_noise(stage, found)}."
+        )
     if found.p_value >= SIGNIFICANT:
         what = "What is left is noise" if stage.effects else "Nothing is missing"
         return Decision(None, f"{what}: noise alone looks like this in {found.p_value:.0%} of cases.")
     candidates = [f for f in found.findings if f.verdict is Verdict.MISSING and f.fit is not None]
     trifle = _trifle(stage, found, candidates)
-    if trifle:
+    if trifle and near:
         return Decision(None, f"Nothing that matters is missing: {trifle}.", negligible=True)
-    enough = max(0.5, _NEARLY * found.explained)
+    if trifle:
+        return Decision(
+            None,
+            f"{trifle}; what is left is {_not_noise(stage, found)}.",
+        )
+    squares = 1 - (1 - found.explained) ** 2
+    enough = max(0.5, _NEARLY * squares)
     numerics = {name: share for name, share in found.suspects.items() if share > enough}
     if numerics:
         name = max(numerics, key=numerics.get)
@@ -55,6 +67,11 @@ def _trifle(stage: Stage, found: Diagnosis, candidates: Sequence[Finding]) -> st
     squares = stage.fit.evaluation.sum_of_squares
     most = max(1 - f.fit.evaluation.sum_of_squares / squares for f in candidates)
     return f"{candidates[0].effect} makes {most:.1%} of the squared error" if most < LEAST_GAIN else ""
+
+
+def _not_noise(stage: Stage, found: Diagnosis) -> str:
+    times = stage.fit.mean_absolute_error / found.noise.mean_absolute
+    return f"{times:.3g} times the error that is allowed for: the model does not describe these runs yet"
 
 
 def _none_convinces(found: Diagnosis) -> str:

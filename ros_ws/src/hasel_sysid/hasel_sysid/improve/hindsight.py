@@ -15,6 +15,7 @@ def with_hindsight(stages: Sequence[Stage]) -> Stage:
     """
     first, last = stages[0], stages[-1]
     found = first.diagnosis
-    if len(last.effects) != 1 or found.best.effect == last.effects[0]:
+    best = found.best
+    if len(last.effects) != 1 or (best is not None and best.effect == last.effects[0]):
         return first
     return replace(first, diagnosis=judged(found.context.with_fit(last.effects[0], last.fit)))

@@ -5,13 +5,14 @@ from dataclasses import replace
 
 from hasel_sim.model import Model
 
+from hasel_sysid.data_gate import Finding as SetUpFault
 from hasel_sysid.diagnosis import diagnose
-from hasel_sysid.diagnosis.constancy import trends
+from hasel_sysid.diagnosis.adequacy import adequacy
+from hasel_sysid.diagnosis.explained import PARTLY, Status
 from hasel_sysid.diagnosis.search import WORTH_A_STEP
 from hasel_sysid.fit import FitResult, fit_least_squares
 from hasel_sysid.fit.refinement import changes_by_refinement, with_numerical_error
 from hasel_sysid.improve.conclusion import (
-    PARTLY,
     conclude,
     is_noise,
     last_diagnosis,
@@ -21,10 +22,12 @@ from hasel_sysid.improve.conclusion import (
 from hasel_sysid.improve.decision import Decision, decide
 from hasel_sysid.improve.exchange import exchanged
 from hasel_sysid.improve.hindsight import with_hindsight
+from hasel_sysid.improve.lawful import without_contradictions
 from hasel_sysid.improve.pair import explaining_pair
 from hasel_sysid.improve.promise import most_promised
 from hasel_sysid.improve.prune import pruned
 from hasel_sysid.improve.result import Improvement, Stage
+from hasel_sysid.improve.set_up import opposed_runs
 from hasel_sysid.problem import Problem
 
 _ENOUGH = 0.03
@@ -49,6 +52,7 @@ def improve(
     (default: the whole catalogue). on_stage: called with every stage as soon as it is known, to write its model file.
     """
     report = _Reporter(progress)
+    opposed = opposed_runs(problem, model)
     fit = fit_least_squares(problem, model, report.part("fit", 0.0, 0.15))
     stages = [_stage(fit, model, validation)]
     reason, negligible = "", False
@@ -57,6 +61,9 @@ def improve(
         stages[-1] = _completed(problem, replace(stages[-1], diagnosis=found), on_stage)
         decision = decide(stages[-1], found)
         reason, negligible = decision.reason, decision.negligible
+        if opposed:
+            reason = f"A fault of the set-up comes before any effect: {'; '.join(map(str, opposed))}"
+            break
         refit = _extended(problem, stages, decision)
         if refit is None:
             break
@@ -81,7 +88,27 @@ def improve(
         reason = f"Step {most_effects} was the last: more effects could imitate anything."
     if stages[-1].diagnosis is None:
         stages[-1] = _completed(problem, stages[-1], on_stage)
-    return conclude(stages, reason, negligible, _contradictions(stages))
+    return _concluded(stages, reason, negligible, opposed)
+
+
+def _concluded(
+    stages: Sequence[Stage], reason: str, negligible: bool, opposed: Sequence[SetUpFault]
+) -> Improvement:
+    """The verdict, after the last look: is what was added a law, and does the model describe its runs?"""
+    kept, refused, contradictions = without_contradictions(stages)
+    if refused:
+        reason, negligible = (
+            f"{' and '.join(refused)} would lower the error, but by no law: not added.",
+            False,
+        )
+    described = adequacy(kept[-1].fit.evaluation, last_diagnosis(kept).noise)
+    found = conclude(kept, reason, negligible, contradictions, described.misfits)
+    seen = kept[0].diagnosis.seen_beside(described.adequate, found.missing)
+    kept[0] = replace(kept[0], diagnosis=seen)
+    status = Status.UNEXPLAINED if opposed else found.status
+    return replace(
+        found, stages=kept, status=status, adequacy=described, refused=refused, opposed=bool(opposed)
+    )
 
 
 def _extended(problem: Problem, stages: Sequence[Stage], decision: Decision) -> FitResult | None:
@@ -126,10 +153,3 @@ def _completed(problem: Problem, stage: Stage, on_stage: OnStage | None) -> Stag
     if on_stage:
         on_stage(complete)
     return complete
-
-
-def _contradictions(stages: Sequence[Stage]) -> list[str]:
-    """What the runs would want of the added effects that one law cannot give."""
-    found = last_diagnosis(stages)
-    seen = trends(stages[-1].fit, found.noise, stages[-1].effects)
-    return [str(trend) for trend in seen if trend.contradicts]

@@ -7,12 +7,13 @@ from hasel_sim.errors import HaselSimError
 
 from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.diagnosis.context import plausible
-from hasel_sysid.diagnosis.significance import drops, orthonormal
+from hasel_sysid.diagnosis.explained import EXPLAINED, share_left
+from hasel_sysid.diagnosis.significance import drops
 from hasel_sysid.fit import FitResult, fit_least_squares
-from hasel_sysid.improve.conclusion import EXPLAINED, share_left
 from hasel_sysid.improve.exchange import with_effect
 from hasel_sysid.improve.result import Stage
 from hasel_sysid.problem import Problem
+from hasel_sysid.projection import orthonormal
 
 _FITTED = 2
 """How many pairs are fitted in full."""
@@ -35,7 +36,7 @@ def explaining_pair(problem: Problem, stage: Stage) -> FitResult | None:
             fit = fit_least_squares(problem, model, drafts=False)
         except HaselSimError:
             continue
-        left = share_left(stage.fit, fit, found.noise.mean_absolute)
+        left = share_left(stage.fit.mean_absolute_error, fit.mean_absolute_error, found.noise.mean_absolute)
         both_plausible = len(plausible(dict.fromkeys(pair, fit), stage.fit)) == len(pair)
         if both_plausible and left <= 1 - EXPLAINED:
             return fit

@@ -1,8 +1,9 @@
 """Whether a whole diagnosis of what an added effect leaves is worth its time."""
 
 from hasel_sysid.diagnosis import Diagnosis
-from hasel_sysid.diagnosis.significance import drops, orthonormal
+from hasel_sysid.diagnosis.significance import drops
 from hasel_sysid.fit import FitResult
+from hasel_sysid.projection import orthonormal
 
 
 def most_promised(fit: FitResult, found: Diagnosis) -> float:

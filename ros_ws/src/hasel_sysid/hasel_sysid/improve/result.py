@@ -1,19 +1,12 @@
 """The stages of an improvement and its verdict."""
 
-from dataclasses import dataclass
-from enum import Enum
+from dataclasses import asdict, dataclass
 
 from hasel_sysid.diagnosis import Diagnosis, Finding
+from hasel_sysid.diagnosis.adequacy import Adequacy
+from hasel_sysid.diagnosis.explained import Status
 from hasel_sysid.fit import FitResult
-
-
-class Status(str, Enum):
-    """How an improvement ended."""
-
-    NOTHING_MISSING = "nothing_missing"
-    EXPLAINED = "explained"
-    PARTLY_EXPLAINED = "partly_explained"
-    UNEXPLAINED = "unexplained"
+from hasel_sysid.noise import NoiseModel
 
 
 @dataclass(frozen=True)
@@ -46,7 +39,8 @@ class Improvement:
 
     stages: baseline first; missing: effects found missing; unexplained_fraction: of the baseline's mean
     |Δ sin θ| above the noise; reason: why the improvement stopped, in a sentence; contradictions: what tells that an
-    added effect is not the whole truth, in sentences.
+    added effect is not the whole truth, in sentences; adequacy: whether the last stage describes its runs; refused:
+    effects that were tried and not kept; opposed: whether runs move against the model, a fault of the set-up.
     """
 
     stages: list[Stage]
@@ -56,6 +50,9 @@ class Improvement:
     noise_floor: float
     reason: str
     contradictions: tuple[str, ...] = ()
+    adequacy: Adequacy | None = None
+    refused: tuple[str, ...] = ()
+    opposed: bool = False
 
     @property
     def model(self):
@@ -81,20 +78,35 @@ class Improvement:
                 "explainable_at_all": self.diagnosis.ceiling,
                 "reason": self.reason,
                 "contradictions": list(self.contradictions),
+                "refused": list(self.refused),
+                "adequate": self.adequacy is not None and self.adequacy.adequate,
+                "misfits": [] if self.adequacy is None else [asdict(m) for m in self.adequacy.misfits],
             },
         }
 
     def __str__(self) -> str:
-        return "\n".join([*map(str, self.stages), self.reason, *self.contradictions])
+        judged = [] if self.adequacy is None or self.adequacy.adequate else [str(self.adequacy)]
+        return "\n".join([*map(str, self.stages), self.reason, *self.contradictions, *judged])
 
 
 def diagnosis_json(diagnosis: Diagnosis) -> dict:
     """The machine-readable form of a diagnosis."""
     return {
-        "noise_floor": diagnosis.noise.mean_absolute,
+        "noise_floor": diagnosis.measured.mean_absolute,
+        "noise": noise_json(diagnosis.measured),
         "ranking": [_ranked(finding) for finding in diagnosis.findings],
         "indistinguishable": [list(group) for group in diagnosis.groups],
         "suspects": diagnosis.suspects,
+    }
+
+
+def noise_json(noise: NoiseModel) -> dict:
+    """What is known of the noise; an upper bound says that nothing in the recordings shows it alone."""
+    return {
+        "standard_deviation": noise.standard_deviation,
+        "mean_absolute": noise.mean_absolute,
+        "source": noise.source,
+        "upper_bound": noise.upper_bound,
     }
 
 

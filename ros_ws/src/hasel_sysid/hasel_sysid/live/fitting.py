@@ -10,13 +10,12 @@ from hasel_sim.parallel import executor
 from hasel_sysid.dataset import experiment, prepared
 from hasel_sysid.diagnosis import Diagnosis, Verdict, diagnose
 from hasel_sysid.diagnosis.context import SIGNIFICANT
+from hasel_sysid.diagnosis.explained import Status, status_with
 from hasel_sysid.fit import FitResult, fit_least_squares, identify
 from hasel_sysid.fit.least_squares import Progress
 from hasel_sysid.problem import Problem
 
 DEFAULT_METHOD = "least_squares"
-_EXPLAINED, _PARTLY = 0.9, 0.6
-"""Share of the error above the noise that the best effect must remove to be called an explanation."""
 
 
 def chosen_recordings(paths: Sequence[str | Path], heard: Sequence[Recording]) -> list[Recording]:
@@ -57,9 +56,9 @@ def diagnose_recordings(
 
 def status(diagnosis: Diagnosis) -> str:
     """What a diagnosis comes to, before any effect is added: one of the words of the Diagnosis message."""
+    describes = diagnosis.adequacy is not None and diagnosis.adequacy.adequate
     if diagnosis.p_value >= SIGNIFICANT:
-        return "nothing_missing"
+        return (Status.NOTHING_MISSING if describes else Status.UNEXPLAINED).value
     missing = any(finding.verdict is Verdict.MISSING for finding in diagnosis.findings)
-    if not missing or diagnosis.explained < _PARTLY:
-        return "unexplained"
-    return "explained" if diagnosis.explained >= _EXPLAINED else "partly_explained"
+    left = 1.0 - diagnosis.explained
+    return (status_with(left, describes) if missing else Status.UNEXPLAINED).value

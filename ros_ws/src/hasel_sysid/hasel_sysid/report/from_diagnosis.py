@@ -46,7 +46,7 @@ def diagnosis_content(diagnosis: Diagnosis, comparison: Comparison) -> ReportCon
         ranking=ranked_rows(diagnosis),
         groups=diagnosis.groups,
         remains=what_remains(diagnosis),
-        noise_floor=diagnosis.noise.mean_absolute,
+        noise_floor=diagnosis.measured.mean_absolute,
     )
 
 

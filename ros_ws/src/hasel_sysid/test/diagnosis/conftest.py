@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hasel_sysid.diagnosis.context import Context, expected_squares
 from hasel_sysid.diagnosis.signature import Signature
-from hasel_sysid.diagnosis.significance import orthonormal
 from hasel_sysid.noise import NoiseModel
+from hasel_sysid.projection import orthonormal
 
 FRAMES = 1200
 TIME = np.arange(FRAMES) / 120.0
@@ -56,8 +56,14 @@ def _solve(shape: np.ndarray, residual: np.ndarray) -> np.ndarray:
 
 
 def _fit(name: str, residual: np.ndarray, jacobian: np.ndarray) -> SimpleNamespace:
+    passive = SimpleNamespace(run=SimpleNamespace(name="swing", schedule=None, time=TIME[RUNS == 0]))
     evaluation = SimpleNamespace(
-        residual=residual, jacobian=jacobian, runs=RUNS, sum_of_squares=float(residual @ residual)
+        residual=residual,
+        jacobian=jacobian,
+        runs=RUNS,
+        sum_of_squares=float(residual @ residual),
+        mean_absolute_error=float(np.abs(residual).mean()),
+        simulations=[passive] * 4,
     )
     effects = [SimpleNamespace(id=name, parameters=[SimpleNamespace(name="size", null=0.0)])]
     model = SimpleNamespace(effects=effects, values={f"{name}.size": 0.5})

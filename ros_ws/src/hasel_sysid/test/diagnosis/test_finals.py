@@ -57,7 +57,8 @@ def _fits(monkeypatch):
         "fit_least_squares",
         lambda problem, model, **how: result(model, next(left[model.effects[0].id])),
     )
-    monkeypatch.setattr(module, "noise_beyond", lambda fit, finals: None)
+    monkeypatch.setattr(module, "noise_of", lambda problem, fit, finals: None)
+    monkeypatch.setattr(module, "allowed_noise", lambda problem, noise: None)
     monkeypatch.setattr(module, "expected_squares", lambda *of: 0.1)
     monkeypatch.setattr(module, "plausible", lambda finals, fit: finals)
 

@@ -18,7 +18,8 @@ def test_what_no_effect_removes_speaks_for_none_of_them(context):
     """When the right effect is not among the candidates, none of them is probable."""
     whole = context(0.1)
     squares = {name: whole.squares[name] for name in ("other", "swallowed")}
-    found, none = probabilities(replace(whole, squares=squares))
+    finals = {name: whole.finals[name] for name in squares}
+    found, none = probabilities(replace(whole, squares=squares, finals=finals))
     assert none > 0.95
     assert max(found.values()) < 0.05
 

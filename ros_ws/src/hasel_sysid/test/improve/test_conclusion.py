@@ -7,12 +7,13 @@ from hasel_sysid.improve import Stage, Status
 from hasel_sysid.improve.conclusion import conclude, left_over
 
 FLOOR = 0.0024
+NOISE_FLOOR = SimpleNamespace(mean_absolute=FLOOR)
 SOMETHING, NOISE = 0.002, 0.6
 
 
 def stage(error, *effects, chance=None):
     """A stage with a mean error; chance: of noise alone looking like what it leaves, None if nobody looked."""
-    diagnosis = chance and SimpleNamespace(p_value=chance, noise=SimpleNamespace(mean_absolute=FLOOR))
+    diagnosis = chance and SimpleNamespace(p_value=chance, noise=NOISE_FLOOR, measured=NOISE_FLOOR)
     return Stage(effects, SimpleNamespace(mean_absolute_error=error), None, diagnosis)
 
 
@@ -22,10 +23,15 @@ def stage(error, *effects, chance=None):
         ([stage(0.0025, chance=NOISE)], Status.NOTHING_MISSING, ()),
         ([stage(0.0444, chance=SOMETHING)], Status.UNEXPLAINED, ()),
         ([stage(0.0444, chance=SOMETHING), stage(0.0025, "drag")], Status.EXPLAINED, ("drag",)),
-        # of a large error all but nothing is gone
-        ([stage(0.0444, chance=SOMETHING), stage(0.0036, "drag")], Status.EXPLAINED, ("drag",)),
-        ([stage(0.0444, chance=SOMETHING), stage(0.0040, "drag")], Status.PARTLY_EXPLAINED, ("drag",)),
-        # three effects may imitate what is not listed, unless they come near the noise
+        # the baseline is far above the noise, whatever no listed effect can do about it
+        ([stage(0.0444, chance=NOISE)], Status.UNEXPLAINED, ()),
+        # nearly all of a large error is gone, but what is left is not noise
+        ([stage(0.0444, chance=SOMETHING), stage(0.0036, "drag")], Status.PARTLY_EXPLAINED, ("drag",)),
+        (
+            [stage(0.0444, chance=SOMETHING), stage(0.0036, "drag", chance=NOISE)],
+            Status.PARTLY_EXPLAINED,
+            ("drag",),
+        ),
         ([stage(0.0444, chance=SOMETHING), stage(0.0036, *"abc")], Status.PARTLY_EXPLAINED, ("a", "b", "c")),
         ([stage(0.0444, chance=SOMETHING), stage(0.0029, *"abc")], Status.EXPLAINED, ("a", "b", "c")),
         (

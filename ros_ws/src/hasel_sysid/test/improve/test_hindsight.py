@@ -50,11 +50,11 @@ def test_improve_looks_back_when_an_effect_was_added(monkeypatch):
         "exchanged": soft,
         "pruned": soft,
         "is_noise": True,
-        "_contradictions": [],
+        "opposed_runs": [],
     }
     for name, answer in stubs.items():
         monkeypatch.setattr(improve, name, lambda *of, answer=answer: answer)
     monkeypatch.setattr(improve, "_completed", lambda problem, known, on_stage: known)
-    monkeypatch.setattr(improve, "conclude", lambda stages, *why: stages)
+    monkeypatch.setattr(improve, "_concluded", lambda stages, *why: stages)
     baseline, last = improve.improve(None, bare.model)
     assert baseline.diagnosis == ("spine_modulus", last.fit)

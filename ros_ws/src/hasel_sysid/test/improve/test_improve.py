@@ -15,7 +15,7 @@ PLAIN, WITH_ONE, WITH_TWO = (), ("payload",), ("drag", "delay")
 def fit(error, effects):
     """A fit of a model with these effects."""
     model = SimpleNamespace(effects=[SimpleNamespace(id=effect) for effect in effects])
-    return SimpleNamespace(mean_absolute_error=error, model=model)
+    return SimpleNamespace(mean_absolute_error=error, model=model, evaluation=None)
 
 
 @pytest.fixture
@@ -23,8 +23,13 @@ def improved(monkeypatch):
     """What becomes of a baseline with an error of 0.02: one effect is accepted if it leaves `one`, else none is; a pair
     leaves noise.
     """
+    noise = SimpleNamespace(mean_absolute=NOISE)
     found = SimpleNamespace(
-        p_value=0.002, noise=SimpleNamespace(mean_absolute=NOISE), best=SimpleNamespace(effect="payload")
+        p_value=0.002,
+        noise=noise,
+        measured=noise,
+        best=SimpleNamespace(effect="payload"),
+        seen_beside=lambda adequate, added: found,
     )
 
     def decide(stage, _found):
@@ -40,11 +45,13 @@ def improved(monkeypatch):
             "exchanged": one and fit(one, WITH_ONE),
             "explaining_pair": fit(NOISE, WITH_TWO),
             "most_promised": 1.0,
-            "_contradictions": [],
+            "opposed_runs": [],
+            "adequacy": SimpleNamespace(adequate=True, misfits=()),
         }
         for name, answer in stubs.items():
             monkeypatch.setattr(module, name, lambda *of, answer=answer: answer)
         monkeypatch.setattr(module, "decide", decide)
+        monkeypatch.setattr(module, "without_contradictions", lambda stages: (list(stages), (), []))
         monkeypatch.setattr(module, "pruned", lambda problem, refit, earlier: refit)
         monkeypatch.setattr(module, "_completed", lambda problem, known, on_stage: known)
         monkeypatch.setattr(module, "with_hindsight", lambda stages: stages[0])

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from hasel_sysid.diagnosis.significance import orthonormal
 from hasel_sysid.noise import NoiseModel, estimate_noise
 from hasel_sysid.problem import Evaluation
+from hasel_sysid.projection import orthonormal
 from hasel_sysid.where_it_fails.drive_cycle import drive_cycle
 
 _FEWEST_FRAMES = 16

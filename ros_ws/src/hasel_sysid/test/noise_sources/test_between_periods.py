@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from hasel_sim.drive.voltage import VoltageSchedule
-from hasel_sysid.diagnosis.between_periods import noise_between_periods
 from hasel_sysid.noise import NoiseModel
+from hasel_sysid.noise_sources.between_periods import noise_between_periods
 
 TIME = np.arange(0, 4.0, 1 / 120)
 TRUTH = NoiseModel(white=4e-6, coloured=5e-6, correlation=0.9)

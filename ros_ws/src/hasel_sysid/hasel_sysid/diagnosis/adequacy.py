@@ -1,0 +1,134 @@
+"""Whether a model describes its runs to the noise, in every regime of them, and where it does not."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import norm
+
+from hasel_sysid.diagnosis.explained import NEAR_NOISE
+from hasel_sysid.noise import NoiseModel
+from hasel_sysid.problem import Evaluation
+from hasel_sysid.projection import orthonormal
+from hasel_sysid.where_it_fails.drive_cycle import drive_cycle, driven_side
+
+_DRAWS = 400
+_FALSE_DISCOVERIES = 0.01
+_MATTERS = 1.5
+"""A regime fails only where its rms error is this many times what is allowed: laws are judged, not decimals."""
+_FEWEST_FRAMES = 8
+_QUARTERS = 4
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """A regime in which a model does not describe its runs; times: its rms error over the allowed one."""
+
+    regime: str
+    times: float
+
+    def __str__(self) -> str:
+        return f"{self.regime} ({self.times:.1f} times)"
+
+
+@dataclass(frozen=True)
+class Adequacy:
+    """times: mean error of all frames over the allowed one; misfits: regimes in which it fails, worst first.
+
+    allowed: mean |Δ sin θ| that a right model may leave.
+    """
+
+    times: float
+    allowed: float
+    misfits: tuple[Misfit, ...] = ()
+
+    @property
+    def overall(self) -> bool:
+        """Whether all frames together are near what is allowed."""
+        return self.times <= NEAR_NOISE
+
+    @property
+    def adequate(self) -> bool:
+        """Whether the model describes these runs, everywhere."""
+        return self.overall and not self.misfits
+
+    def __str__(self) -> str:
+        if self.adequate:
+            return f"The model describes these runs: its error is {self.times:.2f} times what is allowed for."
+        where = ", ".join(map(str, self.misfits[:3]))
+        where = f", most in {where}" if where else ""
+        return (
+            f"The model does not describe these runs yet: its error is {self.times:.3g} times the {self.allowed:.2g} "
+            f"that is allowed for{where}."
+        )
+
+
+def adequacy(evaluation: Evaluation, allowed: NoiseModel) -> Adequacy:
+    """Lack of fit against what a right model may leave, overall and per regime (Benjamini and Hochberg 1995).
+
+    allowed: noise, with what is allowed for discrepancy. Regimes: run, voltage, frequency, side, quarter of the cycle.
+    """
+    basis = orthonormal(evaluation.jacobian)
+    draws = allowed.sample(evaluation.runs, _DRAWS, np.random.default_rng(2))
+    draws -= basis @ (basis.T @ draws)
+    squares, by_noise = evaluation.residual**2, draws**2
+    found, chances = [], []
+    for name, frames in regimes(evaluation):
+        if frames.sum() < _FEWEST_FRAMES:
+            continue
+        own, expected = squares[frames].mean(), by_noise[frames].mean(axis=0)
+        spread = float(expected.std())
+        # a normal tail beyond the draws, so that a regime far out is not limited by their number
+        found.append(Misfit(name, float(np.sqrt(own / expected.mean()))))
+        chances.append((own - expected.mean()) / spread if spread > 0 else 0.0)
+    rejected = _beyond_chance(np.array(chances))
+    misfits = [m for m, beyond in zip(found, rejected, strict=True) if beyond and m.times > _MATTERS]
+    times = evaluation.mean_absolute_error / allowed.mean_absolute
+    misfits.sort(key=lambda misfit: -misfit.times)
+    return Adequacy(float(times), allowed.mean_absolute, tuple(misfits))
+
+
+def regimes(evaluation: Evaluation) -> Iterator[tuple[str, np.ndarray]]:
+    """Name and frames of every regime; those that all frames share are left out."""
+    labels = _labels(evaluation)
+    for kind, values in labels.items():
+        every = [v for v in dict.fromkeys(values) if v]
+        if len(every) > 1:
+            for value in every:
+                yield f"{kind} {value}".strip(), np.array([v == value for v in values])
+
+
+def _labels(evaluation: Evaluation) -> dict[str, list[str]]:
+    labels: dict[str, list[str]] = {"run": [], "": [], "frequency": [], "side": [], "part of the cycle": []}
+    for simulation, used in zip(evaluation.simulations, evaluation.frames, strict=True):
+        run = simulation.run
+        count, time = int(used.sum()), run.time[used]
+        voltage = None if run.schedule is None else run.schedule.at(time)
+        cycle = None if voltage is None or count < 2 else drive_cycle(time, voltage)
+        level = "" if run.schedule is None else f"{np.abs(run.schedule.voltage).max(initial=0.0):.4g} V"
+        side = [""] * count
+        if voltage is not None:
+            side = [{1: "upper", -1: "lower", 0: ""}[s] for s in driven_side(voltage)]
+        part = [""] * count
+        if cycle is not None:
+            part = [f"{int(_QUARTERS * p) + 1} of {_QUARTERS}" for p in cycle.phase(time)]
+        labels["run"] += [run.name] * count
+        labels[""] += [level] * count
+        labels["frequency"] += [f"{1 / cycle.period:.3g} Hz" if cycle else ""] * count
+        labels["side"] += side
+        labels["part of the cycle"] += part
+    return labels
+
+
+def _beyond_chance(scores: np.ndarray) -> np.ndarray:
+    """Which of many standard scores are too large, with few false ones among them."""
+    if len(scores) == 0:
+        return np.zeros(0, dtype=bool)
+    chance = norm.sf(scores)
+    order = np.argsort(chance)
+    line = _FALSE_DISCOVERIES * np.arange(1, len(scores) + 1) / len(scores)
+    below = np.flatnonzero(chance[order] <= line)
+    rejected = np.zeros(len(scores), dtype=bool)
+    if len(below):
+        rejected[order[: below[-1] + 1]] = True
+    return rejected

@@ -1,0 +1,56 @@
+"""Whether a model describes its runs, and where it does not."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sysid.diagnosis.adequacy import adequacy
+from hasel_sysid.noise import NoiseModel
+
+TIME = np.arange(0, 2.0, 1 / 120)
+NOISE = NoiseModel(white=4e-6, coloured=5e-6, correlation=0.9)
+
+
+def _run(voltage, frequency):
+    time = np.arange(0, 2.0, 0.5 / frequency)
+    upper = np.arange(len(time)) % 2 == 0
+    schedule = VoltageSchedule(time, voltage * np.stack([upper, ~upper], axis=1))
+    run = SimpleNamespace(name=f"{voltage:g}V_{frequency:g}Hz", time=TIME, schedule=schedule)
+    return SimpleNamespace(run=run)
+
+
+def _evaluation(seed, missed=lambda run: 0.0):
+    simulations = [_run(v, f) for v in (3500.0, 4500.0, 5500.0) for f in (1.0, 2.0, 4.0)]
+    runs = np.repeat(np.arange(9), len(TIME))
+    residual = NOISE.sample(runs, 1, np.random.default_rng(seed))[:, 0]
+    residual = residual + np.concatenate([np.broadcast_to(missed(s.run), len(TIME)) for s in simulations])
+    return SimpleNamespace(
+        residual=residual,
+        jacobian=np.sin(np.arange(len(residual)))[:, None],
+        runs=runs,
+        simulations=simulations,
+        frames=[np.ones(len(TIME), dtype=bool)] * 9,
+        mean_absolute_error=float(np.abs(residual).mean()),
+    )
+
+
+def test_noise_alone_is_adequate_in_every_regime():
+    """In thirty draws of correlated noise no regime is accused."""
+    assert all(adequacy(_evaluation(seed), NOISE).adequate for seed in range(30))
+
+
+@pytest.mark.parametrize(
+    ("regime", "missed"),
+    [
+        ("5500 V", lambda run: 0.009 * np.sin(40 * TIME) if "5500V" in run.name else 0.0),
+        ("frequency 4 Hz", lambda run: 0.009 * np.sin(40 * TIME) if "_4Hz" in run.name else 0.0),
+        ("side lower", lambda run: 0.009 * np.sin(40 * TIME) * (run.schedule.at(TIME)[:, 1] > 0)),
+    ],
+)
+def test_a_law_that_fails_in_one_regime_is_not_adequate(regime, missed):
+    """It is told where, though the whole may be near the noise."""
+    found = adequacy(_evaluation(0, missed), NOISE)
+    assert not found.adequate
+    assert regime in [misfit.regime for misfit in found.misfits]
+    assert "does not describe these runs yet" in str(found)

@@ -1,0 +1,75 @@
+"""Noise that is measured: at rest, or between repeated runs."""
+
+import numpy as np
+import pytest
+from hasel_recording import Recording
+from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.run import Run
+from hasel_sysid.dataset import Experiment
+from hasel_sysid.errors import SysidError
+from hasel_sysid.noise import NoiseModel
+from hasel_sysid.noise_sources.measured import given_noise, measured_noise
+
+TIME = np.arange(-0.5, 4.0, 0.01)
+TRUTH = NoiseModel(white=4e-10, coloured=0.0, correlation=0.5)
+
+
+def noise(seed, truth=TRUTH):
+    """One series of it."""
+    return truth.sample(np.zeros(len(TIME), int), 1, np.random.default_rng(seed))[:, 0]
+
+
+def swing(released, initial_time, seed=0, truth=TRUTH):
+    """A body at rest that is let go by hand at `released` [s]; the model is to start later, at `initial_time` [s]."""
+    since = np.clip(TIME - released, 0.0, None)
+    angle = -0.1 * (1 - np.exp(-2 * since) * np.cos(25 * since)) + noise(seed, truth)
+    run = Run("swing", TIME, None, "static_equilibrium", 1.5, initial_time)
+    return Experiment(Recording("swing", TIME, angle), run)
+
+
+def driven(first, seed, amplitude=0.1):
+    """A body whose first muscle is switched on at `first` [s]."""
+    voltage = VoltageSchedule(np.array([-0.5, first]), np.array([[0.0, 0.0], [4000.0, 0.0]]))
+    angle = np.where(first < TIME, amplitude * (1 - np.exp(-4 * (TIME - first))), 0.0) + noise(seed)
+    return Experiment(Recording("driven", TIME, angle), Run("driven", TIME, voltage))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_rest_before_the_start_shows_the_noise_not_the_release_by_hand(seed):
+    """The frames between the hand's release and the model's start belong to the motion."""
+    found = measured_noise([swing(released=0.0, initial_time=0.13, seed=seed)])
+    assert found.standard_deviation == pytest.approx(TRUTH.standard_deviation, rel=0.4)
+    assert not found.upper_bound and "at rest" in found.source
+
+
+def test_noise_that_neighbouring_frames_share_is_seen_at_rest_too():
+    """Pooled over eight runs."""
+    truth = NoiseModel(white=1e-6, coloured=4e-6, correlation=0.8)
+    runs = [swing(0.0, 0.1, seed, truth) for seed in range(8)]
+    assert measured_noise(runs).standard_deviation == pytest.approx(truth.standard_deviation, rel=0.3)
+
+
+def test_before_the_first_voltage_a_body_is_at_rest():
+    """What the drive does later is not looked at."""
+    found = measured_noise([driven(0.3, seed) for seed in range(3)])
+    assert found.standard_deviation == pytest.approx(TRUTH.standard_deviation, rel=0.3)
+
+
+def test_a_recording_that_begins_in_full_swing_has_no_rest():
+    """Nor has one whose drive is on from the first frame."""
+    assert measured_noise([swing(released=-2.0, initial_time=0.13)]) is None
+    assert measured_noise([driven(-0.5, 0)]) is None
+
+
+def test_what_differs_between_equal_runs_is_noise():
+    """It comes before the noise at rest: a run may vary more than a camera does."""
+    found = measured_noise([driven(0.3, 1), driven(0.3, 2, amplitude=0.101)])
+    assert "repeated runs" in found.source
+    assert found.standard_deviation > 5 * TRUTH.standard_deviation
+
+
+def test_noise_may_be_given():
+    """As its standard deviation, above 0."""
+    assert given_noise(0.003).standard_deviation == pytest.approx(0.003)
+    with pytest.raises(SysidError, match="expected a standard deviation"):
+        given_noise(0.0)
