@@ -31,7 +31,7 @@ class Finding:
     expected: its values in SI units (name: value, standard error); error_removed: share of the mean |Δ sin θ| above
     the noise that it explains, 0 to 1; swallowed: share of its signature that the fitted parameters imitate;
     visible_above: the smallest size that these recordings would have shown, in the unit of its first parameter; source:
-    where a user's own effect comes from.
+    where a user's own effect comes from; beside: other effects without which it would not be seen.
     """
 
     effect: str
@@ -44,12 +44,15 @@ class Finding:
     visible_above: float
     fit: FitResult | None = None
     source: str | None = None
+    beside: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         first = next(iter(self.expected), None)
         unit = "" if first is None or self.units[first] == "1" else f" {self.units[first]}"
         value = "" if first is None else f" of {self.expected[first][0]:.3g}{unit}"
         share = f"{self.error_removed:.0%} of the error above the noise"
+        if self.beside:
+            return f"{self.effect} is missing beside {' and '.join(self.beside)}: together they explain most."
         if self.verdict is Verdict.MISSING:
             what = "is missing" if self.probability > 0.5 else "or an effect that looks like it is missing"
             return (
@@ -76,7 +79,10 @@ _NEEDS_A_MODEL = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
 
 
 def _seen(finding: Finding, adequate: bool, added: Sequence[str]) -> Finding:
-    if finding.effect in added and finding.verdict is not Verdict.MISSING:
+    if finding.effect in added:
+        others = tuple(effect for effect in added if effect != finding.effect)
+        return replace(finding, verdict=Verdict.MISSING, beside=others)
+    if added and finding.verdict is Verdict.MISSING:
         return replace(finding, verdict=Verdict.MISSING_IF_SIZE_MATTERS)
     if not adequate and finding.verdict in _NEEDS_A_MODEL:
         return replace(finding, verdict=Verdict.NOT_JUDGED)
@@ -128,8 +134,8 @@ class Diagnosis:
     def seen_beside(self, adequate: bool, added: Sequence[str] = ()) -> "Diagnosis":
         """The diagnosis as it may be said of a model that describes its runs, or does not.
 
-        Where it does not, no effect is absent, undecided or invisible: nobody can know yet. added: effects that turned
-        out to be missing beside the first one.
+        Where it does not, no effect is absent, undecided or invisible: nobody can know yet. added: what turned out
+        to be missing in the end, which may be more or other than what looked best at first.
         """
         return replace(self, findings=[_seen(finding, adequate, added) for finding in self.findings])
 

@@ -17,6 +17,9 @@ _LOAD_FACTORS = (0.25, 0.5, 1.0, 2.0, 3.0)
 class Manoeuvre:
     """One experiment. voltage [V]; frequency [1/s]; waveform: box, triangle or sine; muscles: both, upper or lower.
 
+    Each muscle is driven for a whole half period, with positive voltages only, which every supply can give; one muscle
+    alone has the first half.
+
     load_factor: for a passive body, how many times its loads it is held under before it is let go.
     """
 
@@ -30,7 +33,7 @@ class Manoeuvre:
     def goal(self) -> dict:
         """Fields of a RunExperiment goal."""
         fields = {key: value for key, value in asdict(self).items() if key != "load_factor"}
-        return {**fields, "polarity": "alternating", "duty": 0.5, "rest_time": 2.0, "output": ""}
+        return {**fields, "polarity": "positive", "duty": 1.0, "rest_time": 2.0, "output": ""}
 
     def run(self) -> Run:
         """The run to simulate."""
@@ -51,8 +54,11 @@ class Manoeuvre:
             phase = (time * self.frequency) % 1.0
             wave = np.sin(2 * np.pi * phase) if self.waveform == "sine" else _triangle(phase)
             shape = np.stack([np.maximum(wave, 0.0), np.maximum(-wave, 0.0)], axis=1)
-        on = {"both": (1.0, 1.0), "upper": (1.0, 0.0), "lower": (0.0, 1.0)}[self.muscles]
-        return VoltageSchedule(time, self.voltage * shape * np.array(on))
+        if self.muscles != "both":
+            alone = shape[:, 0]
+            shape = np.zeros_like(shape)
+            shape[:, 0 if self.muscles == "upper" else 1] = alone
+        return VoltageSchedule(time, self.voltage * shape)
 
     def __str__(self) -> str:
         if self.load_factor is not None:
