@@ -1,5 +1,6 @@
 """One run of an experiment in memory."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -72,6 +73,13 @@ class Recording:
         return np.isfinite(self.sin_theta)
 
     @property
+    def angle_markers(self) -> np.ndarray | None:
+        """Head, middle and tail, whose angle sin_theta is, [n, 3, 2] in marker_unit; None where not recorded."""
+        if self.markers is None or not set(MARKER_NAMES) <= set(self.marker_names):
+            return None
+        return self.markers[:, [self.marker_names.index(name) for name in MARKER_NAMES]]
+
+    @property
     def driven(self) -> bool:
         """Whether a drive was recorded, be it zero throughout."""
         return self.drive_signal is not None or self.drive_values is not None
@@ -112,14 +120,22 @@ class Recording:
         lost = frames - int(self.valid.sum())
         text += f", {lost} without an angle" if lost else ""
         _, values = self.drive()
-        text += f", {self._largest(values)}" if values.any() else ", passive"
+        text += (
+            f", up to {level_text(largest_levels(self.channels, values))}" if values.any() else ", passive"
+        )
         return text + (
             f", |sin θ| up to {np.abs(self.sin_theta[self.valid]).max():.3g}" if lost < frames else ""
         )
 
-    def _largest(self, values: np.ndarray) -> str:
-        """The largest magnitude per unit that drives the body: "up to 3500 V"."""
-        largest: dict[str, float] = {}
-        for channel, column in zip(self.channels, values.T, strict=True):
-            largest[channel.unit] = max(largest.get(channel.unit, 0.0), float(np.abs(column).max()))
-        return "up to " + " and ".join(f"{value:.5g} {unit}" for unit, value in largest.items())
+
+def largest_levels(channels: tuple[DriveChannel, ...], values: np.ndarray) -> dict[str, float]:
+    """Return the largest magnitude of a drive [n, channels] per unit, without the units that are zero throughout."""
+    largest: dict[str, float] = {}
+    for channel, column in zip(channels, values.T, strict=True):
+        largest[channel.unit] = max(largest.get(channel.unit, 0.0), float(np.abs(column).max(initial=0.0)))
+    return {unit: value for unit, value in largest.items() if value > 0}
+
+
+def level_text(levels: Mapping[str, float]) -> str:
+    """Return levels per unit as "5500 V" or "25000 Pa and 0.007 m"; "passive" where there are none."""
+    return " and ".join(f"{value:.5g} {unit}" for unit, value in levels.items()) or "passive"

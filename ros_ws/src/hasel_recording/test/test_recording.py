@@ -40,3 +40,11 @@ def test_every_signal_and_marker_has_a_name(driven):
         replace(driven, drive_signal=np.zeros((240, 3)))
     with pytest.raises(RecordingError, match="4 markers, but names 3"):
         replace(driven, markers=np.zeros((240, 4, 2)))
+
+
+def test_the_angles_markers_are_chosen_by_name(driven):
+    """Of any number of markers head, middle and tail are those of the angle."""
+    markers = np.arange(240 * 8.0).reshape(240, 4, 2)
+    run = replace(driven, markers=markers, marker_names=("head", "neck", "middle", "tail"))
+    assert np.array_equal(run.angle_markers, markers[:, [0, 2, 3]])
+    assert replace(run, marker_names=("a", "b", "c", "d")).angle_markers is None

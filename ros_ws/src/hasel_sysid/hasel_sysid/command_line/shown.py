@@ -23,7 +23,7 @@ def show(comparisons: Sequence[Comparison], said: Sequence[Finding] = ()) -> Non
     tell(comparisons[0].set_up, said)
     console = Console(soft_wrap=True)
     console.print(run_table(comparisons))
-    if any(run.series.voltage > 0 for run in comparisons[0].runs):
+    if any(run.series.level > 0 for run in comparisons[0].runs):
         console.print(condition_table(comparisons))
     for comparison in comparisons:
         print(comparison)

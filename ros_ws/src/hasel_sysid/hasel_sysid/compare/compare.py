@@ -29,7 +29,7 @@ def compare(
 ) -> Comparison:
     """Simulate all experiments and the unseen ones with one model.
 
-    A model without amplitudes gets its start values; one that has some keeps them, so that unseen voltages are
+    A model without amplitudes gets its start values; one that has some keeps them, so that unseen levels are
     interpolated. label: what to call the model (default: its name).
     Raises SysidError for runs the body cannot have, SimulationError when the motion cannot be followed.
     """
@@ -75,7 +75,12 @@ def series_of(experiment: Experiment, simulation: Simulation) -> RunSeries:
     schedule = experiment.run.schedule
     drive = None if schedule is None else (schedule.time, schedule.voltage)
     series = run_series(
-        experiment.name, experiment.run.time, experiment.sin_theta, simulation.sin_theta, drive
+        experiment.name,
+        experiment.run.time,
+        experiment.sin_theta,
+        simulation.sin_theta,
+        drive,
+        experiment.recording.channels,
     )
     if len(series.time) == 0:
         raise SysidError(

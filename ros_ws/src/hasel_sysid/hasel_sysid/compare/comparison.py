@@ -9,7 +9,7 @@ from hasel_sim.model import Model
 from hasel_sysid.compare.run_comparison import RunComparison
 from hasel_sysid.data_gate import Finding
 from hasel_sysid.where_it_fails.analyse import WhereItFails
-from hasel_sysid.where_it_fails.by_condition import ConditionError, error_by_frequency, error_by_voltage
+from hasel_sysid.where_it_fails.by_condition import ConditionError, error_by_frequency, error_by_level
 
 
 def _error(runs: Sequence[RunComparison]) -> float | None:
@@ -40,9 +40,9 @@ class Comparison:
         return _error([run for run in self.runs if run.unseen])
 
     @property
-    def by_voltage(self) -> tuple[ConditionError, ...]:
-        """Error for every voltage."""
-        return error_by_voltage([run.series for run in self.runs])
+    def by_level(self) -> tuple[ConditionError, ...]:
+        """Error for every level of the drive."""
+        return error_by_level([run.series for run in self.runs])
 
     @property
     def by_frequency(self) -> tuple[ConditionError, ...]:
@@ -57,7 +57,7 @@ class Comparison:
             "mae_fit": self.mean_absolute_error,
             "mae_validation": self.mean_absolute_error_unseen,
             "runs": [run.to_json() for run in self.runs],
-            "by_voltage": [_row(row, "voltage") for row in self.by_voltage],
+            "by_level": [_row(row, "level") for row in self.by_level],
             "by_frequency": [_row(row, "frequency") for row in self.by_frequency],
             "where_it_fails": self.where.sentences(),
             "failures": [failure.to_json() for failure in self.where.failures],
@@ -75,4 +75,4 @@ class Comparison:
 
 
 def _row(row: ConditionError, key: str) -> dict:
-    return {key: row.condition, "runs": row.runs, "mae": row.mean_absolute_error}
+    return {key: row.condition, "label": row.label, "runs": row.runs, "mae": row.mean_absolute_error}

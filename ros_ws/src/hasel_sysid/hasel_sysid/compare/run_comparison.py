@@ -46,7 +46,7 @@ class RunComparison:
         return {
             "name": self.name,
             "unseen": self.unseen,
-            "voltage": self.series.voltage,
+            "drive": self.series.levels,
             "frequency": self.series.frequency,
             "frames": len(self.series.time),
             "mae": self.mean_absolute_error,

@@ -11,7 +11,7 @@ from hasel_sysid.where_it_fails.by_condition import ConditionError
 def run_table(comparisons: Sequence[Comparison]) -> Table:
     """One row per run; error, offset and fit of one model, or the errors of several side by side."""
     table = Table(title="mean |Δ sin θ|, each run's offset taken out", title_justify="left")
-    for name in ("run", "V", "Hz"):
+    for name in ("run", "drive", "Hz"):
         table.add_column(name, justify="left" if name == "run" else "right")
     single = len(comparisons) == 1
     names = ["error", "with offset", "fit %"] if single else [c.label for c in comparisons]
@@ -27,7 +27,7 @@ def run_table(comparisons: Sequence[Comparison]) -> Table:
         else:
             cells = [f"{c.runs[index].mean_absolute_error:.5f}" for c in comparisons]
         label = f"{run.name} (unseen)" if run.unseen else run.name
-        table.add_row(label, f"{run.series.voltage:.0f}", f"{run.series.frequency:.2g}", *cells)
+        table.add_row(label, run.series.level_text, f"{run.series.frequency:.2g}", *cells)
     table.add_section()
     totals = (
         ("all fitted runs", [c.mean_absolute_error for c in comparisons]),
@@ -40,19 +40,19 @@ def run_table(comparisons: Sequence[Comparison]) -> Table:
 
 
 def condition_table(comparisons: Sequence[Comparison]) -> Table:
-    """Errors by voltage and by frequency, one column per model."""
-    table = Table(title="by voltage and frequency", title_justify="left")
+    """Errors by level of the drive and by frequency, one column per model."""
+    table = Table(title="by drive and frequency", title_justify="left")
     table.add_column("condition", justify="right")
     table.add_column("runs", justify="right")
     for comparison in comparisons:
         table.add_column("error" if len(comparisons) == 1 else comparison.label, justify="right")
-    _add(table, [c.by_voltage for c in comparisons], "V")
+    _add(table, [c.by_level for c in comparisons])
     table.add_section()
-    _add(table, [c.by_frequency for c in comparisons], "Hz")
+    _add(table, [c.by_frequency for c in comparisons])
     return table
 
 
-def _add(table: Table, columns: Sequence[Sequence[ConditionError]], unit: str) -> None:
+def _add(table: Table, columns: Sequence[Sequence[ConditionError]]) -> None:
     for rows in zip(*columns, strict=True):
         errors = [f"{row.mean_absolute_error:.5f}" for row in rows]
-        table.add_row(f"{rows[0].condition:g} {unit}", str(rows[0].runs), *errors)
+        table.add_row(rows[0].label, str(rows[0].runs), *errors)

@@ -1,7 +1,7 @@
 """Faults of the set-up, found before any physical effect is accused."""
 
 from hasel_sysid.data_gate.against_model import check_against_model
-from hasel_sysid.data_gate.check import check_recording
+from hasel_sysid.data_gate.check import check_recording, refusal
 from hasel_sysid.data_gate.finding import Finding, Severity
 
-__all__ = ["Finding", "Severity", "check_against_model", "check_recording"]
+__all__ = ["Finding", "Severity", "check_against_model", "check_recording", "refusal"]

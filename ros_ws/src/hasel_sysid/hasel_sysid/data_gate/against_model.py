@@ -24,9 +24,10 @@ def check_against_model(
     sin_theta [n]: simulated at the recording's frames (NaN where not); markers [m] [n, 3, 2]: simulated, if recorded
     ones shall be compared.
     """
-    driven = recording.voltage is not None or recording.drive_time_s is not None
-    drive = recording.drive() if driven else None
-    run = run_series(recording.name, recording.time_s, recording.sin_theta, sin_theta, drive)
+    drive = recording.drive() if recording.driven else None
+    run = run_series(
+        recording.name, recording.time_s, recording.sin_theta, sin_theta, drive, recording.channels
+    )
     found = _lengths(recording, markers)
     if len(run.time) >= 16 and np.ptp(run.simulated) > 0 and np.ptp(run.measured) > 0:
         found += _same(run) or _sign(run) or _aligned(run)
@@ -93,9 +94,9 @@ def _lag(run: RunSeries, aligned: Alignment) -> list[Finding]:
 
 
 def _lengths(recording: Recording, markers: np.ndarray | None) -> list[Finding]:
-    if markers is None or recording.markers is None:
+    if markers is None or recording.angle_markers is None:
         return []
-    measured, simulated = _parts(recording.markers), _parts(markers)
+    measured, simulated = _parts(recording.angle_markers), _parts(markers)
     share, expected = measured[0] / measured.sum(), simulated[0] / simulated.sum()
     if abs(share - expected) > 2 * abs(1 - share - expected) and abs(share - expected) > 0.01:
         evidence = f"the head marker's distance is {share:.0%} of the whole, {expected:.0%} expected"

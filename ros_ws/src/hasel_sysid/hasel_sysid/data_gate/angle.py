@@ -10,6 +10,8 @@ from hasel_sysid.where_it_fails.noise import high_frequency_noise
 _MANY_LOST = 0.2
 _FROZEN_S = 0.2
 _JUMP_IN_NOISE = 12.0
+_JUMP_IN_USUAL = 8.0
+"""A jump stands out from how far frames usually are from their neighbours' median: a fast swing is no jump."""
 _SMALLEST_JUMP = 0.05
 _LEAST_MOTION_IN_NOISE = 10.0
 
@@ -59,8 +61,10 @@ def _frozen(recording: Recording) -> list[Finding]:
 
 def _jumps(sin_theta: np.ndarray) -> list[Finding]:
     usual = median_filter(sin_theta, size=5, mode="nearest")
-    limit = max(_JUMP_IN_NOISE * high_frequency_noise(sin_theta), _SMALLEST_JUMP)
-    jumps = int(np.count_nonzero(np.abs(sin_theta - usual) > limit))
+    apart = np.abs(sin_theta - usual)
+    noise = high_frequency_noise(sin_theta)
+    limit = max(_JUMP_IN_NOISE * noise, _JUMP_IN_USUAL * float(np.median(apart)), _SMALLEST_JUMP)
+    jumps = int(np.count_nonzero(apart > limit))
     if jumps == 0:
         return []
     evidence = f"the angle jumps for a moment in {jumps} frames, by more than {limit:.2g}"

@@ -11,7 +11,7 @@ from hasel_sysid.data_gate.frames import check_frames
 from hasel_sysid.data_gate.markers import check_markers
 from hasel_sysid.data_gate.response import check_response
 
-_STOP = {"too few frames", "time order"}
+_STOP = {"too few frames", "time order", "unit of time", "run of hours"}
 _NO_RESPONSE = {"unit of the angle", "frozen angle", "command equals measurement", "lost command"}
 
 
@@ -23,6 +23,11 @@ def check_recording(recording: Recording) -> list[Finding]:
         if not _NO_RESPONSE & {finding.fault for finding in found}:
             found += check_response(recording)
     return ordered(recording.name, found)
+
+
+def refusal(recording: Recording) -> Finding | None:
+    """The fault with which a recording cannot even be simulated; None where it can."""
+    return next((f for f in ordered(recording.name, check_frames(recording)) if f.fault in _STOP), None)
 
 
 def ordered(name: str, found: list[Finding]) -> list[Finding]:

@@ -1,63 +1,90 @@
-"""Faults of the commanded voltage: unit, dead or doubled channel, clipping, irregular switching, a faked command."""
+"""Faults of the command: unit, dead or doubled channel, clipping, irregular switching, a faked command."""
 
 import numpy as np
-from hasel_recording import Recording
+from hasel_recording import HASEL_PAIR, Recording
 
 from hasel_sysid.data_gate.finding import Finding, error, warning
-from hasel_sysid.where_it_fails.drive_cycle import drive_cycle
+from hasel_sysid.where_it_fails.drive_cycle import comparable, drive_cycle, net_drive
 
-_CHANNELS = ("upper", "lower")
-_MOST_LIKELY_KILOVOLTS = 20.0
+_LIKELY = {
+    "voltage": (20.0, np.inf, "kilovolts"),
+    "pressure": (50.0, 1e8, "bar, mbar or kPa"),
+    "travel": (0.0, 1.0, "millimetres"),
+}
+"""Largest magnitudes [SI] between which a drive is in its SI unit, and what it is in otherwise."""
 _FEW_LEVELS = 8
 
 
 def check_command(recording: Recording) -> list[Finding]:
-    """Faults of the voltage, by itself and against the header lines; none for a passive body."""
-    if recording.voltage is None and recording.drive_time_s is None:
+    """Faults of the drive, by itself and against the header lines; none for a passive body."""
+    if not recording.driven:
         return []
-    time, voltage = recording.drive()
-    if not np.all(np.isfinite(voltage)):
-        lost = int(np.count_nonzero(~np.isfinite(voltage).all(axis=1)))
-        return [error("lost command", lost, f"{lost} voltages are NaN", "record the supply's state")]
-    if not voltage.any():
-        evidence = "both voltages are 0 V all the time"
-        return [warning("no command", 0.0, evidence, "arm the supply, or leave the voltage columns out")]
+    time, values = recording.drive()
+    if not np.all(np.isfinite(values)):
+        lost = int(np.count_nonzero(~np.isfinite(values).all(axis=1)))
+        return [error("lost command", lost, f"{lost} rows of the drive are NaN", "record the supply's state")]
+    if not values.any():
+        zeros = ", ".join(channel.shown(0.0) for channel in recording.channels[:1])
+        evidence = f"the drive is {zeros} all the time"
+        return [warning("no command", 0.0, evidence, "arm the supply, or leave the drive's columns out")]
     return [
-        *_unit(voltage),
-        *_channels(recording, voltage),
-        *_clipping(recording, voltage),
-        *_switching(recording, time, voltage),
+        *_unit(recording, values),
+        *_channels(recording, values),
+        *_clipping(recording, values),
+        *_switching(recording, time, values),
         *_faked(recording),
     ]
 
 
-def _unit(voltage: np.ndarray) -> list[Finding]:
-    largest = float(np.abs(voltage).max())
-    if largest > _MOST_LIKELY_KILOVOLTS:
-        return []
-    evidence = f"the largest voltage is {largest:g} V"
-    return [error("unit of the voltage", largest, evidence, "give volts; is it in kilovolts?")]
+def _unit(recording: Recording, values: np.ndarray) -> list[Finding]:
+    found = []
+    for quantity, (least, most, others) in _LIKELY.items():
+        own = [
+            column for column, c in zip(values.T, recording.channels, strict=True) if c.quantity == quantity
+        ]
+        channel = next((c for c in recording.channels if c.quantity == quantity), None)
+        largest = float(np.abs(own).max()) if own else 0.0
+        if largest == 0 or least < largest <= most:
+            continue
+        evidence = f"the largest {quantity} is {channel.shown(largest)}"
+        advice = f"is it in {others}? then say so at the end of the column's name"
+        found.append(error(f"unit of the {quantity}", largest, evidence, advice))
+    return found
 
 
-def _channels(recording: Recording, voltage: np.ndarray) -> list[Finding]:
-    used = np.abs(voltage).max(axis=0) > 0
+def _channels(recording: Recording, values: np.ndarray) -> list[Finding]:
+    used = np.abs(values).max(axis=0) > 0
+    names = [channel.name for channel in recording.channels]
     both = recording.metadata.get("muscles", "both") in ("both", "lower_first")
     if used.all():
-        if not np.array_equal(voltage[:, 0], voltage[:, 1]):
+        if len(names) == 1 or not np.all(values == values[:, :1]):
             return []
-        evidence = "both muscles get the same voltage all the time"
+        evidence = "both muscles get" if len(names) == 2 else "all channels get"
+        evidence = f"{evidence} the same {recording.channels[0].quantity} all the time"
         return [error("doubled channel", 1.0, evidence, "check which columns were recorded")]
     if not both:
         return []
-    unused = _CHANNELS[int(np.argmin(used))]
     said = "muscles" in recording.metadata
-    evidence = f"the {unused} muscle never gets a voltage"
-    if said:
-        return [error("dead channel", 0.0, f"{evidence}, the header says both", "check the supply's channel")]
-    return [warning("dead channel", 0.0, evidence, f"check the {unused} channel unless this is meant")]
+    found = []
+    for channel in (channel for channel, own in zip(recording.channels, used, strict=True) if not own):
+        muscle = f"the {channel.name} muscle" if channel in HASEL_PAIR else f"channel {channel.name}"
+        evidence = f"{muscle} never gets a {channel.quantity}"
+        if said:
+            evidence = f"{evidence}, the header says both"
+            found.append(error("dead channel", 0.0, evidence, "check the supply's channel"))
+        else:
+            found.append(
+                warning(
+                    "dead channel", 0.0, evidence, f"check the {channel.name} channel unless this is meant"
+                )
+            )
+    return found
 
 
 def _clipping(recording: Recording, voltage: np.ndarray) -> list[Finding]:
+    """A command that stays below what was asked for, or at a limit; only the rig's supply has one that is known."""
+    if recording.channels != HASEL_PAIR:
+        return []
     magnitude = np.abs(voltage)
     largest = float(magnitude.max())
     found = []
@@ -67,7 +94,7 @@ def _clipping(recording: Recording, voltage: np.ndarray) -> list[Finding]:
         found.append(error("clipped command", largest, evidence, "raise the limit or ask for less"))
     own = magnitude.max(axis=0)
     if not found and own.min() > 0 and own.min() < 0.99 * own.max():
-        lower = _CHANNELS[int(np.argmin(own))]
+        lower = HASEL_PAIR[int(np.argmin(own))].name
         evidence = f"the {lower} muscle gets {own.min():g} V, the other one {own.max():g} V"
         found.append(warning("clipped command", own.min(), evidence, "check the limits of both channels"))
     driven = magnitude[magnitude > 0]
@@ -78,20 +105,23 @@ def _clipping(recording: Recording, voltage: np.ndarray) -> list[Finding]:
     return found
 
 
-def _switching(recording: Recording, time: np.ndarray, voltage: np.ndarray) -> list[Finding]:
-    cycle = drive_cycle(time, voltage)
+def _switching(recording: Recording, time: np.ndarray, values: np.ndarray) -> list[Finding]:
+    cycle = drive_cycle(time, comparable(values, recording.channels))
     if cycle is None:
+        if recording.channels != HASEL_PAIR:
+            return []  # one step up and down is how pressures and tendons are tried
         evidence = "the drive never switches from one muscle to the other or off and on"
         return [warning("too little excitation", 1.0, evidence, "record at least one whole period")]
     frame = float(np.median(np.diff(recording.time_s)))
-    distances = np.diff(cycle.switches)
-    distances = distances[distances < 1.5 * np.median(distances)]
-    spread = float(np.ptp(distances))
-    if spread > max(1.6 * frame, 0.05 * float(np.median(distances))):
-        evidence = f"switches are {distances.min() * 1e3:.0f} to {distances.max() * 1e3:.0f} ms apart"
-        return [
-            warning("shifted command", spread, evidence, "record what the supply did, not what was asked")
-        ]
+    distances = _recurrences(time, values)
+    if len(distances):
+        spread = float(np.ptp(distances))
+        if spread > max(1.6 * frame, 0.05 * float(np.median(distances))):
+            low, high = distances.min() * 1e3, distances.max() * 1e3
+            evidence = f"switches that should be one period apart are {low:.0f} to {high:.0f} ms apart"
+            return [
+                warning("shifted command", spread, evidence, "record what the supply did, not what was asked")
+            ]
     asked = _number(recording.metadata.get("frequency_hz"))
     if asked and abs(1 / cycle.period / asked - 1) > 0.03 + frame / cycle.period:
         evidence = f"the header says {asked:g} Hz and the command switches at {1 / cycle.period:.3g} Hz"
@@ -99,11 +129,23 @@ def _switching(recording: Recording, time: np.ndarray, voltage: np.ndarray) -> l
     return []
 
 
+def _recurrences(time: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Distances [s] of switches between the same two values, pauses left out; empty for a waveform of many values."""
+    changes = 1 + np.flatnonzero(np.any(np.diff(values, axis=0) != 0, axis=1))
+    kinds: dict[bytes, list[float]] = {}
+    for row in changes:
+        kinds.setdefault(values[row - 1 : row + 1].tobytes(), []).append(float(time[row]))
+    distances = np.concatenate([np.diff(own) for own in kinds.values()]) if kinds else np.zeros(0)
+    if len(distances) < 2:
+        return np.zeros(0)
+    return distances[distances < 1.5 * np.median(distances)]
+
+
 def _faked(recording: Recording) -> list[Finding]:
-    if recording.voltage is None:
+    if recording.drive_signal is None:
         return []
     valid = recording.valid
-    command = (np.abs(recording.voltage[:, 0]) - np.abs(recording.voltage[:, 1]))[valid]
+    command = net_drive(comparable(recording.drive_signal, recording.channels))[valid]
     measured = recording.sin_theta[valid]
     if len(measured) < 16 or np.ptp(command) == 0 or np.ptp(measured) == 0:
         return []

@@ -8,6 +8,10 @@ from hasel_sysid.data_gate.finding import Finding, error, warning
 _MOST_JITTER = 0.2
 _MANY_DROPPED = 0.2
 _LOWEST_RATE_HZ = 25.0
+_LONGEST_STEP_S = 0.5
+_LONGEST_RUN_S = 3600.0
+_SMALLER_UNITS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9}
+_CHANCE = 3.0
 
 
 def check_frames(recording: Recording) -> list[Finding]:
@@ -28,21 +32,38 @@ def check_frames(recording: Recording) -> list[Finding]:
                 "sort the rows by time and remove doubles, or record with one clock",
             )
         ]
-    return [*_unit(steps), *_gaps(steps), *_jitter(steps), *_rate(steps)]
+    return _unit(steps) or [*_length(time), *_gaps(steps), *_jitter(steps), *_rate(steps)]
 
 
 def _unit(steps: np.ndarray) -> list[Finding]:
     usual = float(np.median(steps))
-    if usual < 0.5:
+    if usual < _LONGEST_STEP_S:
         return []
-    evidence = f"frames are {usual:.3g} s apart"
-    return [error("unit of time", usual, evidence, "give time_s in seconds; is it in milliseconds?")]
+    likely = [unit for unit, size in _SMALLER_UNITS.items() if 0.5e-3 <= usual * size < _LONGEST_STEP_S]
+    evidence = f"frames are {usual:.4g} s apart, expected less than {_LONGEST_STEP_S:g} s"
+    unit = likely[0] if likely else "ms"
+    advice = f"is the time in {unit}? then call its column time_{unit}, or give --map time_{unit}=COLUMN"
+    return [error("unit of time", usual, evidence, advice)]
+
+
+def _length(time: np.ndarray) -> list[Finding]:
+    duration = float(time[-1] - time[0])
+    if duration <= _LONGEST_RUN_S:
+        return []
+    evidence = (
+        f"the run lasts {duration / 3600:.3g} h with {len(time)} frames, every one of which is simulated"
+    )
+    return [
+        error("run of hours", duration, evidence, "cut out the minutes that matter, or check the time's unit")
+    ]
 
 
 def _gaps(steps: np.ndarray) -> list[Finding]:
+    """Missing frames; a long step that a short one makes up for is a late stamp, not a missing frame."""
     usual = float(np.median(steps))
-    missing = int(np.round(steps / usual - 1)[steps > 1.5 * usual].sum())
-    if missing == 0:
+    late = np.count_nonzero(steps < 0.5 * usual)
+    missing = int(np.round(steps / usual - 1)[steps > 1.5 * usual].sum()) - late
+    if missing <= _CHANCE * np.sqrt(late):
         return []
     make = error if missing > _MANY_DROPPED * (len(steps) + missing) else warning
     evidence = f"{missing} frames are missing, the longest gap is {steps.max() * 1e3:.0f} ms"

@@ -10,13 +10,14 @@ _JUMP_IN_BODIES = 0.3
 
 
 def check_markers(recording: Recording) -> list[Finding]:
-    """Faults of recorded markers; none where only the angle was recorded."""
-    if recording.markers is None:
+    """Faults of recorded markers; none where head, middle and tail were not."""
+    three = recording.angle_markers
+    if three is None:
         return []
-    seen = np.isfinite(recording.markers).all(axis=(1, 2))
+    seen = np.isfinite(three).all(axis=(1, 2))
     if np.count_nonzero(seen) < 8:
         return []
-    markers = recording.markers[seen] * ((1, -1) if recording.marker_unit == "px" else (1, 1))
+    markers = three[seen] * ((1, -1) if recording.marker_unit == "px" else (1, 1))
     return _unit(markers, recording.marker_unit) + (
         _middle(markers) or [*_exchanged(markers), *_angle(markers, recording.sin_theta[seen])]
     )

@@ -1,10 +1,10 @@
 """Faults in how the angle answers the command: direction, a side that does not answer, clocks that differ."""
 
 import numpy as np
-from hasel_recording import Recording
+from hasel_recording import HASEL_PAIR, Recording
 
 from hasel_sysid.data_gate.finding import Finding, error, warning
-from hasel_sysid.where_it_fails.drive_cycle import DriveCycle, drive_cycle
+from hasel_sysid.where_it_fails.drive_cycle import DriveCycle, comparable, drive_cycle
 from hasel_sysid.where_it_fails.noise import high_frequency_noise
 
 _REST_S = 0.025
@@ -18,9 +18,10 @@ def check_response(recording: Recording) -> list[Finding]:
     """Faults in runs that start from rest; needs frames from the first switch on."""
     if recording.metadata.get("initial_state", "rest") != "rest":
         return []
-    if recording.voltage is None and recording.drive_time_s is None:
+    if not recording.driven:
         return []
-    cycle = drive_cycle(*recording.drive())
+    time, values = recording.drive()
+    cycle = drive_cycle(time, comparable(values, recording.channels))
     valid = recording.valid
     time, sin_theta = recording.time_s[valid], recording.sin_theta[valid]
     if cycle is None or len(time) < 16 or time[0] > cycle.start + _REST_S:
@@ -30,10 +31,14 @@ def check_response(recording: Recording) -> list[Finding]:
     moved = sin_theta - float(np.median(sin_theta[before]))
     limit = max(_CLEAR * noise, 0.02 * float(np.ptp(moved)))
     early = _early(time, moved, cycle, limit)
-    return early or [
+    if (
+        early or recording.channels != HASEL_PAIR
+    ):  # of other channels only the model knows which way they bend
+        return early or _late(time, moved, cycle, limit)
+    return [
         *_late(time, moved, cycle, limit),
         *_direction(time, moved, cycle, noise),
-        *_sides(recording, time, moved, cycle),
+        *_sides(time, moved, cycle),
     ]
 
 
@@ -70,7 +75,7 @@ def _direction(time: np.ndarray, moved: np.ndarray, cycle: DriveCycle, noise: fl
     return [error("sign flip or swapped channels", -towards, evidence, advice)]
 
 
-def _sides(recording: Recording, time: np.ndarray, moved: np.ndarray, cycle: DriveCycle) -> list[Finding]:
+def _sides(time: np.ndarray, moved: np.ndarray, cycle: DriveCycle) -> list[Finding]:
     if not (np.any(cycle.side > 0) and np.any(cycle.side < 0)) or cycle.count(time) < 0.9:
         return []
     low, high = np.percentile(moved, [2, 98])

@@ -19,14 +19,16 @@ class KeyNumber:
 
 @dataclass(frozen=True)
 class RunOverlay:
-    """One run: time [s] [n], measured sin theta [n], simulated sin theta [n] by what the model is called."""
+    """One run: time [s] [n], measured sin theta [n], simulated sin theta [n] by what the model is called;
+    drive: its level with the unit, empty for a passive body.
+    """
 
     name: str
     time: np.ndarray
     measured: np.ndarray
     simulated: dict[str, np.ndarray]
     unseen: bool = False
-    voltage: float = 0.0
+    drive: str = ""
     frequency: float = 0.0
 
 

@@ -31,7 +31,7 @@ def overlays(comparisons: Sequence[Comparison]) -> tuple[RunOverlay, ...]:
                 series.measured - series.offset,
                 simulated,
                 run.unseen,
-                series.voltage,
+                series.level_text if series.level else "",
                 series.frequency,
             )
         )

@@ -73,7 +73,7 @@ def _figures(content: ReportContent) -> dict[str, go.Figure | None]:
 
 def _driven(comparison: Comparison) -> bool:
     """Whether there are several runs with a drive, so that conditions can be compared."""
-    return sum(run.series.voltage > 0 for run in comparison.runs) > 1
+    return sum(run.series.level > 0 for run in comparison.runs) > 1
 
 
 def _html(figure: go.Figure) -> str:

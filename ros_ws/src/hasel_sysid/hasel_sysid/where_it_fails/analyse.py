@@ -45,17 +45,28 @@ class WhereItFails:
         if len(self.profile) == 0 or np.nanmax(self.profile) < _STANDS_OUT * np.nanmean(self.profile):
             return None
         at = float(self.phase[int(np.nanargmax(self.profile))])
-        side = next(run.run.cycle.side for run in self.runs if run.profile is not None)
-        first, second = ("upper", "lower") if side[0] > 0 else ("lower", "upper")
+        run = next(run.run for run in self.runs if run.profile is not None)
+        side = run.cycle.side
+        one, other = _channel_names(run)
+        first, second = (one, other) if side[0] > 0 else (other, one)
         alternates = bool(np.any(side != side[0]))
         muscle, since = (second, at - 0.5) if alternates and at >= 0.5 else (first, at)
         return (
-            f"The error is largest {100 * since:.0f} % of a cycle after the {muscle} muscle is switched on, "
+            f"The error is largest {100 * since:.0f} % of a cycle after {muscle} is switched on, "
             f"{np.nanmax(self.profile):.1f} times its mean."
         )
 
     def __str__(self) -> str:
         return "\n".join(self.sentences())
+
+
+def _channel_names(run: RunSeries) -> tuple[str, str]:
+    """What a sentence calls the first channel and the other one."""
+    names = [
+        f"the {c.name} muscle" if c.quantity == "voltage" else f"the {c.quantity} of {c.name}"
+        for c in run.channels
+    ]
+    return names[0], names[1] if len(names) == 2 else "another channel"
 
 
 def where_it_fails(runs: Sequence[RunSeries]) -> WhereItFails:

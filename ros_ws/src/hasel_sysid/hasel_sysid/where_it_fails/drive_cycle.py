@@ -1,13 +1,15 @@
-"""The cycle of a drive: its period, where in it a frame lies, and which muscle is pulling."""
+"""The cycle of a drive: its period, where in it a frame lies, and which channel is pulling."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from hasel_recording import DriveChannel
 
 
 @dataclass(frozen=True)
 class DriveCycle:
-    """start: the first time [s] a muscle is driven; period [s]; switches [s] [k] with side [k]: +1 upper, -1 lower."""
+    """start: the first time [s] a channel is driven; period [s]; switches [s] [k]; side [k]: see driven_side."""
 
     start: float
     period: float
@@ -30,18 +32,31 @@ class DriveCycle:
         return float((time[-1] - max(self.start, time[0])) / self.period)
 
 
-def driven_side(voltage: np.ndarray) -> np.ndarray:
-    """+1 where the upper muscle has the higher voltage, -1 where the lower has, 0 where neither, [n] from [n, 2]."""
-    magnitude = np.abs(voltage)
-    return np.sign(magnitude[:, 0] - magnitude[:, 1]).astype(int)
+def comparable(values: np.ndarray, channels: Sequence[DriveChannel]) -> np.ndarray:
+    """The drive [n, channels] as it is where all channels have one unit, otherwise each relative to its largest."""
+    if len({channel.unit for channel in channels}) <= 1:
+        return values
+    largest = np.abs(values).max(axis=0)
+    return values / np.where(largest > 0, largest, 1.0)
 
 
-def drive_cycle(time: np.ndarray, voltage: np.ndarray) -> DriveCycle | None:
-    """Find the cycle of a drive at times [s] [n] with voltages [V] [n, 2]; None where fewer than two turns occur.
+def net_drive(values: np.ndarray) -> np.ndarray:
+    """How much stronger the first channel is driven than the strongest other one, [n] from [n, channels]."""
+    magnitude = np.abs(values)
+    return magnitude[:, 0] - magnitude[:, 1:].max(axis=1, initial=0.0)
 
-    With both muscles a cycle is from one take-over to the next but one; with one muscle from onset to onset.
+
+def driven_side(values: np.ndarray) -> np.ndarray:
+    """+1 where the first channel is the strongest (the upper muscle), -1 where another is, 0 where none, [n]."""
+    return np.sign(net_drive(values)).astype(int)
+
+
+def drive_cycle(time: np.ndarray, values: np.ndarray) -> DriveCycle | None:
+    """Find the cycle of a drive at times [s] [n] with comparable values [n, channels]; None below two turns.
+
+    With several channels a cycle is from one take-over to the next but one; with one from onset to onset.
     """
-    side = driven_side(voltage)
+    side = driven_side(values)
     changes = np.flatnonzero(np.diff(side, prepend=0) != 0)
     onset = changes[side[changes] != 0]
     if len(onset) < 2:

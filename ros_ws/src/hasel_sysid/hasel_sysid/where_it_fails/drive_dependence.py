@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import norm
 
+from hasel_sysid.where_it_fails.drive_cycle import comparable, net_drive
 from hasel_sysid.where_it_fails.run_series import RunSeries
 
 _LONGEST_S = 0.4
@@ -40,7 +41,7 @@ class DriveDependence:
 
 
 def drive_dependence(run: RunSeries) -> DriveDependence | None:
-    """Correlate the drive (|upper| - |lower| voltage) with the residual; None for a passive or constant drive.
+    """Correlate the drive (upper less lower, see net_drive) with the residual; None for a passive or constant one.
 
     The band is Bartlett's for two correlated series: variance of the correlation = sum of the products of both
     autocorrelations over n, widened for looking at many lags.
@@ -48,8 +49,8 @@ def drive_dependence(run: RunSeries) -> DriveDependence | None:
     if run.drive_time is None or len(run.time) < 20:
         return None
     index = np.searchsorted(run.drive_time, run.time + 1e-9, side="right") - 1
-    magnitude = np.abs(run.drive_voltage)[np.maximum(index, 0)]
-    command = np.where(index >= 0, magnitude[:, 0] - magnitude[:, 1], 0.0)
+    net = net_drive(comparable(run.drive_values, run.channels))
+    command = np.where(index >= 0, net[np.maximum(index, 0)], 0.0)
     command = command - command.mean()
     residual = run.residual
     scale = np.sqrt(float(command @ command) * float(residual @ residual))

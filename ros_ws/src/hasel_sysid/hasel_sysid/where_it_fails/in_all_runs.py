@@ -52,13 +52,13 @@ def _failure(kind: Kind, runs: list[RunSeries], parts: list[Component], noise: f
 
 
 def _conditions(runs: list[RunSeries], values: list[float], errors: list[float]) -> list[str]:
-    """In which frequency and which voltage the value stands out."""
+    """At which frequency and which level of the drive the value stands out."""
     frequencies = [float(f"{run.frequency:.2g}") for run in runs]
-    voltages = [round(run.voltage) for run in runs]
-    found = [(trend(frequencies, values, errors), "Hz"), (trend(voltages, values, errors), "V")]
-    return [
-        f"more at {one.condition:g} {unit}" for one, unit in found if one is not None and one.condition > 0
-    ]
+    levels = [float(f"{run.level:.4g}") for run in runs]
+    labels = dict(zip(levels, (run.level_text for run in runs), strict=True))
+    frequency, level = trend(frequencies, values, errors), trend(levels, values, errors)
+    found = [] if frequency is None or frequency.condition == 0 else [f"more at {frequency.condition:g} Hz"]
+    return found + ([] if level is None or level.condition == 0 else [f"more at {labels[level.condition]}"])
 
 
 def _disagree(values: list[float], errors: list[float]) -> bool:

@@ -4,16 +4,18 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from hasel_recording import HASEL_PAIR, DriveChannel
+from hasel_recording.recording import largest_levels, level_text
 
-from hasel_sysid.where_it_fails.drive_cycle import DriveCycle, drive_cycle
+from hasel_sysid.where_it_fails.drive_cycle import DriveCycle, comparable, drive_cycle
 
 
 @dataclass(frozen=True)
 class RunSeries:
     """A run at the frames that have both a measured and a simulated angle.
 
-    time [s] [n]; measured, simulated: sin theta [n]; drive_time [s] [m], drive_voltage [V] [m, 2] (upper, lower, each
-    holding until the next time), None for a passive body.
+    time [s] [n]; measured, simulated: sin theta [n]; drive_time [s] [m], drive_values [m, channels] in SI units, each
+    holding until the next time, None for a passive body.
     """
 
     name: str
@@ -21,7 +23,8 @@ class RunSeries:
     measured: np.ndarray
     simulated: np.ndarray
     drive_time: np.ndarray | None = None
-    drive_voltage: np.ndarray | None = None
+    drive_values: np.ndarray | None = None
+    channels: tuple[DriveChannel, ...] = HASEL_PAIR
 
     @property
     def offset(self) -> float:
@@ -41,12 +44,26 @@ class RunSeries:
     @cached_property
     def cycle(self) -> DriveCycle | None:
         """The drive's cycle; None for a passive body or a drive that does not repeat."""
-        return None if self.drive_time is None else drive_cycle(self.drive_time, self.drive_voltage)
+        if self.drive_time is None:
+            return None
+        return drive_cycle(self.drive_time, comparable(self.drive_values, self.channels))
 
     @property
-    def voltage(self) -> float:
-        """Largest voltage magnitude [V]; 0 for a passive body."""
-        return 0.0 if self.drive_voltage is None else float(np.abs(self.drive_voltage).max())
+    def levels(self) -> dict[str, float]:
+        """Largest magnitude of the drive per unit, such as {"V": 5500.0}; empty for a passive body."""
+        if self.drive_values is None:
+            return {}
+        return largest_levels(self.channels, self.drive_values)
+
+    @property
+    def level(self) -> float:
+        """Largest magnitude of the drive, of the first unit that is driven at all; 0 for a passive body."""
+        return next(iter(self.levels.values()), 0.0)
+
+    @property
+    def level_text(self) -> str:
+        """Largest magnitude with its unit: "5500 V", "25000 Pa and 0.007 m", "passive"."""
+        return level_text(self.levels)
 
     @property
     def frequency(self) -> float:
@@ -60,8 +77,9 @@ def run_series(
     measured: np.ndarray,
     simulated: np.ndarray,
     drive: tuple[np.ndarray, np.ndarray] | None = None,
+    channels: tuple[DriveChannel, ...] = HASEL_PAIR,
 ) -> RunSeries:
     """Keep the frames in which both angles are finite."""
     both = np.isfinite(measured) & np.isfinite(simulated)
-    drive_time, drive_voltage = drive or (None, None)
-    return RunSeries(name, time[both], measured[both], simulated[both], drive_time, drive_voltage)
+    drive_time, drive_values = drive or (None, None)
+    return RunSeries(name, time[both], measured[both], simulated[both], drive_time, drive_values, channels)

@@ -20,7 +20,7 @@ def split(run: RunSeries) -> tuple[Component, ...]:
     if len(run.time) < _FEWEST_FRAMES:
         return ()
     aligned = align(run)
-    if run.drive_time is None or run.voltage == 0:
+    if run.drive_time is None or run.level == 0:
         found = [aligned.components[0], *free_swing(run)]
     else:
         found = [

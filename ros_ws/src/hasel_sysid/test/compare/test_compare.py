@@ -55,7 +55,8 @@ def test_json_holds_what_is_printed(compared):
     content = compared.to_json()
     assert content["mae_fit"] == compared.mean_absolute_error
     assert content["mae_validation"] == compared.mean_absolute_error_unseen
-    assert [row["voltage"] for row in content["by_voltage"]] == [4500, 5500]
+    assert [row["level"] for row in content["by_level"]] == [4500, 5500]
+    assert [row["label"] for row in content["by_level"]] == ["4500 V", "5500 V"]
     assert content["by_frequency"][0]["frequency"] == 2.0
     assert content["where_it_fails"] == compared.where.sentences()
     assert any("more than the model" in sentence for sentence in content["where_it_fails"])

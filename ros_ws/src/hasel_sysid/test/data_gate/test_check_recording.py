@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hasel_recording import Recording, read_recording
-from hasel_sysid.data_gate import Severity, check_recording
+from hasel_recording import DriveChannel, Recording, read_recording
+from hasel_sysid.data_gate import Severity, check_recording, refusal
 
 
 def _markers(sin_theta: np.ndarray) -> np.ndarray:
@@ -243,6 +243,75 @@ def test_passive_body_needs_no_command(made_recording):
     time = np.arange(0, 2, 0.01)
     swing = 0.1 * np.exp(-time) * np.cos(30 * time) + 1e-4 * np.random.default_rng(0).normal(size=len(time))
     assert check_recording(Recording("beam", time, swing)) == []
+
+
+def _pressures(recording: Recording) -> Recording:
+    """The upper channel as the pressure of a chamber."""
+    chamber = DriveChannel("chamber", "pressure", "Pa")
+    return replace(recording, drive_signal=recording.voltage[:, :1] * 5, channels=(chamber,))
+
+
+def test_a_pressure_run_is_in_order(made_recording):
+    """One chamber that is filled and emptied is as good as two muscles."""
+    assert check_recording(_pressures(made_recording())) == []
+
+
+def test_a_pressure_in_bar_is_noticed(made_recording):
+    """Whatever the quantity, a size that only another unit explains is said with that unit."""
+    run = _pressures(made_recording())
+    (finding,) = check_recording(replace(run, drive_signal=run.drive_signal / 1e5))
+    assert "the largest pressure is 0.225 Pa; is it in bar, mbar or kPa?" in str(finding)
+
+
+def test_three_channels_are_in_order(made_recording):
+    """A finger's three muscles in turn: no channel is dead, doubled or late; an unused one is named."""
+    channels = tuple(DriveChannel(name, "voltage", "V") for name in ("root", "middle", "tip"))
+    run = made_recording()
+    turn = np.floor(run.time_s * 6).astype(int) % 3
+    signal = 5000.0 * (turn[:, None] == np.arange(3))
+    assert check_recording(replace(run, drive_signal=signal, channels=channels)) == []
+    found = check_recording(replace(run, drive_signal=signal * (1, 1, 0), channels=channels))
+    assert [finding.evidence for finding in found] == ["channel tip never gets a voltage"]
+
+
+def test_overlapping_drive_is_no_shifted_command(made_recording):
+    """Muscles that are driven together for a quarter of the cycle switch as regularly as any."""
+    recording = made_recording()
+    phase = np.mod(recording.time_s * 2.0 + 1e-9, 1.0)
+    both = 4500.0 * np.column_stack([phase < 0.6, (phase >= 0.45) | (phase < 0.1)])
+    assert check_recording(replace(recording, drive_signal=both)) == []
+
+
+def test_a_fast_swing_is_no_jumping_marker():
+    """At 30 Hz frames are far from their neighbours all the time; a marker that jumps is so for a moment."""
+    time = np.arange(0, 3, 1 / 120)
+    swing = 0.2 * np.sin(2 * np.pi * 30 * time + 0.3)
+    noise = 0.002 * np.random.default_rng(0).normal(size=len(time))
+    found = check_recording(Recording("fast", time, swing + noise))
+    assert "jumping marker" not in {finding.fault for finding in found}
+
+
+def test_jitter_is_not_taken_for_missing_frames(made_recording):
+    """A late stamp makes one long and one short step: no frame is missing."""
+    faults = {finding.fault for finding in check_recording(_jittered(made_recording()))}
+    assert "jitter" in faults
+    assert "dropped frames" not in faults
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(1e3, "ms"), (1e6, "us"), (1e9, "ns")])
+def test_time_in_another_unit_is_refused_by_name(made_recording, factor, unit):
+    """Steps that can only be a smaller unit are said with it, and nothing else is."""
+    recording = made_recording()
+    finding = refusal(replace(recording, time_s=recording.time_s * factor))
+    assert f"is the time in {unit}? then call its column time_{unit}" in str(finding)
+    assert refusal(recording) is None
+
+
+def test_a_run_of_hours_is_refused(made_recording):
+    """Every frame is simulated: a run of hours is said before it is."""
+    time = np.arange(0, 3 * 3600, 1 / 30)
+    finding = refusal(Recording("night", time, 0.1 * np.sin(time)))
+    assert "the run lasts 3 h with 324000 frames" in str(finding)
 
 
 def test_too_short_recording_is_said_to_be(made_recording):

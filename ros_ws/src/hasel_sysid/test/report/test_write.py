@@ -143,7 +143,7 @@ def test_overlay_keeps_every_run():
 
     time = np.arange(0, 1, 1 / 120)
     runs = [
-        RunOverlay(f"r{n}", time, np.sin(time), {"a": np.cos(time), "b": 0 * time}, n == 3, 4500.0, 2.0)
+        RunOverlay(f"r{n}", time, np.sin(time), {"a": np.cos(time), "b": 0 * time}, n == 3, "4500 V", 2.0)
         for n in range(4)
     ]
     figure = overlay_figure(runs)

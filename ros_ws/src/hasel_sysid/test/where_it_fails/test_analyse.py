@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sysid.where_it_fails.analyse import where_it_fails
-from hasel_sysid.where_it_fails.by_condition import error_by_frequency, error_by_voltage
+from hasel_sysid.where_it_fails.by_condition import error_by_frequency, error_by_level
 from hasel_sysid.where_it_fails.component import Kind
 from hasel_sysid.where_it_fails.pooled import pool, trend
 
@@ -75,7 +75,7 @@ def test_worst_part_of_the_cycle(made_run):
 def test_errors_by_condition(made_run):
     """The tables hold the mean absolute error of the runs of each condition."""
     runs = _runs(made_run, lambda f, v: lambda time, s, truth: s * (1.5 if v > 4000 else 1.0))
-    low, high = error_by_voltage(runs)
+    low, high = error_by_level(runs)
     assert (low.condition, high.condition, low.runs) == (3500, 5500, 3)
     assert high.mean_absolute_error > 5 * low.mean_absolute_error
     assert low.mean_absolute_error == pytest.approx(0.002 * np.sqrt(2 / np.pi), rel=0.15)

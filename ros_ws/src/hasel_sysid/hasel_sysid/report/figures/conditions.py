@@ -1,4 +1,4 @@
-"""The error by voltage and by frequency."""
+"""The error by level of the drive and by frequency."""
 
 from collections.abc import Sequence
 
@@ -10,21 +10,19 @@ from hasel_sysid.report.figures.style import MODELS, NOISE, styled
 
 
 def conditions_figure(comparisons: Sequence[Comparison]) -> go.Figure:
-    """Bars of mean |Δ sin θ| per voltage and per frequency, one colour per model, with the noise floor."""
+    """Bars of mean |Δ sin θ| per level of the drive and per frequency, one colour per model, with the noise floor."""
     figure = make_subplots(
         rows=1,
         cols=2,
-        subplot_titles=["by voltage", "by frequency"],
+        subplot_titles=["by drive", "by frequency"],
         shared_yaxes=True,
         horizontal_spacing=0.05,
     )
     for number, comparison in enumerate(comparisons):
-        for column, (rows, unit) in enumerate(
-            ((comparison.by_voltage, "V"), (comparison.by_frequency, "Hz")), start=1
-        ):
+        for column, rows in enumerate((comparison.by_level, comparison.by_frequency), start=1):
             figure.add_trace(
                 go.Bar(
-                    x=[f"{row.condition:g} {unit}" for row in rows],
+                    x=[row.label for row in rows],
                     y=[row.mean_absolute_error for row in rows],
                     name=comparison.label,
                     legendgroup=comparison.label,

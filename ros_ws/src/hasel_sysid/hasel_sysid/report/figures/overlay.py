@@ -67,5 +67,5 @@ def overlay_figure(runs: Sequence[RunOverlay]) -> go.Figure:
 
 
 def _title(run: RunOverlay) -> str:
-    name = f"{run.voltage:.0f} V, {run.frequency:.2g} Hz" if run.voltage else run.name
+    name = f"{run.drive}, {run.frequency:.2g} Hz" if run.drive else run.name
     return f"{name} · unseen" if run.unseen else name
