@@ -21,6 +21,7 @@ setup(
     entry_points={
         "console_scripts": [
             "sysid = hasel_sysid.sysid_node:main",
+            "check = hasel_sysid.command_line.check:main",
             "compare = hasel_sysid.command_line.compare:main",
             "fit = hasel_sysid.command_line.fit:main",
             "diagnose = hasel_sysid.command_line.diagnose:main",

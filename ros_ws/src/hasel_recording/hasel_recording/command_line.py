@@ -6,10 +6,10 @@ import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from hasel_recording.column_map import parse_map
 from hasel_recording.convert import convert
 from hasel_recording.errors import RecordingError, RecordingWarning
 from hasel_recording.reading import drive_of_each, read_recording
+from hasel_recording.reading_options import add_reading_options
 from hasel_recording.recording import Recording
 
 
@@ -50,32 +50,6 @@ def info_main(arguments: Sequence[str] | None = None) -> int:
     add_reading_options(parser)
     options = parser.parse_args(arguments)
     return _for_each(options, lambda path, drive: _description(read_recording(path, options.map, drive)))
-
-
-def add_reading_options(parser: argparse.ArgumentParser) -> None:
-    """Add --map and --drive."""
-    parser.add_argument(
-        "--map",
-        metavar="NAME=COLUMN,…",
-        type=_mapping,
-        default={},
-        help="names and units of your own CSV columns, such as time=t,sin_theta=angle_deg,voltage_upper=U1_kV",
-    )
-    parser.add_argument(
-        "--drive",
-        metavar="FILE",
-        nargs="+",
-        type=Path,
-        default=[],
-        help="the drive as a file of its own: one for each recording in their order, or one for all",
-    )
-
-
-def _mapping(text: str) -> dict[str, str]:
-    try:
-        return parse_map(text)
-    except RecordingError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 def _description(recording: Recording) -> str:

@@ -86,7 +86,7 @@ def _angle(columns: Columns, numbers: CsvNumbers, markers: np.ndarray | None) ->
 
 def _understood(columns: Columns, text: CsvText) -> list[str]:
     """Which column is read as what, one sentence each; those that mean what they are called are left out."""
-    said = []
+    said = [f"columns {', '.join(name for name in text.names if name in columns.names())}"]
     if text.separator != ",":
         said.append(f"cells are separated by {'tabs' if text.separator == chr(9) else 'semicolons'}")
     if columns.time.factor != 1 or columns.time.name != "time_s":

@@ -49,7 +49,7 @@ def test_a_labs_own_file_is_read_with_a_map(tmp_path):
     assert run.sin_theta == pytest.approx([0.0, 0.5])
     assert run.drive_signal.tolist() == [[0.0], [5500.0]]
     assert [channel.column for channel in run.channels] == ["voltage_upper_v"]
-    assert len(run.understood) == 3
+    assert len(run.understood) == 4
 
 
 def test_a_column_that_is_not_there_is_named(tmp_path):

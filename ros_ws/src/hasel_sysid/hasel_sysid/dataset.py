@@ -1,16 +1,22 @@
 """Recordings as experiments: what was measured, and the run that a simulator can repeat."""
 
-from collections.abc import Iterable, Sequence
+import warnings
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from hasel_recording import Recording, read_recordings
+from hasel_recording import Recording, RecordingError, RecordingWarning, read_recordings
 from hasel_sim.drive.voltage import VoltageSchedule
 from hasel_sim.model import Model
 from hasel_sim.run import Run
 
+from hasel_sysid.data_gate import refusal
+from hasel_sysid.drive_match import matched
 from hasel_sysid.errors import SysidError
+
+_FAR_BEYOND = 1.25
+"""A level this many times the highest known one is not extrapolated to."""
 
 _MOST_LEVELS = 8
 """More voltages than this (a ramp, a sine) share so many amplitudes, spread over their range."""
@@ -33,23 +39,6 @@ class Experiment:
         """Measured sine of the bending angle, [n]."""
         return self.recording.sin_theta
 
-    @property
-    def voltage(self) -> float:
-        """Largest voltage magnitude of the run [V]; 0 for a passive one."""
-        return 0.0 if self.run.schedule is None else float(np.abs(self.run.schedule.voltage).max())
-
-    @property
-    def frequency(self) -> float:
-        """Frequency of the drive [1/s] from the switches between the muscles; 0 for a passive or constant one."""
-        if self.run.schedule is None:
-            return 0.0
-        v = np.abs(self.run.schedule.voltage)
-        side = np.sign(v[:, 0] - v[:, 1])
-        driven = side != 0
-        time, side = self.run.schedule.time[driven], side[driven]
-        turns = time[1:][np.diff(side) != 0]
-        return 0.0 if len(turns) == 0 else float(0.5 / np.median(np.diff(np.concatenate([time[:1], turns]))))
-
 
 def experiment(recording: Recording) -> Experiment:
     """The run of a recording, its start taken from the header lines.
@@ -70,18 +59,70 @@ def experiment(recording: Recording) -> Experiment:
             f"{recording.name}: initial_load_factor and initial_time_s must be numbers: correct the header"
         ) from None
     schedule = None
-    if recording.voltage is not None or recording.drive_time_s is not None:
+    if recording.driven:
         time, voltage = recording.drive()
         schedule = VoltageSchedule(np.asarray(time), np.asarray(voltage))
     return Experiment(recording, Run(recording.name, recording.time_s, schedule, state, factor, start))
 
 
-def load_experiments(paths: Iterable[str | Path]) -> list[Experiment]:
-    """Read recordings (.csv, .mcap) as experiments; an unreadable one among good ones is skipped with a warning.
+def load_experiments(
+    paths: Iterable[str | Path],
+    mapping: Mapping[str, str] | None = None,
+    drives: Sequence[str | Path] | None = None,
+) -> list[Experiment]:
+    """Read recordings (.csv, .mcap) as experiments.
 
-    Raises RecordingError when none can be read.
+    mapping, drives: as of hasel_recording.read_recordings. One among good ones that cannot be read, or not be
+    simulated, is skipped with a RecordingWarning; raises RecordingError when none is left.
     """
-    return [experiment(recording) for recording in read_recordings(paths)]
+    good, refused = [], []
+    for recording in read_recordings(paths, mapping, drives):
+        fault = refusal(recording)
+        if fault is None:
+            good.append(experiment(recording))
+        else:
+            refused.append(str(fault))
+    if not good:
+        raise RecordingError(" ".join(refused))
+    for sentence in refused:
+        warnings.warn(f"Skipped: {sentence}", RecordingWarning, stacklevel=2)
+    return good
+
+
+def for_model(model: Model, experiments: Sequence[Experiment]) -> list[Experiment]:
+    """The experiments with exactly the channels of the model.
+
+    Raises SysidError where channels do not fit, or where a level lies far beyond those that the model knows.
+    """
+    chosen = matched(model, [each.recording for each in experiments])
+    found = [
+        each if recording is each.recording else experiment(recording)
+        for each, recording in zip(experiments, chosen, strict=True)
+    ]
+    check_levels(model, found)
+    return found
+
+
+def check_levels(model: Model, experiments: Sequence[Experiment]) -> None:
+    """Raise SysidError where a run is driven far beyond the levels of a model that has some.
+
+    Beyond the highest level the contraction goes on with the slope it has there, which is 4 % short of a quadratic law
+    at a quarter more, and worse further out.
+    """
+    if not len(model.levels):
+        return
+    highest = float(max(model.levels))
+    for each in experiments:
+        if each.run.schedule is None:
+            continue
+        level = float(max(each.run.schedule.levels(), default=0.0))
+        if level > _FAR_BEYOND * highest:
+            unit = each.recording.channels[0].unit
+            raise SysidError(
+                f"{each.name} is driven with {level:g} {unit}, far beyond the levels that model '{model.name}' knows "
+                f"({', '.join(f'{known:g}' for known in model.levels)} {unit}): fit it on a run at about that level, "
+                "or leave this one out"
+            )
 
 
 def voltage_levels(experiments: Sequence[Experiment]) -> np.ndarray:

@@ -4,6 +4,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
+from hasel_sim.model import Model
 from hasel_sim.parallel import executor
 
 from hasel_sysid.command_line.inputs import chosen_model, load_all
@@ -13,6 +14,7 @@ from hasel_sysid.command_line.progress import progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import show
 from hasel_sysid.compare import Comparison, compare
+from hasel_sysid.dataset import for_model
 from hasel_sysid.report.from_results import comparison_content
 from hasel_sysid.report.write import write_report
 
@@ -31,22 +33,35 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _compare(options: argparse.Namespace) -> None:
     experiments, unseen = load_all(options)
     names = options.model or [None]
+    seen = len(experiments)
     models = [chosen_model(name, [*experiments, *unseen]) for name in names]
     comparisons: list[Comparison] = []
     try:
         with executor(options.jobs, options.scheduler) as pool, progress_bar("compare") as progress:
             for done, (label, model) in enumerate(models):
+                _say_if_never_fitted(label, model)
 
                 def step(text: str, share: float, done: int = done) -> None:
                     progress(text, (done + share) / len(models))
 
-                comparisons.append(compare(model, experiments, pool, unseen, label, step))
+                every = for_model(model, [*experiments, *unseen])
+                comparisons.append(compare(model, every[:seen], pool, every[seen:], label, step))
     except KeyboardInterrupt:
         if comparisons:
             _finish(options, comparisons)
             print(f"{len(comparisons)} of {len(models)} models were compared", file=sys.stderr)
         raise
     _finish(options, comparisons)
+
+
+def _say_if_never_fitted(label: str, model: Model) -> None:
+    fitted = len(model.levels) or any(p.standard_error is not None for p in model.parameters.values())
+    if not fitted and model.free:
+        print(
+            f"note: model '{label}' was never fitted to any recording, so amplitudes and other free values are first "
+            "guesses: run fit to learn how well it can do",
+            file=sys.stderr,
+        )
 
 
 def _finish(options: argparse.Namespace, comparisons: Sequence[Comparison]) -> None:

@@ -5,11 +5,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from hasel_recording.reading import drive_of_each
 from hasel_sim.model import Model, load_model
 
 from hasel_sysid.command_line.shown import announce
 from hasel_sysid.data_gate import Finding
-from hasel_sysid.dataset import Experiment, load_experiments, prepared
+from hasel_sysid.dataset import Experiment, check_levels, for_model, load_experiments, prepared
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.noise_sources.measured import given_noise
 
@@ -33,19 +34,26 @@ class Inputs:
 def load_inputs(options: argparse.Namespace) -> Inputs:
     """Read the recordings, tell what the data gate finds, and choose the model."""
     experiments, unseen = load_all(options)
-    said = announce([*experiments, *unseen])
     known = getattr(options, "noise", None)
     noise = None if known is None else given_noise(known)
     label, model = chosen_model(options.model, [*experiments, *unseen])
-    return Inputs(experiments, unseen, label, prepared(model, experiments), said, noise)
+    every = for_model(model.with_levels([]), [*experiments, *unseen])
+    experiments, unseen = every[: len(experiments)], every[len(experiments) :]
+    said = announce(every)
+    model = prepared(model, experiments)
+    check_levels(model, unseen)
+    return Inputs(experiments, unseen, label, model, said, noise)
 
 
 def load_all(
     options: argparse.Namespace,
 ) -> tuple[list[Experiment], list[Experiment]]:
     """The experiments to fit and the unseen ones. Raises RecordingError when there are none to read."""
-    unseen = load_experiments(options.validate) if options.validate else []
-    return load_experiments(options.recordings), unseen
+    fitted, validated = list(options.recordings), list(options.validate)
+    drives = drive_of_each([*fitted, *validated], options.drive)
+    experiments = load_experiments(fitted, options.map, drives[: len(fitted)])
+    unseen = load_experiments(validated, options.map, drives[len(fitted) :]) if validated else []
+    return experiments, unseen
 
 
 def chosen_model(name: str | None, experiments: Sequence[Experiment]) -> tuple[str, Model]:

@@ -3,6 +3,8 @@
 import argparse
 from pathlib import Path
 
+from hasel_recording.reading_options import add_reading_options
+
 
 def recording_options(
     prog: str, description: str, several_models: bool = False, effects: bool = False, noise: bool = False
@@ -10,6 +12,7 @@ def recording_options(
     """What commands on recordings share: what to read, the model, candidates, where to write, on how many cores."""
     parser = argparse.ArgumentParser(prog=prog, description=description)
     _add_recordings(parser)
+    add_reading_options(parser)
     _add_model(parser, several_models)
     if effects:
         _add_effects(parser)

@@ -8,6 +8,7 @@ from hasel_sysid.data_gate.angle import check_angle
 from hasel_sysid.data_gate.command import check_command
 from hasel_sysid.data_gate.finding import Finding, Severity
 from hasel_sysid.data_gate.frames import check_frames
+from hasel_sysid.data_gate.header import check_header
 from hasel_sysid.data_gate.markers import check_markers
 from hasel_sysid.data_gate.response import check_response
 
@@ -17,7 +18,7 @@ _NO_RESPONSE = {"unit of the angle", "frozen angle", "command equals measurement
 
 def check_recording(recording: Recording) -> list[Finding]:
     """Faults of the set-up that the recording shows by itself, errors first."""
-    found = check_frames(recording)
+    found = [*check_header(recording), *check_frames(recording)]
     if not _STOP & {finding.fault for finding in found}:
         found += [*check_angle(recording), *check_command(recording), *check_markers(recording)]
         if not _NO_RESPONSE & {finding.fault for finding in found}:

@@ -1,0 +1,89 @@
+"""`check RECORDING…`: what was understood of recordings, and what looks wrong, before anything is fitted."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from hasel_recording import Recording, RecordingError
+from hasel_recording.reading import drive_of_each, read_recording
+from hasel_recording.reading_options import add_reading_options
+from hasel_sim.model import Model, load_model
+
+from hasel_sysid.command_line.json_file import write_json
+from hasel_sysid.command_line.running import BAD_INPUT, run_command
+from hasel_sysid.data_gate.check import refusal
+from hasel_sysid.data_gate.summary import Summary, summary
+from hasel_sysid.dataset import experiment, for_model
+from hasel_sysid.errors import SysidError
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command's options."""
+    options = argparse.ArgumentParser(
+        prog="check",
+        description="Say what was understood of recordings (rate, angle, drive, markers, start) and what looks wrong, "
+        "before anything is fitted. Exit code 0: nothing with which results would mislead.",
+    )
+    options.add_argument("recordings", metavar="RECORDING", nargs="+", type=Path, help=".mcap or .csv file")
+    add_reading_options(options)
+    options.add_argument(
+        "--model", metavar="NAME|FILE", help="say too whether the drive's channels fit this model"
+    )
+    options.add_argument("--json", metavar="FILE", type=Path, help="write the same for other programs")
+    return options
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit code: 2 where a recording cannot be used or would mislead."""
+    options = parser().parse_args(arguments)
+    refused: list[str] = []
+    code = run_command(lambda: _check(options, refused))
+    return code or (BAD_INPUT if refused else 0)
+
+
+def _check(options: argparse.Namespace, refused: list[str]) -> None:
+    """Print a summary of each recording; what cannot be used is added to `refused`."""
+    drives = drive_of_each(options.recordings, options.drive)
+    model = load_model(options.model) if options.model else None
+    shown: list[Summary] = []
+    for path, drive in zip(options.recordings, drives, strict=True):
+        try:
+            recording = read_recording(path, options.map, drive)
+        except RecordingError as error:
+            _refuse(path.stem, str(error), refused)
+            continue
+        fits: tuple[str, ...] = ()
+        try:
+            recording, fits = _for(model, recording)
+        except SysidError as error:
+            _refuse(recording.name, str(error), refused)
+        shown.append(summary(recording, fits))
+        print(shown[-1])
+        if not shown[-1].good:
+            refused.append(recording.name)
+    if options.json:
+        write_json({"recordings": [each.to_json() for each in shown], "refused": refused}, options.json)
+    if len(options.recordings) > 1:
+        names = ", ".join(dict.fromkeys(refused))
+        print(
+            f"Not to be used as they are: {names}." if refused else "All recordings can be used as they are."
+        )
+
+
+def _for(model: Model | None, recording: Recording) -> tuple[Recording, tuple[str, ...]]:
+    """The recording with the model's channels, and a sentence that it fits; as it is where it cannot be simulated."""
+    if model is None or refusal(recording) is not None:
+        return recording, ()
+    matched = for_model(model, [experiment(recording)])[0].recording
+    driven = ", ".join(map(str, matched.channels)) if model.has_muscles else "nothing, a passive body"
+    return matched, (f"{model.name}, driven by {driven}: fits",)
+
+
+def _refuse(name: str, sentence: str, refused: list[str]) -> None:
+    print(f"error: {sentence}", file=sys.stderr)
+    refused.append(name)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,125 @@
+"""What was understood of a recording, before anything is fitted."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from hasel_recording import DriveChannel, Recording
+
+from hasel_sysid.data_gate.check import check_recording
+from hasel_sysid.data_gate.finding import Finding, Severity
+from hasel_sysid.where_it_fails.drive_cycle import comparable, drive_cycle
+from hasel_sysid.where_it_fails.noise import high_frequency_noise
+
+_MOST_SHOWN = 6
+
+
+@dataclass(frozen=True)
+class Summary:
+    """rows: (what, said) in the order in which a person reads them; findings: what looks wrong."""
+
+    recording: Recording
+    rows: tuple[tuple[str, str], ...]
+    findings: tuple[Finding, ...]
+
+    @property
+    def good(self) -> bool:
+        """Whether nothing was found with which results would mislead."""
+        return all(finding.severity is not Severity.ERROR for finding in self.findings)
+
+    def __str__(self) -> str:
+        rows = [f"  {what:<8} {said}" for what, said in self.rows]
+        found = [f"  {f.severity.value:<8} {f.fault}: {f.evidence}; {f.advice}." for f in self.findings] or [
+            "  looks in order"
+        ]
+        return "\n".join([str(self.recording.path or self.recording.name), *rows, *found])
+
+    def to_json(self) -> dict:
+        """Plain words and numbers."""
+        return {
+            "name": self.recording.name,
+            "understood": [{"what": what, "said": said} for what, said in self.rows],
+            "findings": [finding.to_json() for finding in self.findings],
+            "good": self.good,
+        }
+
+
+def summary(recording: Recording, model: Sequence[str] = ()) -> Summary:
+    """What a recording holds, line by line, and what looks wrong in it; model: what is to be said of a model."""
+    rows = [("frames", _frames(recording)), ("angle", _angle(recording))]
+    rows += [("drive", line) for line in _drive(recording)]
+    rows += [("markers", _markers(recording)), ("start", _start(recording))]
+    rows += [("read", sentence) for sentence in recording.understood]
+    rows += [("header", f"{key}: {value}") for key, value in recording.metadata.items()]
+    rows += [("model", sentence) for sentence in model]
+    return Summary(recording, tuple(rows), tuple(check_recording(recording)))
+
+
+def _frames(recording: Recording) -> str:
+    time = recording.time_s
+    text = f"{len(time)} from {time[0]:.6g} to {time[-1]:.6g} s"
+    if len(time) > 1:
+        text += f", {1 / float(np.median(np.diff(time))):.5g} per second"
+    lost = len(time) - int(recording.valid.sum())
+    return f"{text}, {lost} without an angle" if lost else text
+
+
+def _angle(recording: Recording) -> str:
+    sin_theta = recording.sin_theta[recording.valid]
+    low, high = np.degrees(np.arcsin(np.clip([sin_theta.min(), sin_theta.max()], -1, 1)))
+    text = f"sin θ from {sin_theta.min():.4g} to {sin_theta.max():.4g} (θ from {low:.3g}° to {high:.3g}°)"
+    if len(sin_theta) < 16:
+        return text
+    return f"{text}, noise of single frames about {high_frequency_noise(sin_theta):.2g}"
+
+
+def _drive(recording: Recording) -> list[str]:
+    if not recording.driven:
+        return ["none: a passive body"]
+    time, values = recording.drive()
+    lines = [
+        f"{channel}: {_levels(channel, signal)}"
+        for channel, signal in zip(recording.channels, values.T, strict=True)
+    ]
+    placed = ", instants known apart from the frames" if recording.drive_time_s is not None else ""
+    return [*lines, _switching(recording, time, values) + placed]
+
+
+def _levels(channel: DriveChannel, signal: np.ndarray) -> str:
+    levels = np.unique(signal)
+    if len(levels) == 1:
+        return f"{channel.shown(levels[0])} throughout"
+    if len(levels) <= _MOST_SHOWN:
+        return f"{', '.join(f'{level:.6g}' for level in levels[:-1])} and {channel.shown(levels[-1])}"
+    return f"from {levels[0]:.6g} to {channel.shown(levels[-1])}, {len(levels)} values"
+
+
+def _switching(recording: Recording, time: np.ndarray, values: np.ndarray) -> str:
+    changes = time[1 + np.flatnonzero(np.any(np.diff(values, axis=0) != 0, axis=1))]
+    if len(changes) == 0:
+        return "never changes"
+    cycle = drive_cycle(time, comparable(values, recording.channels))
+    if cycle is not None:
+        cycles = cycle.count(recording.time_s)
+        return f"repeats at {1 / cycle.period:.4g} Hz, {cycles:.3g} cycles from {cycle.start:.5g} s on"
+    if len(changes) <= _MOST_SHOWN:
+        return f"changes at {', '.join(f'{instant:.5g}' for instant in changes)} s"
+    return f"changes {len(changes)} times between {changes[0]:.5g} and {changes[-1]:.5g} s, without a period"
+
+
+def _markers(recording: Recording) -> str:
+    if recording.markers is None:
+        return "none recorded, only the angle"
+    unit = "m" if recording.marker_unit == "m" else "px (y down)"
+    return f"{', '.join(recording.marker_names)} in {unit}"
+
+
+def _start(recording: Recording) -> str:
+    header = recording.metadata
+    state = header.get("initial_state", "rest").replace("_", " ")
+    drive_start = recording.drive()[0][0] if recording.driven else recording.time_s[0]
+    begins = float(min(recording.time_s[0], drive_start))
+    text = f"from {state} at {header.get('initial_time_s', f'{begins:.6g}')} s"
+    if "initial_load_factor" in header:
+        text += f", under {header['initial_load_factor']} times all loads"
+    return text

@@ -1,0 +1,113 @@
+"""The channels of a recording against those of a model."""
+
+import warnings
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from hasel_recording import HASEL_PAIR, DriveChannel, Recording, RecordingWarning
+from hasel_recording.errors import nearest
+from hasel_sim.model import Model
+
+from hasel_sysid.errors import SysidError
+
+
+def model_channels(model: Model) -> tuple[DriveChannel, ...]:
+    """What drives a model's body, as a recording knows it; empty for a passive one."""
+    return HASEL_PAIR if model.has_muscles else ()
+
+
+def matched(model: Model, recordings: Sequence[Recording]) -> list[Recording]:
+    """The recordings with exactly the model's channels, in its order.
+
+    A channel that the model has not got and that is zero throughout is left out with one RecordingWarning for all.
+    Raises SysidError for one that is not zero, for a channel of the model that a recording has not got, and for one
+    of another quantity.
+    """
+    wanted = model_channels(model)
+    left_out = Counter(name for recording in recordings for name in _check(model, wanted, recording))
+    for name, count in left_out.items():
+        where = recordings[0].name if len(recordings) == 1 else f"{count} of {len(recordings)} recordings"
+        warnings.warn(
+            f"channel '{name}' is zero throughout in {where} and drives nothing in model '{model.name}': left out.",
+            RecordingWarning,
+            stacklevel=3,
+        )
+    return [_chosen(recording, wanted) for recording in recordings]
+
+
+def _chosen(recording: Recording, wanted: tuple[DriveChannel, ...]) -> Recording:
+    if not recording.driven or recording.channels == wanted:
+        return recording
+    if not wanted:
+        return replace(recording, drive_signal=None, drive_time_s=None, drive_values=None)
+    columns = [recording.channels.index(channel) for channel in wanted]
+
+    def chosen(signal: np.ndarray | None) -> np.ndarray | None:
+        return None if signal is None else signal[:, columns]
+
+    return replace(
+        recording,
+        channels=wanted,
+        drive_signal=chosen(recording.drive_signal),
+        drive_values=chosen(recording.drive_values),
+    )
+
+
+def _check(model: Model, wanted: tuple[DriveChannel, ...], recording: Recording) -> list[str]:
+    """Names of the channels that are zero throughout and that the model has not got; SysidError for what cannot be."""
+    if not recording.driven:
+        if wanted:
+            raise SysidError(
+                f"{recording.name} has no drive, and model '{model.name}' is driven by {_names(wanted)}: add the "
+                f"columns {_columns(wanted)} (zeros where nothing drives), give --drive FILE, or choose another --model"
+            )
+        return []
+    _, values = recording.drive()
+    by_name = {channel.name: channel for channel in wanted}
+    unused = []
+    for channel, signal in zip(recording.channels, values.T, strict=True):
+        if channel in wanted:
+            continue
+        if channel.name not in by_name and not signal.any():
+            unused.append(channel.name)
+        elif channel.name in by_name:
+            raise SysidError(
+                f"{recording.name} gives a {channel.quantity} for '{channel.name}', and model '{model.name}' expects a "
+                f"{by_name[channel.name].quantity}: name the column {by_name[channel.name].column}, say "
+                "#volts_per_<unit> in the header where volts stand for it, or choose another --model"
+            )
+        else:
+            raise SysidError(_without_a_muscle(model, wanted, recording, channel))
+    for channel in wanted:
+        if channel not in recording.channels:
+            raise SysidError(
+                f"{recording.name} has no column for channel '{channel.name}' of model '{model.name}', only "
+                f"{_columns(recording.channels)}: add {channel.column} (zeros where it rests) or choose another --model"
+            )
+    return unused
+
+
+def _without_a_muscle(
+    model: Model, wanted: tuple[DriveChannel, ...], recording: Recording, channel: DriveChannel
+) -> str:
+    if not wanted:
+        return (
+            f"{recording.name} is driven ({channel.column}), and model '{model.name}' has no muscles; choose the model "
+            "with --model (swimmer is the default)"
+        )
+    near = nearest(channel.name, [other.name for other in wanted], similarity=0.6)
+    hint = f"is '{near}' meant? Then rename the column" if near else "rename or remove the column"
+    return (
+        f"{recording.name} drives channel '{channel.name}' ({channel.column}), which contracts no muscle of model "
+        f"'{model.name}'; expected {_names(wanted)}: {hint}, or choose another --model"
+    )
+
+
+def _names(channels: Sequence[DriveChannel]) -> str:
+    return ", ".join(f"{channel.name} [{channel.unit}]" for channel in channels)
+
+
+def _columns(channels: Sequence[DriveChannel]) -> str:
+    return ", ".join(channel.column for channel in channels)
