@@ -21,14 +21,14 @@ setup(
     entry_points={
         "console_scripts": [
             "sysid = hasel_sysid.sysid_node:main",
-            "check = hasel_sysid.command_line.check:main",
-            "compare = hasel_sysid.command_line.compare:main",
-            "fit = hasel_sysid.command_line.fit:main",
-            "diagnose = hasel_sysid.command_line.diagnose:main",
-            "improve = hasel_sysid.command_line.improve:main",
-            "suggest = hasel_sysid.command_line.suggest:main",
-            "add = hasel_sysid.command_line.effects:add_main",
-            "remove = hasel_sysid.command_line.effects:remove_main",
+            "check = hasel_sysid.command_line.entry:check",
+            "compare = hasel_sysid.command_line.entry:compare",
+            "fit = hasel_sysid.command_line.entry:fit",
+            "diagnose = hasel_sysid.command_line.entry:diagnose",
+            "improve = hasel_sysid.command_line.entry:improve",
+            "suggest = hasel_sysid.command_line.entry:suggest",
+            "add = hasel_sysid.command_line.entry:add",
+            "remove = hasel_sysid.command_line.entry:remove",
             "convert = hasel_sysid.command_line.convert:main",
         ]
     },

@@ -115,7 +115,9 @@ def _call(command, arguments: Sequence[str]) -> None:
     """Run one of the commands as a user would. Raises BringupError when it fails."""
     code = command.main(arguments)
     if code:
-        raise BringupError(f"{command.parser().prog} failed with exit code {code}; see its message above")
+        raise BringupError(
+            f"{command.__name__.rpartition('.')[2]} failed with exit code {code}; see its message above"
+        )
 
 
 def main() -> int:

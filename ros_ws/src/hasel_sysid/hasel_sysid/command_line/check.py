@@ -3,14 +3,13 @@
 import argparse
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 from hasel_recording import Recording, RecordingError
 from hasel_recording.reading import drive_of_each, read_recording
-from hasel_recording.reading_options import add_reading_options
 from hasel_sim.model import Model, load_model
 
 from hasel_sysid.command_line.json_file import write_json
+from hasel_sysid.command_line.parsers import check_parser
 from hasel_sysid.command_line.running import BAD_INPUT, run_command
 from hasel_sysid.data_gate.check import refusal
 from hasel_sysid.data_gate.summary import Summary, summary
@@ -18,25 +17,13 @@ from hasel_sysid.dataset import experiment, for_model
 from hasel_sysid.errors import SysidError
 
 
-def parser() -> argparse.ArgumentParser:
-    """The command's options."""
-    options = argparse.ArgumentParser(
-        prog="check",
-        description="Say what was understood of recordings (rate, angle, drive, markers, start) and what looks wrong, "
-        "before anything is fitted. Exit code 0: nothing with which results would mislead.",
-    )
-    options.add_argument("recordings", metavar="RECORDING", nargs="+", type=Path, help=".mcap or .csv file")
-    add_reading_options(options)
-    options.add_argument(
-        "--model", metavar="NAME|FILE", help="say too whether the drive's channels fit this model"
-    )
-    options.add_argument("--json", metavar="FILE", type=Path, help="write the same for other programs")
-    return options
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns its exit code: 2 where a recording cannot be used or would mislead."""
-    options = parser().parse_args(arguments)
+    return run(check_parser().parse_args(arguments))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options."""
     refused: list[str] = []
     code = run_command(lambda: _check(options, refused))
     return code or (BAD_INPUT if refused else 0)

@@ -9,24 +9,26 @@ from hasel_sim.parallel import executor
 
 from hasel_sysid.command_line.inputs import chosen_model, load_all
 from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.options import recording_options
+from hasel_sysid.command_line.parsers import compare_parser
 from hasel_sysid.command_line.progress import progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import show
 from hasel_sysid.compare import Comparison, compare
-from hasel_sysid.dataset import for_model
+from hasel_sysid.dataset import Experiment, for_model
 from hasel_sysid.report.from_results import comparison_content
 from hasel_sysid.report.write import write_report
 
-
-def parser() -> argparse.ArgumentParser:
-    """The command's options."""
-    return recording_options("compare", "Compare a model with recordings.", several_models=True)
+_FEW_FRAMES = 3000
+"""Simulated in some two seconds of one core; a process of its own needs one to start."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns its exit code."""
-    options = parser().parse_args(arguments)
+    return run(compare_parser().parse_args(arguments))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code."""
     return run_command(lambda: _compare(options))
 
 
@@ -37,7 +39,8 @@ def _compare(options: argparse.Namespace) -> None:
     models = [chosen_model(name, [*experiments, *unseen]) for name in names]
     comparisons: list[Comparison] = []
     try:
-        with executor(options.jobs, options.scheduler) as pool, progress_bar("compare") as progress:
+        jobs = options.jobs or _worth_it(models, [*experiments, *unseen])
+        with executor(jobs, options.scheduler) as pool, progress_bar("compare") as progress:
             for done, (label, model) in enumerate(models):
                 _say_if_never_fitted(label, model)
 
@@ -52,6 +55,12 @@ def _compare(options: argparse.Namespace) -> None:
             print(f"{len(comparisons)} of {len(models)} models were compared", file=sys.stderr)
         raise
     _finish(options, comparisons)
+
+
+def _worth_it(models: Sequence[tuple[str, Model]], experiments: Sequence[Experiment]) -> int | None:
+    """1 where starting further processes takes longer than simulating every frame here, otherwise one per core."""
+    frames = len(models) * sum(len(each.run.time) for each in experiments)
+    return 1 if frames < _FEW_FRAMES else None
 
 
 def _say_if_never_fitted(label: str, model: Model) -> None:

@@ -8,7 +8,7 @@ from hasel_sim.parallel import executor
 
 from hasel_sysid.command_line.inputs import load_inputs
 from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.options import recording_options
+from hasel_sysid.command_line.parsers import diagnose_parser
 from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import show
@@ -21,14 +21,13 @@ from hasel_sysid.report.from_diagnosis import diagnosis_content
 from hasel_sysid.report.write import write_report
 
 
-def parser() -> argparse.ArgumentParser:
-    """The command's options."""
-    return recording_options("diagnose", "Rank the effects that a model may lack.", effects=True, noise=True)
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns its exit code."""
-    options = parser().parse_args(arguments)
+    return run(diagnose_parser().parse_args(arguments))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code."""
     return run_command(lambda: _diagnose(options))
 
 

@@ -11,35 +11,27 @@ from hasel_sim.parallel import executor
 from hasel_sysid.command_line.best_so_far import BestSoFar
 from hasel_sysid.command_line.inputs import load_inputs
 from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.options import recording_options
+from hasel_sysid.command_line.parsers import fit_parser
 from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import show
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.data_gate import Finding
 from hasel_sysid.errors import SysidError
-from hasel_sysid.fit import METHODS, FitResult, identify
+from hasel_sysid.fit import FitResult, identify
 from hasel_sysid.report.from_results import fit_content
 from hasel_sysid.report.write import write_report
 
 MODEL_FILE = "fitted_model.yaml"
 
 
-def parser() -> argparse.ArgumentParser:
-    """The command's options."""
-    options = recording_options("fit", "Identify a model's parameters from recordings.")
-    options.add_argument(
-        "--method",
-        choices=sorted(METHODS),
-        default="least_squares",
-        help="least_squares, or the seed paper's Adam (default: %(default)s)",
-    )
-    return options
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns its exit code."""
-    options = parser().parse_args(arguments)
+    return run(fit_parser().parse_args(arguments))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code."""
     return run_command(lambda: _fit(options))
 
 

@@ -11,7 +11,7 @@ from hasel_sim.parallel import executor, simulate_all
 
 from hasel_sysid.command_line.inputs import load_inputs
 from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.options import recording_options
+from hasel_sysid.command_line.parsers import improve_parser
 from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import show, tell
@@ -29,15 +29,13 @@ from hasel_sysid.suggest import Suggestion, in_doubt, suggest
 MODEL_FILE = "improved_model.yaml"
 
 
-def parser() -> argparse.ArgumentParser:
-    """The command's options."""
-    what = "Add missing effects until what is left is noise or nothing known explains it."
-    return recording_options("improve", what, effects=True, noise=True)
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns its exit code."""
-    options = parser().parse_args(arguments)
+    return run(improve_parser().parse_args(arguments))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code."""
     return run_command(lambda: _improve(options))
 
 

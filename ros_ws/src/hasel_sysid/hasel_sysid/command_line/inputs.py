@@ -4,17 +4,18 @@ import argparse
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from hasel_recording.reading import drive_of_each
 from hasel_sim.model import Model, load_model
 
+from hasel_sysid.command_line.options import DEFAULT_MODEL
 from hasel_sysid.command_line.shown import announce
 from hasel_sysid.data_gate import Finding
 from hasel_sysid.dataset import Experiment, check_levels, for_model, load_experiments, prepared
-from hasel_sysid.noise import NoiseModel
-from hasel_sysid.noise_sources.measured import given_noise
 
-DEFAULT_MODEL = "swimmer"
+if TYPE_CHECKING:
+    from hasel_sysid.noise import NoiseModel
 
 
 @dataclass(frozen=True)
@@ -28,14 +29,13 @@ class Inputs:
     label: str
     model: Model
     said: list[Finding]
-    noise: NoiseModel | None = None
+    noise: "NoiseModel | None" = None
 
 
 def load_inputs(options: argparse.Namespace) -> Inputs:
     """Read the recordings, tell what the data gate finds, and choose the model."""
     experiments, unseen = load_all(options)
-    known = getattr(options, "noise", None)
-    noise = None if known is None else given_noise(known)
+    noise = _noise(getattr(options, "noise", None))
     label, model = chosen_model(options.model, [*experiments, *unseen])
     every = for_model(model.with_levels([]), [*experiments, *unseen])
     experiments, unseen = every[: len(experiments)], every[len(experiments) :]
@@ -43,6 +43,16 @@ def load_inputs(options: argparse.Namespace) -> Inputs:
     model = prepared(model, experiments)
     check_levels(model, unseen)
     return Inputs(experiments, unseen, label, model, said, noise)
+
+
+def _noise(given: float | None) -> "NoiseModel | None":
+    if given is None:
+        return None
+    from hasel_sysid.noise_sources.measured import (
+        given_noise,  # takes as long to import as all else that compare needs
+    )
+
+    return given_noise(given)
 
 
 def load_all(

@@ -5,6 +5,8 @@ from pathlib import Path
 
 from hasel_recording.reading_options import add_reading_options
 
+DEFAULT_MODEL = "swimmer"
+
 
 def recording_options(
     prog: str, description: str, several_models: bool = False, effects: bool = False, noise: bool = False

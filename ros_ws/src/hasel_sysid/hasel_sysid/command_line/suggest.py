@@ -9,7 +9,7 @@ from ruamel.yaml import YAML
 
 from hasel_sysid.command_line.inputs import load_inputs
 from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.options import recording_options
+from hasel_sysid.command_line.parsers import suggest_parser
 from hasel_sysid.command_line.progress import progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.diagnosis import diagnose
@@ -21,23 +21,13 @@ GOAL_FILE = "suggested_run.yaml"
 _SHOWN = 5
 
 
-def parser() -> argparse.ArgumentParser:
-    """The command's options."""
-    what = "Propose the next run: the one in which the remaining explanations differ most."
-    options = recording_options("suggest", what, effects=True, noise=True)
-    options.add_argument(
-        "--max-voltage",
-        metavar="V",
-        type=float,
-        default=5500.0,
-        help="highest safe voltage (default: %(default)g)",
-    )
-    return options
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns its exit code."""
-    options = parser().parse_args(arguments)
+    return run(suggest_parser().parse_args(arguments))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code."""
     return run_command(lambda: _suggest(options))
 
 

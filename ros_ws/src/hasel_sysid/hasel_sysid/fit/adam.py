@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-import torch
 from hasel_sim.model import Model
 
 from hasel_sysid.fit.least_squares import Progress, fitted_result
@@ -19,6 +18,8 @@ def fit_adam(problem: Problem, model: Model, progress: Progress | None = None, s
     The learning rates act on values in units of their start, as the paper's normalised parameters do; the best of
     all steps is returned.
     """
+    import torch  # takes seconds and 200 MB, which no other method needs
+
     names = model.free
     start = np.array([model.parameters[name].value for name in names])
     unit = np.where(start != 0, np.abs(start), 1.0)

@@ -2,13 +2,16 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from hasel_sim.model import Model
 
 from hasel_sysid.compare.comparison import Comparison
-from hasel_sysid.fit.result import FitResult
 from hasel_sysid.report.content import KeyNumber, ParameterRow, ReportContent, RunOverlay
 from hasel_sysid.report.numbers import count_text, error_text
+
+if TYPE_CHECKING:
+    from hasel_sysid.fit.result import FitResult
 
 _RMS_TO_MEAN = 0.798
 """Mean magnitude of Gaussian noise of unit standard deviation."""
@@ -85,7 +88,7 @@ def key_numbers(comparison: Comparison) -> tuple[KeyNumber, ...]:
     return tuple(numbers)
 
 
-def fit_content(result: FitResult, comparison: Comparison) -> ReportContent:
+def fit_content(result: "FitResult", comparison: Comparison) -> ReportContent:
     """Report of a fit: the comparison, with parameters, their uncertainty and alarms."""
     remarks = dict.fromkeys(result.at_bound, "on its bound")
     remarks |= dict.fromkeys(result.undetermined, "not determined by these recordings")

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from hasel_sysid.where_it_fails.drive_cycle import comparable, net_drive
 from hasel_sysid.where_it_fails.run_series import RunSeries
@@ -62,7 +62,7 @@ def drive_dependence(run: RunSeries) -> DriveDependence | None:
     taper = 1 - np.arange(lags + 1) / (lags + 1)
     variance = max(1.0 + 2.0 * float((taper * both)[1:].sum()), 1.0) / len(residual)
     independent = max(1.0, (lags + 1) / max(1.0, variance * len(residual)))
-    band = norm.ppf(1 - 0.005 / independent) * np.sqrt(variance)
+    band = ndtri(1 - 0.005 / independent) * np.sqrt(variance)
     return DriveDependence(np.arange(lags + 1) * run.frame_time, np.array(values), float(band))
 
 

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from statsmodels.regression.linear_model import OLS
 
 _CORRELATION_S = 0.1
 """Errors further apart than this count as independent."""
@@ -36,5 +35,19 @@ def regress(series: np.ndarray, columns: np.ndarray, frame_time: float) -> Regre
     lags = int(
         np.clip(round(_CORRELATION_S / frame_time) if frame_time > 0 else 1, 1, max(1, len(series) // 4))
     )
-    result = OLS(series, columns).fit(cov_type="HAC", cov_kwds={"maxlags": lags, "use_correction": True})
-    return Regression(np.asarray(result.params), np.asarray(result.cov_params()), np.asarray(result.resid))
+    inverse = np.linalg.pinv(columns)
+    coefficients = inverse @ series
+    residual = series - columns @ coefficients
+    bread = inverse @ inverse.T
+    covariance = bread @ _long_run_covariance(columns * residual[:, None], lags) @ bread
+    count, parameters = columns.shape
+    return Regression(coefficients, covariance * count / max(count - parameters, 1), residual)
+
+
+def _long_run_covariance(scores: np.ndarray, lags: int) -> np.ndarray:
+    """Sum of the autocovariances of scores [n, k] up to `lags`, with Bartlett's weights, [k, k]."""
+    total = scores.T @ scores
+    for lag in range(1, lags + 1):
+        one_way = scores[lag:].T @ scores[:-lag]
+        total = total + (1.0 - lag / (lags + 1)) * (one_way + one_way.T)
+    return total

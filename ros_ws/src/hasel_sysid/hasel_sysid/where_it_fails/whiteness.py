@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2, norm
+from scipy.special import chdtrc, ndtri
 
 LAGS = 25
 
@@ -51,13 +51,13 @@ def whiteness(residual: np.ndarray, frame_time: float, lags: int = LAGS) -> Whit
         products = centred[lag:] * centred[:-lag]
         correlation[lag - 1] = products.sum() / power
         statistic[lag - 1] = products.sum() / np.sqrt((products**2).sum())
-    band = norm.ppf(0.995) * np.abs(correlation / np.where(statistic == 0, np.inf, statistic))
+    band = ndtri(0.995) * np.abs(correlation / np.where(statistic == 0, np.inf, statistic))
     crossing = np.flatnonzero(correlation <= 0)
     inside = correlation[: crossing[0] if len(crossing) else None].sum()
     return Whiteness(
         np.arange(1, count + 1) * frame_time,
         correlation,
         band,
-        float(chi2.sf((statistic**2).sum(), count)),
+        float(chdtrc(count, (statistic**2).sum())),
         float((1 + 2 * inside) * frame_time),
     )

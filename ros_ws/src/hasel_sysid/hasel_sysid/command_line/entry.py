@@ -1,0 +1,53 @@
+"""Where the executables begin: options are read before anything heavy is imported, so that --help answers at once."""
+
+import argparse
+import sys
+from collections.abc import Callable
+from importlib import import_module
+
+from hasel_sysid.command_line import parsers
+
+
+def check() -> int:
+    """`check RECORDING…`."""
+    return _run(parsers.check_parser, "check")
+
+
+def compare() -> int:
+    """`compare RECORDING…`."""
+    return _run(parsers.compare_parser, "compare")
+
+
+def fit() -> int:
+    """`fit RECORDING…`."""
+    return _run(parsers.fit_parser, "fit")
+
+
+def diagnose() -> int:
+    """`diagnose RECORDING…`."""
+    return _run(parsers.diagnose_parser, "diagnose")
+
+
+def improve() -> int:
+    """`improve RECORDING…`."""
+    return _run(parsers.improve_parser, "improve")
+
+
+def suggest() -> int:
+    """`suggest RECORDING…`."""
+    return _run(parsers.suggest_parser, "suggest")
+
+
+def add() -> int:
+    """`add EFFECT…`."""
+    return _run(parsers.add_parser, "effects", "run_add")
+
+
+def remove() -> int:
+    """`remove EFFECT…`."""
+    return _run(parsers.remove_parser, "effects", "run_remove")
+
+
+def _run(parser: Callable[[], argparse.ArgumentParser], module: str, function: str = "run") -> int:
+    options = parser().parse_args(sys.argv[1:])
+    return getattr(import_module(f"hasel_sysid.command_line.{module}"), function)(options)
