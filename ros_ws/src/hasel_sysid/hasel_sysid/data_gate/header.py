@@ -2,21 +2,9 @@
 
 from hasel_recording import Recording
 from hasel_recording.errors import nearest
+from hasel_recording.header_keys import KNOWN_KEYS
 
 from hasel_sysid.data_gate.finding import Finding, warning
-
-KNOWN_KEYS = {
-    "model": "model to use where --model is not given",
-    "initial_state": "rest (default) or static_equilibrium",
-    "initial_load_factor": "times all loads that act in static_equilibrium (default 1)",
-    "initial_time_s": "when the body is let go (default: first frame or switch)",
-    "drive": "file of the drive, beside the recording",
-    "volts_per_<unit>": "the voltage columns stand for another quantity, such as volts_per_mbar: 10",
-    "voltage_v": "voltage that was asked for, compared with the column",
-    "frequency_hz": "frequency that was asked for, compared with the column",
-    "muscles": "both, lower_first, upper or lower: which were meant to be driven",
-}
-"""Header keys that mean something, and what."""
 
 
 def check_header(recording: Recording) -> list[Finding]:

@@ -4,8 +4,8 @@ import json
 
 import numpy as np
 import pytest
+from hasel_recording.header_keys import KNOWN_KEYS
 from hasel_sysid.command_line import check, compare
-from hasel_sysid.data_gate.header import KNOWN_KEYS
 
 
 def rows(time_factor: float = 1.0, degrees: float = 1.0, blank: int = 0) -> str:
