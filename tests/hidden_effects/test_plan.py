@@ -29,4 +29,4 @@ def test_switches_lie_at_true_instants():
     """The drive turns over every half period, between frames where it must."""
     run = BoxRun(4500.0, 3.5).run()
     np.testing.assert_allclose(run.schedule.time, np.arange(5) / 7.0)
-    assert run.schedule.voltage.tolist() == [[4500, 0], [0, 4500], [4500, 0], [0, 4500], [4500, 0]]
+    assert run.schedule.signal.tolist() == [[4500, 0], [0, 4500], [4500, 0], [0, 4500], [4500, 0]]

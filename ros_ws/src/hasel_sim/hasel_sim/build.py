@@ -11,8 +11,9 @@ from hasel_sim.errors import ModelError
 from hasel_sim.first_run import announce_compilation
 from hasel_sim.mechanics.branches import Branches
 from hasel_sim.mechanics.force_law import ForceLaw
-from hasel_sim.mechanics.inertia import Mass, element_masses
+from hasel_sim.mechanics.inertia import Mass, add_tip_plate, element_masses
 from hasel_sim.mechanics.residual_slopes import (
+    ContractionSlope,
     ForceSlope,
     NoSlope,
     ResidualSlope,
@@ -23,83 +24,90 @@ from hasel_sim.mechanics.residual_slopes import (
 from hasel_sim.mechanics.solid import Solid, lame_constants
 from hasel_sim.mechanics.stress_law import StressLaw
 from hasel_sim.mechanics.system import System
-from hasel_sim.mesh.bodies import outline_fault, rectangle_mesh, swimmer_mesh
+from hasel_sim.mesh.body_mesh import StripShape, strip_mesh
 from hasel_sim.mesh.mesh import Mesh, Region
+from hasel_sim.mesh.outline import outline_fault
 from hasel_sim.mesh.serendipity import reference_gradients
-from hasel_sim.mesh.sites import Sites, body_sites, point_sites, skin_sites
+from hasel_sim.mesh.sites import Sites, body_sites, point_sites, skin_sites, with_point_mass
 from hasel_sim.model import Model
-from hasel_sim.model.description import RectangleBody, SwimmerBody
+from hasel_sim.model.body import Body
+from hasel_sim.model.constants import REST_CONTRACTION, constants
+from hasel_sim.model.description import Description
+from hasel_sim.observation import MarkerRows
 
 _OUTLINE_STEP = 3e-6
 """Step [1] of the central differences by an outline coefficient."""
 
 
 @lru_cache(maxsize=16)
-def body_mesh(body: SwimmerBody | RectangleBody, density: float) -> Mesh:
+def _strip(shape: StripShape, density: float, layers: int) -> Mesh:
+    return strip_mesh(shape, density, layers)
+
+
+def body_mesh(description: Description, density: float | None = None) -> Mesh:
     """The mesh of a described body. Raises ModelError when the outline crosses the spine or itself."""
-    if body.kind == "rectangle":
-        aspect = body.length_m / body.height_m
-        through = max(1, round(2 * density))
-        return rectangle_mesh(
-            length=body.length_m,
-            height=body.height_m,
-            clamped=body.clamped,
-            elements_along=max(2, round(2 * aspect * through))
-            if aspect < 20
-            else max(8, round(24 * density)),
-            elements_through=through,
-        )
-    outline = np.array(body.outline_coefficients)
-    fault = outline_fault(outline, body.largest_half_height_m, body.spine_thickness_m, body.body_length_m)
+    body, numerics = description.body, description.numerics
+    _check_outline(body, np.array(body.coefficients))
+    shape = body.shape(tuple(muscle.stretch for muscle in description.muscles))
+    return _strip(shape, density or numerics.mesh_density, numerics.layers)
+
+
+def moved_nodes(model: Model, outline: np.ndarray) -> np.ndarray:
+    """Nodes [m] [nodes, 2] of the model's mesh moved to an outline with other coefficients.
+
+    Elements and columns stay, so that what is computed on them can be differentiated by the outline. Raises ModelError
+    when that outline crosses the spine or itself.
+    """
+    body, mesh = model.description.body, model_mesh(model)
+    _check_outline(body, outline)
+    return mesh.nodes + np.tensordot(outline - np.array(body.coefficients), mesh.outline_slope, 1)
+
+
+def _check_outline(body: Body, coefficients: np.ndarray) -> None:
+    fault = outline_fault(coefficients, body.largest_half_height_m, body.spine_thickness_m, body.length_m)
     if fault:
         raise ModelError(fault)
-    return swimmer_mesh(
-        body_length=body.body_length_m,
-        fin_length=body.fin_length_m,
-        spine_thickness=body.spine_thickness_m,
-        largest_half_height=body.largest_half_height_m,
-        outline=outline,
-        head_length=body.head_length_m,
-        muscle_end=body.muscle_end_m,
-        density=density,
-    )
 
 
 def model_mesh(model: Model) -> Mesh:
     """The mesh of a model."""
-    return body_mesh(model.description.body, model.description.numerics.mesh_density)
+    return body_mesh(model.description)
 
 
 def marker_points(model: Model) -> np.ndarray:
-    """Reference positions [m] of head, middle and tail marker, [3, 2]."""
-    markers = model.description.markers
-    return np.array([[marker.x_m, 0.0] for marker in (markers.head, markers.middle, markers.tail)])
+    """Reference positions [m] of head, middle and tail marker and of all others, [markers, 2]."""
+    markers, names = model.description.markers, model.description.marker_names()
+    return np.array([[markers[name].x_m, markers[name].y_m] for name in names])
 
 
-def _material(model: Model, mesh: Mesh, nodes: np.ndarray) -> tuple[Coefficients, np.ndarray]:
-    description = model.description
-    spine = mesh.region == Region.SPINE
-    soft_material, spine_material = (
-        description.material.soft,
-        description.material.spine or description.material.soft,
-    )
+def marker_rows(model: Model, mesh: Mesh) -> MarkerRows:
+    """How the markers follow from nodal positions."""
+    fixed = [model.description.markers[name].fixed for name in model.description.marker_names()]
+    return MarkerRows(mesh, marker_points(model), np.array(fixed))
 
-    def choose(soft: float, stiff: float) -> np.ndarray:
-        return np.where(spine, stiff, soft)
 
-    pairs = [lame_constants(m.youngs_modulus_pa, m.poissons_ratio) for m in (soft_material, spine_material)]
+def _material(description: Description, mesh: Mesh, nodes: np.ndarray) -> tuple[Coefficients, np.ndarray]:
+    spine = description.material.spine or description.material.soft
+    used = [description.material.soft, spine, *(region.material for region in description.body.regions)]
+    index = np.where(mesh.material > 0, mesh.material + 1, (mesh.region == Region.SPINE).astype(int))
+
+    def choose(values: list[float]) -> np.ndarray:
+        return np.array(values)[index]
+
+    pairs = [lame_constants(m.youngs_modulus_pa, m.poissons_ratio) for m in used]
+    fibres = np.array([0.0, *(muscle.fibre_stiffness_pa for muscle in description.muscles)])
     values, _, areas = reference_gradients(nodes[mesh.elements], description.numerics.quadrature_order)
     coefficients = Coefficients(
-        shear=choose(pairs[0][0], pairs[1][0]),
-        lame=choose(pairs[0][1], pairs[1][1]),
-        equilibrium=np.ones(len(spine)),
-        retardation=choose(soft_material.retardation_time_s, spine_material.retardation_time_s),
-        fibre=np.full(len(spine), description.muscle.fibre_stiffness_pa if description.muscle else 0.0),
+        shear=choose([shear for shear, _ in pairs]),
+        lame=choose([lame for _, lame in pairs]),
+        equilibrium=np.ones(len(index)),
+        retardation=choose([m.retardation_time_s for m in used]),
+        fibre=fibres[mesh.muscle],
         region=mesh.region,
         rest_stretch=np.ones(areas.shape),
         height=np.einsum("ga,ea->eg", values, nodes[mesh.elements][..., 1]),
     )
-    return coefficients, choose(soft_material.density_kg_per_m3, spine_material.density_kg_per_m3)
+    return coefficients, choose([m.density_kg_per_m3 for m in used])
 
 
 class Builder:
@@ -110,8 +118,14 @@ class Builder:
         self.model = model
         self.mesh = model_mesh(model) if nodes is None else replace(model_mesh(model), nodes=nodes)
         self.nodes = self.mesh.nodes
-        _, self._density = _material(model, self.mesh, self.nodes)
-        self.mass = Mass(self.mesh, element_masses(self.mesh, self.nodes, self._density))
+        self._described = model.described
+        coefficients, self._density = _material(self._described, self.mesh, self.nodes)
+        self._shear = coefficients.shear
+        masses = element_masses(self.mesh, self.nodes, self._density)
+        plate = self._described.body.tip_plate
+        if plate:
+            add_tip_plate(masses, self.mesh, plate.mass_kg_per_m, plate.rotary_inertia_kg_m)
+        self.mass = Mass(self.mesh, masses)
         self._values = model.effect_values()
 
     def system(self) -> System:
@@ -127,7 +141,7 @@ class Builder:
         return sorted(found, key=lambda effect: effect.id)
 
     def _solid(self, values: dict[str, SimpleNamespace]) -> Solid:
-        coefficients, _ = _material(self.model, self.mesh, self.nodes)
+        coefficients, _ = _material(self._described, self.mesh, self.nodes)
         branches = []
         for effect in self._of(MaterialEffect):
             effect.modify(coefficients, values[effect.id])
@@ -138,24 +152,26 @@ class Builder:
 
     def _sites(self, effect: ForceEffect, p: SimpleNamespace) -> Sites:
         if effect.sites == "body":
-            return body_sites(self.mesh, self.nodes, self._density)
+            plate = self._described.body.tip_plate
+            body = body_sites(self.mesh, self.nodes, self._density)
+            return body if plate is None else with_point_mass(body, self.mesh, plate.mass_kg_per_m)
         if effect.sites == "skin":
             return skin_sites(self.mesh)
-        return point_sites(self.mesh, effect.points(marker_points(self.model), p))
+        return point_sites(self.mesh, effect.points(marker_points(self.model)[:3], p))
 
     def _force_law(self, effect: ForceEffect, p: SimpleNamespace) -> ForceLaw:
         gravity = self.model.description.material.gravity_m_per_s2
         return ForceLaw(effect, p, self._sites(effect, p), self.nodes, gravity)
 
     def _stress_law(self, effect: MaterialEffect, p: SimpleNamespace) -> StressLaw:
-        muscle = np.where(self.mesh.region >= Region.UPPER_MUSCLE, self.mesh.region - 1, 0)
-        muscles = self.model.description.muscle
-        fibre = muscles.fibre_stiffness_pa if muscles else 0.0
-        return StressLaw(effect, p, self.mesh.region, muscle, fibre)
+        fibres = np.array([0.0, *(muscle.fibre_stiffness_pa for muscle in self._described.muscles)])
+        return StressLaw(effect, p, self.mesh, fibres, self._shear)
 
     def residual_slope(self, name: str) -> ResidualSlope:
         """The derivative of the residual by one of the model's parameters."""
         identity, _, own = name.rpartition(".")
+        if name in constants(self.model.description):
+            return self._constant_slope(name)
         effect = next((effect for effect in self.model.effects if effect.id == identity), None)
         if effect is None or not isinstance(effect, ForceEffect | MaterialEffect):
             return NoSlope()
@@ -171,6 +187,16 @@ class Builder:
         solids = [self._solid({**self._values, identity: changed}) for changed in (above, below)]
         return SolidSlope(*solids, width)
 
+    def _constant_slope(self, name: str) -> ResidualSlope:
+        if name.endswith(REST_CONTRACTION):
+            names = [muscle.name for muscle in self.model.description.muscles]
+            return ContractionSlope(names.index(name.split(".")[1]))
+        more, less, width = difference_points(constant_parameter(self.model, name), self.model.values[name])
+        systems = [
+            Builder(self.model.with_values({name: value}), self.nodes).system() for value in (more, less)
+        ]
+        return SystemSlope(*systems, width)
+
     def outline_slope(self, index: int) -> ResidualSlope:
         """The derivative of the residual by one outline coefficient, which moves nodes, masses, skin and all."""
         shift = _OUTLINE_STEP * self.mesh.outline_slope[index]
@@ -183,3 +209,10 @@ def difference_points(parameter: EffectParameter, value: float) -> tuple[float, 
     more = value + parameter.step if value + parameter.step <= parameter.upper else value
     less = value - parameter.step if value - parameter.step >= parameter.lower else value
     return more, less, more - less
+
+
+def constant_parameter(model: Model, name: str) -> EffectParameter:
+    """What is known of a freed constant: a difference step that fits its size."""
+    p = model.parameter(name)
+    typical = abs(p.value) or (p.upper if np.isfinite(p.upper) else 0.0) or 1.0
+    return EffectParameter(name, name, p.unit, 0.0, p.lower, p.upper, typical)

@@ -2,19 +2,16 @@
 
 import numpy as np
 
-from hasel_sim.build import Builder, difference_points, marker_points
+from hasel_sim.build import Builder, constant_parameter, difference_points, marker_rows
 from hasel_sim.drive.chain import DriveChain
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import no_drive
 from hasel_sim.effects.base import DriveEffect, EffectParameter, ObservationEffect
 from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.motion import DriveState
 from hasel_sim.mechanics.stepper import Stepper
 from hasel_sim.mechanics.steps import StepPlan, plan_steps
 from hasel_sim.model import Model
-from hasel_sim.observation import MarkerRows
 from hasel_sim.run import Run
-
-_NO_VOLTAGE = VoltageSchedule(np.zeros(1), np.zeros((1, 2)))
 
 
 class PreparedRun:
@@ -51,15 +48,9 @@ class PreparedRun:
         )
         self.builder = Builder(model, nodes)
         self.stepper = Stepper(self.builder.system(), numerics.tolerance_m)
-        markers = model.description.markers
-        self.rows = MarkerRows(
-            self.builder.mesh,
-            marker_points(model),
-            np.array([markers.head.fixed, markers.middle.fixed, markers.tail.fixed]),
-        )
-        self.schedule = run.schedule or _NO_VOLTAGE
-        drive_effects = [e for e in model.effects if isinstance(e, DriveEffect)]
-        self._chain = DriveChain(drive_effects, model.levels) if model.has_muscles else None
+        self.rows = marker_rows(model, self.builder.mesh)
+        self._chain = DriveChain(model)
+        self.schedule = (run.schedule or no_drive(model.channels)).of(model.channels, run.name)
 
     @property
     def load_factor(self) -> float:
@@ -73,25 +64,31 @@ class PreparedRun:
 
     @property
     def start_drive(self) -> DriveState:
-        """No voltage and no contraction, at the start."""
-        return DriveState(np.zeros(2), np.zeros(2), self.run.start)
+        """Nothing commanded, the muscles as contracted as they always are, at the start."""
+        return DriveState(np.zeros(self.muscles), self._chain.relaxed, self.run.start)
+
+    @property
+    def muscles(self) -> int:
+        """How many muscles there are."""
+        return self._chain.count
 
     def drives(self, contraction: np.ndarray) -> list[DriveState]:
-        """The drive at the balance of every step, for contractions [steps, 2]."""
+        """The drive at the balance of every step, for contractions [steps, muscles]."""
         times = self.plan.balance_times
-        return [DriveState(*row) for row in zip(self.schedule.at(times), contraction, times, strict=True)]
+        return [
+            DriveState(*row)
+            for row in zip(self._chain.at_muscles(self.schedule.at(times)), contraction, times, strict=True)
+        ]
 
     def contraction(self, times: np.ndarray, values: dict[str, float] | None = None) -> np.ndarray:
-        """Contraction [1] [n, 2] at ascending times [s] [n], at the model's or other parameter values."""
-        if self._chain is None:
-            return np.zeros((len(times), 2))
+        """Contraction [1] [n, muscles] at ascending times [s] [n], at the model's or other parameter values."""
         values = values or self.model.values
         every = np.concatenate([[min([self.run.start, *times[:1]])], times])
         return self._chain.contraction(self.schedule, every, values, self.model.effect_values(values))[1:]
 
     def contraction_slopes(self, times: np.ndarray) -> np.ndarray:
-        """Derivative of the contraction by every named parameter, [steps, columns, 2]."""
-        out = np.zeros((len(times), len(self.names), 2))
+        """Derivative of the contraction by every named parameter, [steps, columns, muscles]."""
+        out = np.zeros((len(times), len(self.names), self.muscles))
         for column, parameter in enumerate(self.parameters):
             if not self._drives(parameter.name):
                 continue
@@ -103,7 +100,7 @@ class PreparedRun:
 
     def _drives(self, name: str) -> bool:
         identity = name.rpartition(".")[0]
-        return not identity or any(
+        return (not identity and self.muscles > 0) or any(
             isinstance(e, DriveEffect) and e.id == identity for e in self.model.effects
         )
 
@@ -114,6 +111,8 @@ class PreparedRun:
             if effect.id == identity:
                 return next(p for p in effect.parameters if p.name == own)
         parameter = self.model.parameter(name)
+        if identity:
+            return constant_parameter(self.model, name)
         return EffectParameter(
             name, name, parameter.unit, 0.0, parameter.lower, parameter.upper, parameter.value or 0.1
         )

@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.errors import SimulationError
 
 
 @dataclass(frozen=True)
 class Run:
-    """One experiment: frames [s], the commanded voltage (None for a passive body) and how it starts.
+    """One experiment: frames [s], what is commanded (None for a passive body) and how it starts.
 
     initial_state: "rest" (in equilibrium with all that acts on it undriven), "static_equilibrium" under
     initial_load_factor times all loads, or "held_shape", the nodal positions initial_shape [m] [nodes, 2] (such as
@@ -20,7 +20,7 @@ class Run:
 
     name: str
     time: np.ndarray
-    schedule: VoltageSchedule | None = None
+    schedule: DriveSchedule | None = None
     initial_state: str = "rest"
     initial_load_factor: float = 1.0
     initial_time: float | None = None
@@ -54,8 +54,9 @@ class Run:
 class Simulation:
     """A simulated run, sampled at the run's frames; NaN before the body is let go.
 
-    sin_theta [n]; names and slopes [n, parameters]: derivatives of sin_theta; markers [m] [n, 3, 2];
-    contraction [n, 2]; shapes: nodal positions [m] [n, nodes, 2] where asked for, else None.
+    sin_theta [n]; names and slopes [n, parameters]: derivatives of sin_theta; markers [m] [n, markers, 2]: head,
+    middle, tail and the others in the model file's order; contraction [n, muscles]; shapes: nodal positions [m]
+    [n, nodes, 2] where asked for, else None.
     """
 
     run: Run

@@ -39,15 +39,15 @@ def angle_message(stamp_ns: int, sin_theta: float, frame_id: str) -> BendingAngl
 
 
 class BodyMessage:
-    """The `/hasel/swimmer` message of one mesh; its points are kept and moved, as making them anew is slow."""
+    """The `/hasel/swimmer` message of one mesh and its markers; its points are moved, as making them anew is slow."""
 
-    def __init__(self, mesh: Mesh, frame_id: str) -> None:
+    def __init__(self, mesh: Mesh, markers: int, frame_id: str) -> None:
         self._message = MarkerArray()
         self._nodes: list[np.ndarray] = []
         for region, corners in region_triangles(mesh).items():
             self._add(Marker.TRIANGLE_LIST, region.name.lower(), corners, COLOURS[region], (1.0, 1.0, 1.0))
         self._add(Marker.LINE_LIST, "skin", skin_line(mesh), (0.1, 0.1, 0.1), (_OUTLINE_WIDTH_M, 0.0, 0.0))
-        self._add(Marker.SPHERE_LIST, "markers", np.arange(3), (0.1, 0.3, 0.9), (_MARKER_SIZE_M,) * 3)
+        self._add(Marker.SPHERE_LIST, "markers", np.arange(markers), (0.1, 0.3, 0.9), (_MARKER_SIZE_M,) * 3)
         for marker in self._message.markers:
             marker.header.frame_id = frame_id
 
@@ -61,7 +61,7 @@ class BodyMessage:
         self._message.markers.append(marker)
 
     def moved(self, stamp_ns: int, position: np.ndarray, markers: np.ndarray) -> MarkerArray:
-        """The message with nodal positions [m] [nodes, 2] and marker positions [m] [3, 2] at a stamp [ns]."""
+        """The message with nodal positions [m] [nodes, 2] and marker positions [m] [markers, 2] at a stamp [ns]."""
         stamp = to_time(stamp_ns)
         for marker, nodes in zip(self._message.markers, self._nodes, strict=True):
             marker.header.stamp = stamp

@@ -66,7 +66,7 @@ class SimulatorNode(Node):
         model = self.model_parameters.declare(model)
         self.live = LiveSimulator(model, **options)
         _warm_up(LiveSimulator(model, **options))
-        self._body = BodyMessage(self.live.mesh, self._value("frame_id"))
+        self._body = BodyMessage(self.live.mesh, len(self.live.markers), self._value("frame_id"))
         self._pace, self._counts = Pace(), Counter()
         self._next_angle_ns = self._next_shape_s = 0
         self._angles = self.create_publisher(BendingAngle, "/hasel/bending/simulated", EVERY_MESSAGE)
@@ -134,10 +134,10 @@ class SimulatorNode(Node):
         self._counts = Counter({name: counts[name] for name in ("start", "restart")})
 
     def _use(self, model: Model) -> None:
-        another_body = model.description.body != self.live.model.description.body
+        before = self.live.mesh
         self.live.use(model)
-        if another_body:
-            self._body = BodyMessage(self.live.mesh, self._value("frame_id"))
+        if self.live.mesh is not before:
+            self._body = BodyMessage(self.live.mesh, len(self.live.markers), self._value("frame_id"))
 
     def _add_effect(self, request: AddEffect.Request, response: AddEffect.Response) -> AddEffect.Response:
         def add() -> str:

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from hasel_sim.build import Builder
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.base import EffectParameter, ForceEffect
 from hasel_sim.mechanics.motion import DriveState
 from hasel_sim.mechanics.statics import equilibrium
@@ -67,7 +67,7 @@ def rectangle():
         description = Description.model_validate(
             {
                 "name": "rectangle",
-                "body": {"kind": "rectangle", "length_m": length, "height_m": height, "clamped": clamped},
+                "body": {"length_m": length, "height_m": height, "clamped": clamped},
                 "material": {
                     "plane": plane,
                     "gravity_m_per_s2": (0.0, -gravity),
@@ -129,6 +129,6 @@ def boxes():
         upper = np.arange(len(switches)) % 2 == 0
         voltages = voltage * np.stack([upper, ~upper], axis=1).astype(float)
         time = np.arange(round(duration * 120) + 1) / 120
-        return Run("boxes", time, VoltageSchedule(switches, voltages))
+        return Run("boxes", time, DriveSchedule(switches, voltages))
 
     return make

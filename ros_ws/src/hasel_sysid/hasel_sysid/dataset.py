@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from hasel_recording import Recording, RecordingError, RecordingWarning, read_recordings
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import Model
 from hasel_sim.run import Run
 
@@ -60,8 +60,9 @@ def experiment(recording: Recording) -> Experiment:
         ) from None
     schedule = None
     if recording.driven:
-        time, voltage = recording.drive()
-        schedule = VoltageSchedule(np.asarray(time), np.asarray(voltage))
+        time, signal = recording.drive()
+        names = tuple(channel.name for channel in recording.channels)
+        schedule = DriveSchedule(np.asarray(time), np.asarray(signal), names)
     return Experiment(recording, Run(recording.name, recording.time_s, schedule, state, factor, start))
 
 
@@ -125,26 +126,32 @@ def check_levels(model: Model, experiments: Sequence[Experiment]) -> None:
             )
 
 
-def voltage_levels(experiments: Sequence[Experiment]) -> np.ndarray:
-    """Voltages [V] that get an amplitude of their own, ascending: all that occur, or eight spread over many."""
-    found = [e.run.schedule.levels() for e in experiments if e.run.schedule is not None]
-    levels = np.unique(np.round(np.concatenate(found), 1)) if found else np.zeros(0)
+def drive_levels(experiments: Sequence[Experiment], channels: tuple[str, ...] | None = None) -> np.ndarray:
+    """Levels that get an amplitude of their own, ascending: all that occur, or eight spread over many.
+
+    channels: those that contract alike (default: all).
+    """
+    found = [e.run.schedule.levels(channels) for e in experiments if e.run.schedule is not None]
+    levels = np.concatenate(found) if found else np.zeros(0)
+    levels = np.unique([float(f"{level:.5g}") for level in levels])
     if len(levels) <= _MOST_LEVELS:
         return levels
     return np.linspace(levels[-1] / _MOST_LEVELS, levels[-1], _MOST_LEVELS)
 
 
 def prepared(model: Model, experiments: Sequence[Experiment]) -> Model:
-    """The model with an amplitude for every voltage of these experiments; passive models stay as they are.
+    """The model with an amplitude for every level of these experiments; passive models stay as they are.
 
     Raises SysidError when the experiments are driven and the body has no muscles.
     """
-    levels = voltage_levels(experiments)
     if not model.has_muscles:
+        levels = drive_levels(experiments)
         if len(levels):
+            unit = experiments[0].recording.channels[0].unit
             raise SysidError(
-                f"the recordings are driven with up to {levels[-1]:g} V, and model '{model.name}' has no muscles; "
+                f"the recordings are driven with up to {levels[-1]:g} {unit}, and model '{model.name}' has no muscles; "
                 "choose the model with --model (swimmer is the default)"
             )
         return model
-    return model if len(levels) == 0 else model.with_levels(levels)
+    levels = {table.channels[0]: drive_levels(experiments, table.channels) for table in model.tables}
+    return model.with_levels(levels) if any(len(own) for own in levels.values()) else model

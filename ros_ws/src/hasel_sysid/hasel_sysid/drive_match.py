@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from hasel_recording import HASEL_PAIR, DriveChannel, Recording, RecordingWarning
+from hasel_recording import DriveChannel, Recording, RecordingWarning
 from hasel_recording.errors import nearest
 from hasel_sim.model import Model
 
@@ -15,7 +15,7 @@ from hasel_sysid.errors import SysidError
 
 def model_channels(model: Model) -> tuple[DriveChannel, ...]:
     """What drives a model's body, as a recording knows it; empty for a passive one."""
-    return HASEL_PAIR if model.has_muscles else ()
+    return tuple(channel.column for channel in model.description.channels)
 
 
 def matched(model: Model, recordings: Sequence[Recording]) -> list[Recording]:

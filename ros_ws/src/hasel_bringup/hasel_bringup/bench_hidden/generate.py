@@ -88,6 +88,6 @@ def _experiment(simulation: Simulation, noise: np.ndarray, switch_on_frames: boo
         simulation.sin_theta + noise,
         drive_signal=run.schedule.at(run.time),
         drive_time_s=None if exact is None else exact.time,
-        drive_values=None if exact is None else exact.voltage,
+        drive_values=None if exact is None else exact.signal,
     )
     return Experiment(recording, run)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.run import Run
 
 FRAMES_PER_SECOND = 120.0
@@ -31,7 +31,7 @@ class BoxRun:
             switches = np.ceil(switches * FRAMES_PER_SECOND - 1e-9) / FRAMES_PER_SECOND
         upper = np.arange(len(switches)) % 2 == 0
         voltage = np.where(np.stack([upper, ~upper], axis=1), self.voltage, 0.0)
-        return Run(self.name, frames, VoltageSchedule(switches, voltage))
+        return Run(self.name, frames, DriveSchedule(switches, voltage))
 
 
 FITTED = tuple(BoxRun(voltage, f) for voltage in (3500.0, 4500.0, 5500.0) for f in (0.5, 2.0, 3.5))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 from hasel_sim.adjoint import DifferentiableRun
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import load_model
 from hasel_sim.run import Run
 from scipy.optimize import minimize
@@ -55,7 +55,7 @@ def optimise(iterations: int = 12) -> BestOutline:
     model = load_model("swimmer").with_levels(np.array([5500.0])).with_numerics(mesh_density=0.5)
     model = model.with_values({"amplitude_5500": 0.0624, "slope": 0.264})
     switches = np.array([0.0, 0.5 / FREQUENCY])
-    voltage = VoltageSchedule(switches, np.array([[5500.0, 0.0], [0.0, 5500.0]]))
+    voltage = DriveSchedule(switches, np.array([[5500.0, 0.0], [0.0, 5500.0]]))
     run = DifferentiableRun(model, Run("outline", np.arange(121) / 120 / FREQUENCY, voltage))
     start = run.outline().numpy()
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import torch
 from hasel_sim.adjoint import DifferentiableRun
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import Model, load_model
 from hasel_sim.run import Run
 from scipy.optimize import minimize
@@ -52,7 +52,7 @@ def swimmer() -> Model:
     return model.with_values({f"amplitude_{VOLTAGE:g}": 0.0624, "slope": 0.264})
 
 
-def schedule(switching: np.ndarray, frequency: float) -> VoltageSchedule:
+def schedule(switching: np.ndarray, frequency: float) -> DriveSchedule:
     """Voltages of both muscles over all periods; instants wrap around the period."""
     starts, lengths = switching[0::2], switching[1::2]
     events = [
@@ -67,7 +67,7 @@ def schedule(switching: np.ndarray, frequency: float) -> VoltageSchedule:
         state[muscle] = voltage
         rows.append((time, *state))
     table = np.array(rows)
-    return VoltageSchedule(table[:, 0], table[:, 1:])
+    return DriveSchedule(table[:, 0], table[:, 1:])
 
 
 def optimise(frequency: float, evaluations: int = 20) -> BestWaveform:

@@ -7,8 +7,8 @@ import torch
 
 from hasel_sim.adjoint.gradient import gradient
 from hasel_sim.adjoint.trajectory import follow
-from hasel_sim.build import body_mesh
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.build import moved_nodes
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 from hasel_sim.prepared_run import PreparedRun
@@ -34,18 +34,17 @@ class DifferentiableRun:
 
     def outline(self) -> torch.Tensor:
         """The model's own outline coefficients; empty for a body without."""
-        return torch.tensor(
-            getattr(self.model.description.body, "outline_coefficients", ()), dtype=torch.float64
-        )
+        body = self.model.description.body
+        return torch.tensor(() if body.outline is None else body.coefficients, dtype=torch.float64)
 
     def contraction(self, values: torch.Tensor | None = None) -> torch.Tensor:
-        """Contraction [steps, 2] that the run's voltages cause."""
+        """Contraction [steps, muscles] that the run's drive causes."""
         return _Contraction.apply(self, self.values() if values is None else values)
 
     def contraction_from(
-        self, waveform: torch.Tensor, schedule: Callable[[np.ndarray], VoltageSchedule], step: float = 1e-6
+        self, waveform: torch.Tensor, schedule: Callable[[np.ndarray], DriveSchedule], step: float = 1e-6
     ) -> torch.Tensor:
-        """Contraction [steps, 2] that a voltage waveform [n] causes, `schedule` turning its numbers into voltages.
+        """Contraction [steps, muscles] that a waveform [n] causes, `schedule` turning its numbers into the drive.
 
         The drive is differentiated by central differences with a step in the waveform's numbers.
         """
@@ -73,15 +72,14 @@ class DifferentiableRun:
         """The run at these parameter values and outline coefficients."""
         nodes = None
         if not torch.equal(outline, self.outline()):
-            body = self.model.description.body
-            body = body.model_copy(update={"outline_coefficients": tuple(outline.tolist())})
-            nodes = body_mesh(body, self.model.description.numerics.mesh_density).nodes
+            nodes = moved_nodes(self.model, outline.numpy())
         return PreparedRun(self._at(values), self.run, self.parameters, nodes)
 
-    def voltages(self, values: torch.Tensor, schedule: VoltageSchedule | None = None) -> PreparedRun:
+    def voltages(self, values: torch.Tensor, schedule: DriveSchedule | None = None) -> PreparedRun:
         """The run with another voltage, for its drive alone."""
         prepared = PreparedRun(self._at(values), self.run, self.parameters)
-        prepared.schedule = schedule or prepared.schedule
+        if schedule is not None:
+            prepared.schedule = schedule.of(self.model.channels, self.run.name)
         return prepared
 
 
@@ -130,7 +128,7 @@ class _Angle(torch.autograd.Function):
     @staticmethod
     def forward(ctx, run: DifferentiableRun, contraction, values, outline) -> torch.Tensor:
         prepared = run.prepared(values.detach(), outline.detach())
-        expected = (len(prepared.plan.coefficients), 2)
+        expected = (len(prepared.plan.coefficients), prepared.muscles)
         if tuple(contraction.shape) != expected:
             raise SimulationError(
                 f"the contraction has the shape {tuple(contraction.shape)}; expected {expected}, one row per step: "

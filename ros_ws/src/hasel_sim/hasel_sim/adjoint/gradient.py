@@ -16,8 +16,8 @@ from hasel_sim.simulate import slope_by_observation
 class Gradient:
     """Derivatives of a weighted sum of the angles.
 
-    contraction: [steps, 2]; parameters: by the prepared run's named parameters at a fixed contraction; outline: by the
-    outline's coefficients, empty where not asked for.
+    contraction: [steps, muscles]; parameters: by the prepared run's named parameters at a fixed contraction; outline:
+    by the outline's coefficients, empty where not asked for.
     """
 
     contraction: np.ndarray

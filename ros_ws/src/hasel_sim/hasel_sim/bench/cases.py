@@ -3,7 +3,7 @@
 import numpy as np
 
 from hasel_sim.build import model_mesh
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import Model, load_model
 from hasel_sim.run import Run
 
@@ -23,7 +23,7 @@ def box_run(duration: float = 1.0, voltage: float = 5500.0, frequency: float = 2
     upper = np.arange(len(switches)) % 2 == 0
     voltages = voltage * np.stack([upper, ~upper], axis=1).astype(float)
     frames = np.arange(round(duration * FRAMES_PER_SECOND) + 1) / FRAMES_PER_SECOND
-    return Run("5.5 kV, 2 Hz", frames, VoltageSchedule(switches, voltages))
+    return Run("5.5 kV, 2 Hz", frames, DriveSchedule(switches, voltages))
 
 
 def node_count(model: Model) -> int:
@@ -33,6 +33,6 @@ def node_count(model: Model) -> int:
 
 def with_nodes(model: Model, wanted: int) -> Model:
     """The model with the mesh density whose number of nodes comes nearest to the wanted one."""
-    densities = np.arange(0.3, 4.0, 0.05)
+    densities = np.arange(0.3, 8.0, 0.05)
     models = [model.with_numerics(mesh_density=float(density)) for density in densities]
     return min(models, key=lambda candidate: abs(node_count(candidate) - wanted))

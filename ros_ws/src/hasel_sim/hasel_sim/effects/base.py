@@ -55,6 +55,10 @@ class Effect:
     citation: ClassVar[str] = ""
     needs_muscles: ClassVar[bool] = False
     needs_spine: ClassVar[bool] = False
+    needs_antagonists: ClassVar[bool] = False
+    """Whether it compares two muscles, and so needs a body with exactly two."""
+    quantity: ClassVar[str] = ""
+    """The quantity that must drive the body, such as "voltage"; any where empty."""
     exclusive: ClassVar[str] = ""
     """Effects with the same non-empty word here do the same thing and are refused side by side."""
     source: ClassVar[str | None] = None
@@ -93,9 +97,9 @@ class DriveStage(IntEnum):
 class DriveEffect(Effect):
     """Between the commanded voltage and the contraction.
 
-    Up to `ZIPPING` the signal is the signed voltage [V] of the upper and lower muscle; at `TARGET` it is the
-    contraction aimed at [1], at `CONTRACTION` the contraction itself. Equal times mark a jump: value before, value
-    after.
+    Up to `ZIPPING` the signal is the signed drive of every channel (voltage [V], pressure [Pa] ...); at `TARGET` it is
+    the contraction aimed at [1] of every muscle, at `CONTRACTION` the contraction itself. Equal times mark a jump:
+    value before, value after.
     """
 
     place = "drive"
@@ -107,7 +111,7 @@ class DriveEffect(Effect):
         return time
 
     def respond(self, time: np.ndarray, signal: np.ndarray, p: SimpleNamespace) -> np.ndarray:
-        """The signal [n, 2] after this effect, from the signal [n, 2] at times [s] [n] before it."""
+        """The signal [n, channels or muscles] after this effect, from the one before it at times [s] [n]."""
         return signal
 
 
@@ -117,8 +121,8 @@ class SiteState:
 
     position [m], velocity [m/s], acceleration [m/s^2], tangent: derivative of the position along the skin [1];
     reference: position at rest [m]; rest_normal: outward unit normal of the skin at rest; measure [n]: mass [kg per m
-    depth], skin length [m] or 1; voltage [V] and contraction [1]: of the upper and lower muscle, shape [2]; time [s];
-    gravity [m/s^2], shape [2].
+    depth], skin length [m] or 1; voltage (drive [V], [Pa] ...) and contraction [1]: of every muscle, [muscles];
+    time [s]; gravity [m/s^2], shape [2].
     """
 
     position: np.ndarray
@@ -192,15 +196,32 @@ class MaterialPoints:
     """Strain and drive at n material points.
 
     deformation: gradient F [n, 2, 2] with the first axis along the body at rest, rate: dF/dt [1/s] [n, 2, 2];
-    contraction [1] and voltage [V]: of the muscle here [n] (0 in none); fibre: stiffness of its fibres [Pa]; time [s].
+    contraction [1] and voltage (drive [V], [Pa] ...): of the muscle here [n] (0 in none); fibre: stiffness of its
+    fibres [Pa], [n] or one number; time [s]; shear: shear modulus of the soft solid here [Pa], [n] or one number.
     """
 
     deformation: np.ndarray
     rate: np.ndarray
     contraction: np.ndarray
     voltage: np.ndarray
-    fibre: float
+    fibre: np.ndarray
     time: float
+    shear: np.ndarray | float = 0.0
+
+    @property
+    def volume_ratio(self) -> np.ndarray:
+        """Determinant J of the deformation gradient [1], [n]."""
+        F = self.deformation
+        return F[:, 0, 0] * F[:, 1, 1] - F[:, 0, 1] * F[:, 1, 0]
+
+    @property
+    def distortion(self) -> np.ndarray:
+        """F - F^-T, the first Piola stress per shear modulus of a neo-Hookean solid [n, 2, 2]."""
+        F = self.deformation
+        cofactor = np.empty_like(F)
+        cofactor[:, 0, 0], cofactor[:, 0, 1] = F[:, 1, 1], -F[:, 1, 0]
+        cofactor[:, 1, 0], cofactor[:, 1, 1] = -F[:, 0, 1], F[:, 0, 0]
+        return F - cofactor / self.volume_ratio[:, None, None]
 
     @property
     def stretch(self) -> np.ndarray:

@@ -32,8 +32,9 @@ def _check_stress(effect: MaterialEffect, null: SimpleNamespace, typical: Simple
         "contraction": np.linspace(0.0, 0.06, n),
         "voltage": np.linspace(0.0, 5000.0, n),
     }
-    at = MaterialPoints(**parts, fibre=65e3, time=0.3)
-    few = MaterialPoints(**{name: part[:2] for name, part in parts.items()}, fibre=65e3, time=0.3)
+    parts["fibre"], parts["shear"] = np.full(n, 65e3), np.full(n, 22e3)
+    at = MaterialPoints(**parts, time=0.3)
+    few = MaterialPoints(**{name: part[:2] for name, part in parts.items()}, time=0.3)
     off = called(effect, "first_piola", (n, 2, 2), at, null)
     on = called(effect, "first_piola", (n, 2, 2), at, typical)
     unknown = [name for name in effect.depends_on if name not in ("deformation", "rate")]

@@ -3,9 +3,9 @@
 import numpy as np
 
 from hasel_sim.drive.chain import DriveChain
-from hasel_sim.drive.voltage import VoltageSchedule
-from hasel_sim.effects.base import DriveEffect
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.live.window import Window
+from hasel_sim.mechanics.motion import DriveState
 from hasel_sim.model import Model
 
 
@@ -21,32 +21,36 @@ class DriveHistory:
     def __init__(self, model: Model, history: float, start: float) -> None:
         self._history, self._start = history, start
         self._instants = Window(history)
-        self._schedule = VoltageSchedule(np.empty(0), np.empty((0, 2)))
+        self._schedule = DriveSchedule(np.empty(0), np.empty((0, len(model.channels))), model.channels)
         self.use(model)
 
     def use(self, model: Model) -> None:
         """Go on with another model's muscles and drive effects."""
-        effects = [effect for effect in model.effects if isinstance(effect, DriveEffect)]
-        self._chain = DriveChain(effects, model.levels) if model.has_muscles else None
+        self._chain = DriveChain(model)
         self._values, self._effect_values = model.values, model.effect_values()
 
+    @property
+    def still(self) -> DriveState:
+        """The muscles before anything is commanded."""
+        return DriveState(np.zeros(self._chain.count), self._chain.relaxed, self._start)
+
     def hold(self, time: float, voltage: np.ndarray) -> None:
-        """Apply a voltage [V] [2] from `time` [s] on."""
+        """Apply a voltage [V] [channels] from `time` [s] on."""
         schedule = self._schedule
-        if len(schedule.time) and np.array_equal(schedule.voltage[-1], voltage):
+        if len(schedule.time) and np.array_equal(schedule.signal[-1], voltage):
             return
         in_force = int(np.searchsorted(schedule.time, time - self._history, side="right")) - 1
         first = max(0, in_force)
-        self._schedule = VoltageSchedule(
-            np.append(schedule.time[first:], time), np.vstack([schedule.voltage[first:], voltage])
+        self._schedule = DriveSchedule(
+            np.append(schedule.time[first:], time),
+            np.vstack([schedule.signal[first:], voltage]),
+            schedule.channels,
         )
 
     def advance(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Voltage [V] and contraction [1], both [n, 2], at the next instants [s] [n]."""
+        """Voltage [V] and contraction [1], both [n, muscles], at the next instants [s] [n]."""
         self._instants.add(times, np.empty((len(times), 0)))
-        voltage = self._schedule.at(times)
-        if self._chain is None:
-            return voltage, np.zeros((len(times), 2))
+        voltage = self._chain.at_muscles(self._schedule.at(times))
         instants = np.concatenate([[self._start], self._instants.time])
         contraction = self._chain.contraction(self._schedule, instants, self._values, self._effect_values)
         return voltage, contraction[-len(times) :]

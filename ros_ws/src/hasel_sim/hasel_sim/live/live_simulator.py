@@ -4,10 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hasel_sim.build import Builder, marker_points
+from hasel_sim.build import Builder, marker_rows
 from hasel_sim.errors import SimulationError
 from hasel_sim.live.angle_history import AngleHistory
 from hasel_sim.live.drive_history import DriveHistory
+from hasel_sim.live.live_model import rig_columns
 from hasel_sim.live.stamp_order import Arrival, StampOrder
 from hasel_sim.mechanics.initial import initial_state
 from hasel_sim.mechanics.motion import DriveState
@@ -16,7 +17,6 @@ from hasel_sim.mechanics.stepper import Stepper
 from hasel_sim.mechanics.steps import plan_steps
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.model import Model
-from hasel_sim.observation import MarkerRows
 
 
 @dataclass(frozen=True)
@@ -72,11 +72,11 @@ class LiveSimulator:
 
     @property
     def markers(self) -> np.ndarray:
-        """Positions [m] of head, middle and tail marker now, [3, 2]."""
+        """Positions [m] of all markers now, [markers, 2]."""
         return self._rows(self.position)[0]
 
     def receive(self, stamp_ns: int, voltage: np.ndarray) -> LiveAnswer:
-        """Move on to a state message's stamp [ns]; its voltage [V] [2] holds from there on.
+        """Move on to a state message's stamp [ns]; its voltage [V] of upper and lower channel holds from there on.
 
         A message out of order changes nothing; a voltage that is not known (NaN) leaves the last one in force. When the
         motion cannot be followed, the next message starts from rest.
@@ -93,7 +93,7 @@ class LiveSimulator:
             return LiveAnswer(verdict.arrival, sentence=f"{error}; the next state message starts from rest")
         sentence = verdict.sentence
         if np.all(np.isfinite(voltage)):
-            self._drive.hold(self._time, np.asarray(voltage, dtype=float))
+            self._drive.hold(self._time, np.asarray(voltage, dtype=float)[self._columns])
         else:
             sentence = sentence or "the supply does not know its voltage: the last one is held"
         angles = tuple(LiveAngle(stamp, sine) for stamp, sine in self._angles.ready())
@@ -109,9 +109,9 @@ class LiveSimulator:
 
         Raises ModelError for a model that cannot be built; the present one then stays.
         """
-        before = self.model
+        before = self.mesh
         self._build(model)
-        if self._state is None or model.description.body != before.description.body:
+        if self._state is None or self.mesh is not before:
             self.restart()
             return
         self._drive.use(model)
@@ -120,21 +120,16 @@ class LiveSimulator:
 
     def _build(self, model: Model) -> None:
         builder = Builder(model)
-        fixed = model.description.markers
-        rows = MarkerRows(
-            builder.mesh,
-            marker_points(model),
-            np.array([fixed.head.fixed, fixed.middle.fixed, fixed.tail.fixed]),
-        )
+        rows = marker_rows(model, builder.mesh)
         stepper = Stepper(builder.system(), model.description.numerics.tolerance_m)
         self.model, self._rows, self._stepper = model, rows, stepper
+        self._columns = rig_columns(model)
 
     def _start(self, stamp_ns: int) -> None:
         self._origin_ns, self._time = stamp_ns, 0.0
         self._stepper = Stepper(self._stepper.system, self._stepper.tolerance)
-        still = DriveState(np.zeros(2), np.zeros(2), 0.0)
-        self._state, _ = initial_state(self._stepper.system, still, self.load_factor, [])
         self._drive = DriveHistory(self.model, self.history, 0.0)
+        self._state, _ = initial_state(self._stepper.system, self._drive.still, self.load_factor, [])
         self._angles = AngleHistory(self.model, self.history)
         self._see(np.zeros(1), [self._state.position])
 

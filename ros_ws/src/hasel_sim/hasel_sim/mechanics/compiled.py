@@ -52,8 +52,8 @@ def through_thickness_stretch(shear, lame, area_ratio):
 def first_piola(F, rate, coefficients, muscle, contraction, history, plane_stress, P):
     """First Piola stress [Pa] at every Gauss point.
 
-    F, rate: deformation gradient and its rate, P: result, all [elements, points, 4]; contraction: [3] with 0 first;
-    history: second Piola stress of the internal branches from earlier steps [elements, points, 3] (xx, yy, xy).
+    F, rate: deformation gradient and its rate, P: result, all [elements, points, 4]; contraction: [1 + muscles] with 0
+    first; history: second Piola stress of the internal branches from earlier steps [elements, points, 3] (xx, yy, xy).
     """
     for e in range(F.shape[0]):
         mu, lam = coefficients[e, 0], coefficients[e, 1]
@@ -307,7 +307,7 @@ def scatter_pulled_back(elastic, viscous, elements, gradients, areas, weights, f
 
 @njit(cache=True, fastmath=True)
 def contraction_force(F, coefficients, muscle, elements, gradients, areas, force):
-    """Derivative of the internal force by the contraction of each muscle, into force [2, nodes, 2]."""
+    """Derivative of the internal force by the contraction of each muscle, into force [muscles, nodes, 2]."""
     force[:] = 0.0
     for e in range(elements.shape[0]):
         if muscle[e] == 0:

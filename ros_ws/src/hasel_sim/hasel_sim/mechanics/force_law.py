@@ -42,7 +42,7 @@ class ForceLaw:
             "measure": repeated(sites.measure, self._copies),
         }
         self._slopes: dict[str, np.ndarray] = {}
-        self._by_contraction = np.zeros((2, *self._reference.shape))
+        self._by_contraction = np.zeros((0, *self._reference.shape))
         self._last: tuple[Motion, DriveState, SiteState] | None = None
 
     def state(self, motion: Motion, drive: DriveState) -> SiteState:
@@ -91,8 +91,9 @@ class ForceLaw:
             self._differentiate(state)
 
     def _contraction_slope(self, state: SiteState) -> np.ndarray:
-        out = np.empty((2, *self._reference.shape))
-        for muscle, step in enumerate(_CONTRACTION_DIFFERENCE * np.eye(2)):
+        count = len(state.contraction)
+        out = np.empty((count, *self._reference.shape))
+        for muscle, step in enumerate(_CONTRACTION_DIFFERENCE * np.eye(count)):
             more, less = (
                 self.effect.force(replace(state, contraction=contraction), self.values)
                 for contraction in (state.contraction + step, state.contraction - step)
@@ -173,8 +174,8 @@ class ForceLaw:
             np.subtract.at(out[row], s.nodes, interpolation[:, :, None] * pulled[:, None, :])
 
     def add_contraction(self, out: np.ndarray) -> None:
-        """Subtract the change of the nodal forces by the contraction of each muscle from out [2, nodes, 2]."""
-        if "contraction" in self.effect.depends_on:
+        """Subtract the change of the nodal forces by the contraction of each muscle from out [muscles, nodes, 2]."""
+        if len(self._by_contraction):
             self.sites.scatter(-self._by_contraction, out)
 
 

@@ -13,6 +13,25 @@ def element_masses(mesh: Mesh, nodes: np.ndarray, density: np.ndarray) -> np.nda
     return np.einsum("e,eg,ga,gb->eab", density, areas, values, values)
 
 
+def add_tip_plate(masses: np.ndarray, mesh: Mesh, mass: float, rotary_inertia: float) -> None:
+    """Add a plate on the far face to the element masses [elements, 8, 8] in place.
+
+    mass [kg per m depth] on the centre line; rotary_inertia [kg m] about it. The face turns at |d'| / |d|, d being the
+    line across it, so J |d'|^2 / (2 h^2) is the energy of turning, whatever the angle; the pieces of the face share it.
+    """
+    places = {node: (e, a) for e, nodes in enumerate(mesh.elements) for a, node in enumerate(nodes)}
+    heights = mesh.nodes[mesh.tip, 1]
+    e, a = places[mesh.tip[np.argmin(np.abs(heights))]]
+    masses[e, a, a] += mass
+    whole = np.ptp(heights)
+    for low, middle, high in zip(mesh.tip[:-2:2], mesh.tip[1::2], mesh.tip[2::2], strict=True):
+        e = places[middle][0]
+        ends = [int(np.flatnonzero(mesh.elements[e] == node)[0]) for node in (low, high)]
+        height = mesh.nodes[high, 1] - mesh.nodes[low, 1]
+        share = rotary_inertia * (height / whole) / height**2
+        masses[np.ix_([e], ends, ends)] += share * np.array([[1.0, -1.0], [-1.0, 1.0]])
+
+
 class Mass:
     """Consistent mass of a mesh: of its elements [kg per m depth] [elements, 8, 8] and as a product with vectors."""
 

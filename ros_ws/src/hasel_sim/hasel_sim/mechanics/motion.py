@@ -7,7 +7,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class DriveState:
-    """Voltage [V] and contraction [1] of the upper and lower muscle, shape [2], at a time [s]."""
+    """Drive (voltage [V], pressure [Pa] ...) and contraction [1] of every muscle, [muscles], at a time [s]."""
 
     voltage: np.ndarray
     contraction: np.ndarray

@@ -38,6 +38,17 @@ class NoSlope:
         """Add nothing."""
 
 
+class ContractionSlope:
+    """The contraction that a muscle always has, whatever is commanded."""
+
+    def __init__(self, muscle: int) -> None:
+        self._muscle = muscle
+
+    def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
+        """Add the derivative of the residual by this muscle's contraction."""
+        out += line.by_contraction(drive)[self._muscle]
+
+
 class ForceSlope:
     """A parameter of one force effect."""
 

@@ -5,7 +5,7 @@ import numpy as np
 from hasel_sim.effects.base import Coefficients
 from hasel_sim.mechanics import compiled
 from hasel_sim.mechanics.branches import Branches, green_stress, kept
-from hasel_sim.mesh.mesh import Mesh, Region
+from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.mesh.serendipity import reference_gradients
 
 
@@ -32,7 +32,7 @@ class Solid:
         quadrature_order: int,
     ) -> None:
         self.elements, self.plane_stress, self.branches = mesh.elements, plane_stress, branches
-        self.muscle = np.where(mesh.region >= Region.UPPER_MUSCLE, mesh.region - 1, 0)
+        self.muscle, self._muscles = mesh.muscle, int(mesh.muscle.max(initial=0))
         _, gradients, areas = reference_gradients(nodes[mesh.elements], quadrature_order)
         # The stress-free shape is stretched along x: gradients are taken with respect to it, and so are areas.
         self.gradients = np.ascontiguousarray(gradients)
@@ -79,7 +79,7 @@ class Solid:
         return out
 
     def stress(self, F, rate, contraction: np.ndarray, history: np.ndarray | None, step: float) -> np.ndarray:
-        """First Piola stress; history: `Branches.history` or None; contraction: [2], upper and lower."""
+        """First Piola stress; history: `Branches.history` or None; contraction: [muscles]."""
         P = np.empty_like(F)
         compiled.first_piola(
             F,
@@ -114,8 +114,8 @@ class Solid:
         compiled.scatter_stress(P, self.elements, self.gradients, self.areas, out)
 
     def contraction_force(self, F: np.ndarray) -> np.ndarray:
-        """Derivative of the internal force by each muscle's contraction, [2, nodes, 2]."""
-        out = np.empty((2, int(self.elements.max()) + 1, 2))
+        """Derivative of the internal force by each muscle's contraction, [muscles, nodes, 2]."""
+        out = np.empty((self._muscles, int(self.elements.max()) + 1, 2))
         compiled.contraction_force(
             F, self._table, self.muscle, self.elements, self.gradients, self.areas, out
         )

@@ -6,25 +6,29 @@ import numpy as np
 
 from hasel_sim.effects.base import MaterialEffect, MaterialPoints
 from hasel_sim.mechanics.force_law import repeated
+from hasel_sim.mesh.mesh import Mesh
 
 _DIFFERENCE = {"deformation": 1e-6, "rate": 1e-4}
 
 
 class StressLaw:
-    """One additional stress at the Gauss points of the elements it concerns; derivatives by central differences."""
+    """One additional stress at the Gauss points of the elements it concerns; derivatives by central differences.
+
+    fibres: fibre stiffness [Pa] of each muscle behind a 0, [1 + muscles]; shear: modulus of every element [Pa].
+    """
 
     def __init__(
         self,
         effect: MaterialEffect,
         values: SimpleNamespace,
-        region: np.ndarray,
-        muscle: np.ndarray,
-        fibre: float = 0.0,
+        mesh: Mesh,
+        fibres: np.ndarray,
+        shear: np.ndarray,
     ) -> None:
-        self.effect, self.values, self._fibre = effect, values, fibre
-        self.elements = np.flatnonzero(np.isin(region, [int(r) for r in effect.regions]))
-        self._muscle = muscle[self.elements]
-        self._muscles: dict[tuple[int, int], np.ndarray] = {}
+        self.effect, self.values = effect, values
+        self.elements = np.flatnonzero(np.isin(mesh.region, [int(r) for r in effect.regions]))
+        self._muscle, self._shear, self._fibres = mesh.muscle[self.elements], shear[self.elements], fibres
+        self._places: dict[tuple[int, int], tuple[np.ndarray, np.ndarray]] = {}
 
     @property
     def concerns_muscles(self) -> bool:
@@ -39,13 +43,16 @@ class StressLaw:
         ).reshape(here.shape)
 
     def _evaluate(self, F: np.ndarray, rate: np.ndarray, drive, points: int, copies: int) -> np.ndarray:
-        if (points, copies) not in self._muscles:
-            self._muscles[points, copies] = repeated(np.repeat(self._muscle, points), copies)
-        muscle = self._muscles[points, copies]
+        if (points, copies) not in self._places:
+            muscle, shear = (
+                repeated(np.repeat(here, points), copies) for here in (self._muscle, self._shear)
+            )
+            self._places[points, copies] = muscle, shear
+        muscle, shear = self._places[points, copies]
         contraction, voltage = (
             np.concatenate([[0.0], of_both])[muscle] for of_both in (drive.contraction, drive.voltage)
         )
-        at = MaterialPoints(F, rate, contraction, voltage, self._fibre, drive.time)
+        at = MaterialPoints(F, rate, contraction, voltage, self._fibres[muscle], drive.time, shear)
         return self.effect.first_piola(at, self.values)
 
     def add_moduli(
@@ -69,14 +76,14 @@ class StressLaw:
             moduli[name][self.elements] += change.transpose(1, 2, 0).reshape(*shape, 4)
 
     def contraction_slopes(self, deformation: np.ndarray, rate: np.ndarray, drive) -> np.ndarray:
-        """Derivative of the stress by the contraction of either muscle, [2, elements here, points, 4].
+        """Derivative of the stress by the contraction of every muscle, [muscles, elements here, points, 4].
 
-        A point knows the contraction of the muscle it lies in only, so one difference serves both.
+        A point knows the contraction of the muscle it lies in only, so one difference serves all.
         """
         more, less = (
             self.stress(deformation, rate, drive.with_contraction(drive.contraction + step))
             for step in (1e-6, -1e-6)
         )
         change = (more - less) / 2e-6
-        here = self._muscle == np.array([[1], [2]])
+        here = self._muscle == np.arange(1, len(self._fibres))[:, None]
         return here[:, :, None, None] * change

@@ -187,7 +187,7 @@ class Linearisation:
         return self.system.held_to_zero(out)
 
     def by_contraction(self, drive: DriveState) -> np.ndarray:
-        """Derivative of the residual by the contraction of the upper and the lower muscle, [2, nodes, 2]."""
+        """Derivative of the residual by the contraction of every muscle, [muscles, nodes, 2]."""
         out = self.system.solid.contraction_force(self.F)
         for law in self.system.stresses:
             if law.concerns_muscles:

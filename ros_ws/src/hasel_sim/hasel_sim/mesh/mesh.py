@@ -10,7 +10,7 @@ from hasel_sim.mesh.serendipity import shape_functions
 
 
 class Region(IntEnum):
-    """What an element is made of and which muscle, if any, runs through it."""
+    """Where an element lies: in the spine, in a muscle above or below it, or in neither."""
 
     SOFT = 0
     SPINE = 1
@@ -23,7 +23,9 @@ class Mesh:
     """Nodes, elements and what lies where.
 
     nodes: reference positions [m], shape [nodes, 2]; elements: node numbers, shape [elements, 8];
-    region: `Region` of each element; skin: node numbers of the outline's edges, shape [edges, 3], with the body to
+    region: `Region` of each element; muscle: number of the muscle that runs through it, from 1, or 0; material: number
+    of the region of other material it lies in, from 1, or 0; tip: nodes of the face at the far end, from bottom to top;
+    skin: node numbers of the outline's edges, shape [edges, 3], with the body to
     the left of the edge's direction; clamped: numbers of the nodes held fixed.
     outline_slope: change of the node positions per unit of each outline coefficient, [coefficients, nodes, 2].
     """
@@ -31,6 +33,9 @@ class Mesh:
     nodes: np.ndarray
     elements: np.ndarray
     region: np.ndarray
+    muscle: np.ndarray
+    material: np.ndarray
+    tip: np.ndarray
     skin: np.ndarray
     clamped: np.ndarray
     outline_slope: np.ndarray

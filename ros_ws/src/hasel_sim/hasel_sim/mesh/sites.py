@@ -71,11 +71,12 @@ def _spread(force, nodes, weights, out):
 
 
 def body_sites(mesh: Mesh, nodes: np.ndarray, density: np.ndarray) -> Sites:
-    """2 x 2 Gauss points in every element, standing for their mass [kg per m depth]; density [kg/m^3] [elements].
+    """3 x 3 Gauss points in every element, standing for their mass [kg per m depth]; density [kg/m^3] [elements].
 
-    A force per mass that is the same everywhere then accelerates the body without bending it.
+    These are the points of the consistent mass: a force per mass that is the same everywhere then accelerates the body
+    without bending it.
     """
-    values, _, areas = reference_gradients(nodes[mesh.elements], 2)
+    values, _, areas = reference_gradients(nodes[mesh.elements], 3)
     points = areas.shape[1]
     return Sites(
         np.repeat(mesh.elements, points, axis=0),
@@ -83,6 +84,16 @@ def body_sites(mesh: Mesh, nodes: np.ndarray, density: np.ndarray) -> Sites:
         np.zeros((areas.size, values.shape[1])),
         (density[:, None] * areas).ravel(),
     )
+
+
+def with_point_mass(body: Sites, mesh: Mesh, mass: float) -> Sites:
+    """The sites of a body and one more: a mass [kg per m depth] on the centre line of the face at the far end."""
+    tip = mesh.nodes[mesh.tip]
+    point = point_sites(mesh, np.array([[tip[0, 0], 0.5 * (tip[0, 1] + tip[-1, 1])]]))
+    joined = (np.concatenate(pair) for pair in zip(*(vars(s).values() for s in (body, point)), strict=True))
+    nodes, shape, slope, measure = joined
+    measure[-1] = mass
+    return Sites(nodes, shape, slope, measure)
 
 
 def skin_sites(mesh: Mesh) -> Sites:

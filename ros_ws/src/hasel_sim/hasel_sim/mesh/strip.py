@@ -16,7 +16,7 @@ class StripBuilder:
         self.nodes: list[tuple[float, float]] = []
         self.slopes: list[np.ndarray] = []
         self.elements: list[list[int]] = []
-        self.regions: list[int] = []
+        self.labels: list[tuple[int, int, int]] = []
         self.upper: list[list[int]] = []
         self.lower: list[list[int]] = []
 
@@ -28,13 +28,13 @@ class StripBuilder:
         return np.arange(first, len(self.nodes))
 
     def add_elements(
-        self, left: np.ndarray, middle: np.ndarray, right: np.ndarray, regions: list[int]
+        self, left: np.ndarray, middle: np.ndarray, right: np.ndarray, labels: list[tuple[int, int, int]]
     ) -> None:
         """Add one stack of elements, bottom to top.
 
-        left, right: 2n + 1 nodes each; middle: n + 1 nodes; regions: n region numbers.
+        left, right: 2n + 1 nodes each; middle: n + 1 nodes; labels: n times region, muscle, other material.
         """
-        for layer, region in enumerate(regions):
+        for layer, label in enumerate(labels):
             a, b = 2 * layer, 2 * layer + 2
             self.elements.append(
                 [
@@ -48,7 +48,7 @@ class StripBuilder:
                     left[a + 1],
                 ]
             )
-            self.regions.append(region)
+            self.labels.append(label)
         self.lower.append([left[0], middle[0], right[0]])
         self.upper.append([right[-1], middle[-1], left[-1]])
 
@@ -56,24 +56,23 @@ class StripBuilder:
         """Add the skin across an end of the body; `column` runs with the body to its left."""
         self.lower += [[column[i], column[i + 1], column[i + 2]] for i in range(0, len(column) - 1, 2)]
 
-    def finish(self, clamped: np.ndarray) -> Mesh:
-        """Return the mesh."""
+    def finish(self, clamped: np.ndarray, tip: np.ndarray) -> Mesh:
+        """Return the mesh; clamped: nodes held fixed; tip: nodes of the far end's face."""
         slopes = np.array(self.slopes)
         outline_slope = np.zeros((slopes.shape[1], len(self.nodes), 2))
         outline_slope[:, :, 1] = slopes.T
+        region, muscle, material = np.array(self.labels, dtype=np.int64).T
         return Mesh(
             nodes=np.array(self.nodes),
             elements=np.array(self.elements, dtype=np.int64),
-            region=np.array(self.regions, dtype=np.int64),
+            region=region,
+            muscle=np.ascontiguousarray(muscle),
+            material=material,
+            tip=np.asarray(tip, dtype=np.int64),
             skin=np.array(self.lower + self.upper, dtype=np.int64),
             clamped=np.asarray(clamped, dtype=np.int64),
             outline_slope=outline_slope,
         )
-
-
-def spread(start: float, end: float, count: int) -> np.ndarray:
-    """Stations of `count` equal elements from start to end, with the mid-columns between, shape [2 count + 1]."""
-    return np.linspace(start, end, 2 * count + 1)
 
 
 def levels_between(faces: np.ndarray, layers: list[int], middle_nodes: bool) -> np.ndarray:

@@ -1,29 +1,45 @@
 """The model: a validated description, its effects and its parameters; never changed, only copied with changes."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from types import SimpleNamespace
 
 import numpy as np
 from pydantic import ValidationError
 
+from hasel_sim.drive.amplitudes import AmplitudeTable, amplitude_tables
 from hasel_sim.effects.base import Effect
 from hasel_sim.effects.registry import find_effects
 from hasel_sim.errors import ModelError, nearest_name
+from hasel_sim.model.constants import constants, with_constants
 from hasel_sim.model.description import Description, Numerics
 from hasel_sim.model.parameter import Parameter
 
-_AMPLITUDE_START_PER_VOLT = 0.04 / 5500.0
+_AMPLITUDE_START = 0.04
+"""Contraction at which the highest level of a drive is first tried."""
+_START_VOLTAGE = 5500.0
+"""Voltage [V] of a Peano-HASEL at which that contraction is a good first guess."""
+_RESPONSES = {
+    "sloped_box": (("slope", 0.5, "1/s", 0.02, 50.0),),
+    "first_order": (("rise_time", 0.05, "s", 0.0, 2.0), ("fall_time", 0.05, "s", 0.0, 2.0)),
+}
 
 
-def _amplitude(level: float) -> Parameter:
-    return Parameter(f"amplitude_{level:g}", _AMPLITUDE_START_PER_VOLT * float(level), "1", 0.0, 0.6)
+def response_parameters(description: Description) -> dict[str, Parameter]:
+    """What a body with muscles always has besides its amplitudes: how fast the contraction follows."""
+    if not description.muscles:
+        return {}
+    return {row[0]: Parameter(*row) for row in _RESPONSES[description.muscle_response]}
 
 
 @dataclass(frozen=True)
 class Model:
     """description: what the file says; effects: in the file's order; parameters: by name.
 
-    Baseline parameters are `slope` [1/s] and one `amplitude_<voltage>` [1] per voltage; an effect's are `<id>.<name>`.
+    Baseline parameters are `slope` [1/s] (or `rise_time` and `fall_time` [s]) and one `amplitude_<level>` [1] per level
+    of the drive; an effect's are `<id>.<name>`; a constant of the file that is freed is called by its path, such as
+    `material.soft.youngs_modulus_pa`.
     """
 
     description: Description
@@ -37,19 +53,45 @@ class Model:
 
     @property
     def has_muscles(self) -> bool:
-        """Whether voltages move this body."""
-        return self.description.muscle is not None
+        """Whether anything drives this body."""
+        return bool(self.description.muscles)
 
     @property
     def has_spine(self) -> bool:
         """Whether a spine runs through this body."""
-        return self.description.body.kind == "swimmer"
+        return self.description.body.spine is not None
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names of the channels that drive this body, in the file's order."""
+        return tuple(channel.name for channel in self.description.channels)
+
+    @property
+    def muscle_channels(self) -> np.ndarray:
+        """Number of the channel that contracts each muscle, [muscles]."""
+        return np.array([self.channels.index(m.channel) for m in self.description.muscles], dtype=int)
+
+    @cached_property
+    def tables(self) -> tuple[AmplitudeTable, ...]:
+        """Which channels contract alike, and how their amplitudes are called."""
+        return amplitude_tables(self.description.channels)
+
+    def table_of(self, channel: str) -> AmplitudeTable:
+        """The table that a channel's amplitudes are in."""
+        return next(table for table in self.tables if channel in table.channels)
 
     @property
     def levels(self) -> np.ndarray:
-        """Voltages [V] with an amplitude of their own, ascending."""
-        names = [name for name in self.parameters if name.startswith("amplitude_")]
-        return np.sort(np.array([float(name.removeprefix("amplitude_")) for name in names]))
+        """Levels of all drives with an amplitude of their own, ascending, each in the unit of its channel."""
+        found = [table.levels(self.parameters) for table in self.tables]
+        return np.sort(np.concatenate(found)) if found else np.zeros(0)
+
+    @cached_property
+    def described(self) -> Description:
+        """The description with the freed constants at their parameters' values."""
+        known = constants(self.description)
+        freed = {name: p.value for name, p in self.parameters.items() if name in known}
+        return with_constants(self.description, freed) if freed else self.description
 
     @property
     def values(self) -> dict[str, float]:
@@ -90,12 +132,28 @@ class Model:
             parameters[name] = replace(self.parameter(name), value=float(value), standard_error=error)
         return replace(self, parameters=parameters)
 
-    def with_levels(self, levels: np.ndarray) -> "Model":
-        """A copy with an amplitude for each of these voltages [V]; known ones keep their value, others are dropped."""
-        kept = {name: p for name, p in self.parameters.items() if not name.startswith("amplitude_")}
-        new = [_amplitude(level) for level in np.sort(levels)]
-        amplitudes = {p.name: self.parameters.get(p.name, p) for p in new}
+    def with_levels(self, levels: np.ndarray | Mapping[str, np.ndarray]) -> "Model":
+        """A copy with an amplitude for each of these levels; known ones keep their value, others are dropped.
+
+        levels: of every channel in its SI unit, or by the name of a channel for those that contract alike.
+        """
+        amplitudes: dict[str, Parameter] = {}
+        for table in self.tables:
+            if isinstance(levels, Mapping):
+                own = np.unique(np.concatenate([[], *(levels[c] for c in table.channels if c in levels)]))
+            else:
+                own = np.unique(levels)
+            for level in own:
+                name = table.name(level)
+                highest = _START_VOLTAGE if table.unit == "V" else float(own[-1])
+                start = Parameter(name, _AMPLITUDE_START * float(level) / highest, "1", 0.0, table.largest)
+                amplitudes[name] = self.parameters.get(name, start)
+        kept = {name: p for name, p in self.parameters.items() if not self.is_amplitude(name)}
         return replace(self, parameters={**amplitudes, **kept})
+
+    def is_amplitude(self, name: str) -> bool:
+        """Whether a parameter's name is that of an amplitude of this body."""
+        return any(table.level(name) is not None for table in self.tables)
 
     def with_effects(self, *names: str) -> "Model":
         """A copy with further effects at their null values. Raises ModelError for unknown, duplicate or unfit ones."""
@@ -152,10 +210,22 @@ def check_together(effects: tuple[Effect, ...], model: Model) -> None:
         if effect.needs_muscles and not model.has_muscles:
             raise ModelError(
                 f"effect '{effect.id}' acts on the muscles, and model '{model.name}' has none; "
-                "remove it or use a model with a muscle section"
+                "remove it or use a model with muscles"
             )
         if effect.needs_spine and not model.has_spine:
             raise ModelError(
                 f"effect '{effect.id}' acts on the spine, and model '{model.name}' has none; "
-                "remove it or use a model whose body is a swimmer"
+                "remove it or use a model whose body has a spine"
+            )
+        count = len(model.description.muscles)
+        if effect.needs_antagonists and count != 2:
+            raise ModelError(
+                f"effect '{effect.id}' compares two muscles, and model '{model.name}' has {count}; remove it or use a "
+                "model with two"
+            )
+        quantities = sorted({channel.quantity for channel in model.description.channels})
+        if effect.quantity and effect.quantity not in quantities:
+            raise ModelError(
+                f"effect '{effect.id}' acts on a {effect.quantity}, and model '{model.name}' is driven by "
+                f"{', '.join(quantities) or 'nothing'}; remove it or use a model with such a channel"
             )

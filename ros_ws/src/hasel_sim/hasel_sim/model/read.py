@@ -1,6 +1,7 @@
 """Model files: reading with one-sentence errors, and writing."""
 
 import json
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 
@@ -9,8 +10,10 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from hasel_sim.errors import ModelError, nearest_name
-from hasel_sim.model.description import Description
-from hasel_sim.model.model import Model
+from hasel_sim.model.constants import constants, unit_of
+from hasel_sim.model.description import Description, ParameterEntry
+from hasel_sim.model.former import is_former, translated
+from hasel_sim.model.model import Model, response_parameters
 from hasel_sim.model.parameter import Parameter
 from hasel_sim.model.validation import sentence_for
 
@@ -55,46 +58,52 @@ def _parse(text: str, source: str, folder: Path) -> Model:
     if not isinstance(content, dict):
         raise ModelError(f"{source} holds no model; expected keys such as name, body, material and markers")
     try:
-        description = Description.model_validate(content)
+        description = Description.model_validate(translated(content) if is_former(content) else content)
+    except ModelError as error:
+        raise ModelError(f"{source}: {error}") from None
     except ValidationError as error:
         raise ModelError(f"{source}: {sentence_for(error)}") from None
-    parameters = {
-        name: Parameter(
-            name,
-            entry.value,
-            entry.unit,
-            -float("inf") if entry.lower is None else entry.lower,
-            float("inf") if entry.upper is None else entry.upper,
-            entry.free,
-            entry.standard_error,
-        )
-        for name, entry in description.parameters.items()
-    }
     bare = Model(description.model_copy(update={"effects": (), "parameters": {}}))
+    bare = replace(bare, parameters=response_parameters(description))
     model = bare.with_effects(*(_located(effect, folder) for effect in description.effects))
-    known = {"slope", *model.parameters}
-    for name in parameters:
-        if name not in known and not _is_amplitude(name):
-            raise ModelError(f"{source}: unknown parameter '{name}'; {nearest_name(name, known)}")
-        unit = model.parameters[name].unit if name in model.parameters else "1/s" if name == "slope" else "1"
-        if parameters[name].unit != unit:
-            raise ModelError(
-                f"{source}: {name} is given in '{parameters[name].unit}'; expected '{unit}': convert value and bounds"
-            )
-    return Model(model.description, model.effects, {**model.parameters, **parameters})
+    freed = constants(description)
+    given = {}
+    for name, entry in description.parameters.items():
+        known = model.parameters.get(name)
+        if known is None and name in freed:
+            known = Parameter(name, freed[name], unit_of(name), -float("inf"), float("inf"))
+        if known is None and model.is_amplitude(name):
+            known = Parameter(name, 0.0, "1", -float("inf"), float("inf"))
+        if known is None:
+            names = {*model.parameters, *freed}
+            raise ModelError(f"{source}: unknown parameter '{name}'; {nearest_name(name, names)}")
+        given[name] = _parameter(known, entry, freed.get(name), source)
+    return replace(model, parameters={**model.parameters, **given})
+
+
+def _parameter(known: Parameter, entry: ParameterEntry, constant: float | None, source: str) -> Parameter:
+    """A parameter as the file gives it. Raises ModelError for another unit, or for a value that is not given."""
+    if entry.unit is not None and entry.unit != known.unit:
+        raise ModelError(
+            f"{source}: {known.name} is given in '{entry.unit}'; expected '{known.unit}': convert value and bounds"
+        )
+    value = constant if entry.value is None else entry.value
+    if value is None:
+        raise ModelError(f"{source}: the key 'parameters.{known.name}.value' is missing: add it")
+    lower = -float("inf") if entry.lower is None else entry.lower
+    upper = float("inf") if entry.upper is None else entry.upper
+    if not lower <= value <= upper:
+        raise ModelError(
+            f"{source}: {known.name} is {value:g}; expected a value between its bounds {lower:g} and {upper:g}: "
+            "correct value or bounds"
+        )
+    return Parameter(known.name, value, known.unit, lower, upper, entry.free, entry.standard_error)
 
 
 def _located(effect: str, folder: Path) -> str:
     """An effect in a file is named relative to the model file."""
     path, separator, name = effect.rpartition(":")
     return effect if not separator or Path(path).is_absolute() else f"{(folder / path).resolve()}:{name}"
-
-
-def _is_amplitude(name: str) -> bool:
-    try:
-        return name.startswith("amplitude_") and float(name.removeprefix("amplitude_")) > 0
-    except ValueError:
-        return False
 
 
 def save_model(model: Model, path: str | Path) -> None:

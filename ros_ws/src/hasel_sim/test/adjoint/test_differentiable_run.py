@@ -34,7 +34,7 @@ def _central_difference(function, at: torch.Tensor, index: int, step: float) -> 
 
 
 def test_gradcheck_passes_on_a_small_body(swimmer, boxes):
-    """By the whole activation series, a parameter and the outline, on 44 elements and 10 steps."""
+    """By the whole activation series, a parameter and the outline, on a coarse mesh and 10 steps."""
     model = _model(swimmer, ["soft_modulus"], steps_per_second=120.0).with_numerics(mesh_density=0.25)
     run = DifferentiableRun(model, boxes(duration=10 / 120), list(model.parameters)[-1:])
     contraction = torch.full((10, 2), 0.02, dtype=torch.float64)
@@ -118,12 +118,12 @@ def test_the_start_in_equilibrium_is_differentiated_too(rectangle, tip_force):
 
 def test_a_waveform_reaches_the_angle(swimmer, boxes):
     """The gradient by a switching time, through drive and body, against differences."""
-    from hasel_sim.drive.voltage import VoltageSchedule
+    from hasel_sim.drive.schedule import DriveSchedule
 
     run = DifferentiableRun(_model(swimmer), boxes(duration=0.4))
 
     def schedule(waveform):
-        return VoltageSchedule(np.array([0.0, waveform[0]]), np.array([[5500.0, 0.0], [0.0, 5500.0]]))
+        return DriveSchedule(np.array([0.0, waveform[0]]), np.array([[5500.0, 0.0], [0.0, 5500.0]]))
 
     def loss(waveform):
         return run.angle(run.contraction_from(waveform, schedule)).square().sum()

@@ -20,7 +20,7 @@ from threadpoolctl import threadpool_limits
 def test_a_mesh_of_about_so_many_nodes_is_found():
     """Within some ten per cent, the default's own number exactly."""
     model = fitted_swimmer()
-    assert node_count(with_nodes(model, 336)) == 336
+    assert node_count(with_nodes(model, 275)) == 275
     assert node_count(with_nodes(model, 1400)) == pytest.approx(1400, rel=0.1)
 
 
@@ -46,12 +46,12 @@ def test_a_step_costs_few_solutions_of_its_linear_system(monkeypatch):
     assert speed.solutions_per_step < 2.8
     assert speed.sensitivities / speed.forward < 2.5
     assert speed.adjoint / speed.forward < 2.0
-    assert "336 nodes" in str(speed)
+    assert "275 nodes" in str(speed)
 
 
 def test_speed_is_stated_beside_real_time():
     """A second of motion in 0.1 s is 10 times real time, and twice what LAPACK takes in 0.05 s."""
-    speed = Speed(336, 4, forward=0.1, sensitivities=0.2, adjoint=0.1, band_solutions=0.05)
+    speed = Speed(275, 4, forward=0.1, sensitivities=0.2, adjoint=0.1, band_solutions=0.05)
     assert speed.real_time_factor == pytest.approx(10)
     assert speed.solutions_per_step == pytest.approx(2)
 
@@ -79,7 +79,7 @@ def test_the_reference_solves_as_large_and_wide_a_system(monkeypatch):
     assert len(seen) == 3
     assert below == above == matrix.half_bandwidth
     assert band.shape == (3 * below + 1, matrix.unknowns)
-    assert right_hand_side.shape == (2 * 336,)
+    assert right_hand_side.shape == (2 * 275,)
 
 
 def test_the_profile_accounts_for_all_time():

@@ -1,13 +1,15 @@
 """The whole drive from voltage to contraction."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hasel_sim.drive.chain import DriveChain
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.base import DriveEffect, DriveStage, EffectParameter
 from hasel_sim.effects.drive.charging_lag import ChargingLag
+from hasel_sim.model import load_model
 
 VALUES = {"amplitude_5500": 0.06, "slope": 0.3}
 
@@ -36,10 +38,14 @@ class Delay(DriveEffect):
         return time + p.time
 
 
+def _chain(effects, levels) -> DriveChain:
+    """Of the swimmer with these effects and levels [V]."""
+    return DriveChain(replace(load_model("swimmer").with_levels(np.array(levels)), effects=tuple(effects)))
+
+
 def _contraction(effects, values, times):
-    schedule = VoltageSchedule(np.array([0.0, 0.5]), np.array([[5500.0, 0.0], [0.0, 5500.0]]))
-    chain = DriveChain(effects, np.array([5500.0]))
-    return chain.contraction(schedule, times, VALUES, values)
+    schedule = DriveSchedule(np.array([0.0, 0.5]), np.array([[5500.0, 0.0], [0.0, 5500.0]]))
+    return _chain(effects, [5500.0]).contraction(schedule, times, VALUES, values)
 
 
 def test_a_switch_between_two_instants_acts_from_its_own_time():
@@ -63,8 +69,8 @@ def test_effects_act_in_the_order_of_their_stage():
 def test_a_lag_is_as_exact_on_a_coarse_grid_as_on_a_fine_one():
     """What a longer discharge changes is smooth in the discharge time: no instant of the grid shows through."""
     drive = np.array([[5500.0, 0.0], [0.0, 5500.0], [5500.0, 0.0], [0.0, 5500.0]])
-    schedule = VoltageSchedule(np.arange(4) / 7, drive)
-    chain = DriveChain([ChargingLag()], np.array([3500.0, 4500.0, 5500.0]))
+    schedule = DriveSchedule(np.arange(4) / 7, drive)
+    chain = _chain([ChargingLag()], [3500.0, 4500.0, 5500.0])
     amplitudes = {"amplitude_3500": 0.0269, "amplitude_4500": 0.0437, "amplitude_5500": 0.0633}
 
     def change(rate: int, discharge_time: float) -> np.ndarray:

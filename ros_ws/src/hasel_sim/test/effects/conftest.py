@@ -1,12 +1,13 @@
 """A coarse swimmer, a clamped beam, and what one measures on them."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from hasel_sim.build import Builder
 from hasel_sim.drive.chain import DriveChain
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.base import EffectParameter, ForceEffect
 from hasel_sim.effects.registry import catalogue, find_effects
 from hasel_sim.mechanics.motion import DriveState
@@ -33,7 +34,7 @@ def coarse_swimmer() -> Model:
 @pytest.fixture(scope="session")
 def short_boxes() -> Run:
     """Two quarter-second boxes of 5.5 kV, first on the upper and then on the lower muscle."""
-    schedule = VoltageSchedule(np.array([0.0, 0.25]), np.array([[5500.0, 0.0], [0.0, 5500.0]]))
+    schedule = DriveSchedule(np.array([0.0, 0.25]), np.array([[5500.0, 0.0], [0.0, 5500.0]]))
     return Run("short boxes", np.arange(0.0, 0.5, 1 / 120), schedule)
 
 
@@ -64,9 +65,11 @@ def response():
 def contraction_of():
     """Contraction [n, 2] at times [s] for a schedule, with one drive effect or none."""
 
-    def contraction(schedule: VoltageSchedule, times, identity: str | None = None, **values) -> np.ndarray:
-        effects = [catalogue()[identity]] if identity else []
-        chain = DriveChain(effects, np.array(list(LEVELS)))
+    def contraction(schedule: DriveSchedule, times, identity: str | None = None, **values) -> np.ndarray:
+        effects = (catalogue()[identity],) if identity else ()
+        chain = DriveChain(
+            replace(load_model("swimmer").with_levels(np.array(list(LEVELS))), effects=effects)
+        )
         baseline = {f"amplitude_{level:g}": value for level, value in LEVELS.items()} | {"slope": SLOPE}
         own = {effect.id: SimpleNamespace(**{**effect.null(), **values}) for effect in effects}
         return chain.contraction(schedule, times, baseline, own)

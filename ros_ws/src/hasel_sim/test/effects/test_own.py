@@ -2,13 +2,14 @@
 
 import pickle
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hasel_sim.build import Builder
 from hasel_sim.drive.chain import DriveChain
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.registry import catalogue, find_effects
 from hasel_sim.errors import ModelError
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
@@ -30,10 +31,10 @@ class MyDrag(ForceEffect):
     equation = "f = -c abs(v.n) (v.n) n"
     parameters = (EffectParameter("c", "c", "kg/m^3", 0.0, 0.0, 5000.0, 115.0),)
     sites = "skin"
-    depends_on = ("velocity",)
+    depends_on = ("velocity", "tangent")
 
     def force(self, at, p):
-        normal = at.rest_normal
+        normal = at.normal
         speed = np.sum(at.velocity * normal, axis=1)
         return (-p.c * np.abs(speed) * speed)[:, None] * normal
 """
@@ -106,8 +107,8 @@ def test_the_worked_example_is_short_and_in_the_documentation():
 def test_cross_talk_pulls_on_the_resting_muscle(coarse_swimmer, short_boxes):
     """The example: 80 % of 5.5 kV on the muscle at rest contracts it as 4.4 kV would, and the body bends less."""
     model = coarse_swimmer.with_effects(f"{EXAMPLE}:CrossTalk").with_values({"CrossTalk.coupling": 0.8})
-    hold = Run("hold", np.array([0.0, 1.0]), VoltageSchedule(np.zeros(1), np.array([[5500.0, 0.0]])))
-    direct = Run("direct", hold.time, VoltageSchedule(np.zeros(1), np.array([[5500.0, 4400.0]])))
+    hold = Run("hold", np.array([0.0, 1.0]), DriveSchedule(np.zeros(1), np.array([[5500.0, 0.0]])))
+    direct = Run("direct", hold.time, DriveSchedule(np.zeros(1), np.array([[5500.0, 4400.0]])))
     assert simulate(model, hold).sin_theta == pytest.approx(
         simulate(coarse_swimmer, direct).sin_theta, abs=1e-9
     )
@@ -184,14 +185,14 @@ _CHANGES = {
     "outside 1 to 5000": ("0.0, 0.0, 5000.0", "0.0, 1.0, 5000.0"),
     "typically off its null": ("5000.0, 115.0", "5000.0, 0.0"),
     "use one of body, skin, points": ('"skin"', '"everywhere"'),
-    "in depends_on": ('("velocity",)', '("speed",)'),
-    "uses the velocity without saying so": ('("velocity",)', '("position",)'),
+    "in depends_on": ('("velocity", "tangent")', '("speed", "tangent")'),
+    "uses the velocity without saying so": ('("velocity", "tangent")', '("tangent",)'),
     "exerts a force at its null values": ("-p.c", "1 - p.c"),
     "exerts no force at its typical values": ("-p.c", "0 * p.c"),
     "not finite": ("np.abs(speed)", "speed / (p.c - 115.0)"),
     r"returns shape \(7,\) from force where \(7, 2\) is expected": ("[:, None] * normal", ""),
     "depends on others": ("(-p.c", "(-np.mean(speed) * p.c"),
-    "fails in force .NameError": ("at.rest_normal", "at_rest"),
+    "fails in force .NameError": ("at.normal", "at_rest"),
     "cannot be run in line 3": ("import EffectParameter, ForceEffect", "import ("),
     "cannot be run .ModuleNotFoundError": ("import numpy", "import nunpy"),
     "is no effect": ("(ForceEffect)", ""),
@@ -273,11 +274,11 @@ def test_an_own_drive_effect_is_no_slower_than_three_built_in_ones():
     """The drive chain takes at most 3 times as long with the example as with a built-in effect."""
     (own,) = find_effects((f"{EXAMPLE}:CrossTalk",))
     times = np.linspace(0.0, 4.0, 1920)
-    schedule = VoltageSchedule(np.zeros(1), np.array([[5500.0, 0.0]]))
+    schedule = DriveSchedule(np.zeros(1), np.array([[5500.0, 0.0]]))
     taken = []
     for effect in (catalogue()["muscle_asymmetry"], own):
         model = load_model("swimmer").with_levels(np.array([5500.0])).with_effects(effect.source or effect.id)
-        chain, values = DriveChain([effect], model.levels), model.effect_values()
+        chain, values = DriveChain(replace(model, effects=(effect,))), model.effect_values()
         taken.append(
             _median_time(lambda c=chain, m=model, v=values: c.contraction(schedule, times, m.values, v))
         )

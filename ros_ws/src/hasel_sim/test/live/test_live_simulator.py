@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.base import DriveEffect, EffectParameter, ObservationEffect
 from hasel_sim.live.live_simulator import LiveSimulator
 from hasel_sim.live.stamp_order import Arrival
@@ -62,7 +62,7 @@ def frames(frequency: float, duration: float, sampling: float = 120.0) -> tuple[
 def whole(model: Model, stamps: np.ndarray, voltage: np.ndarray) -> np.ndarray:
     """The angle series [n] from `simulate`."""
     time = (stamps - stamps[0]) * 1e-9
-    return simulate(model, Run("whole", time, VoltageSchedule(time, voltage))).sin_theta
+    return simulate(model, Run("whole", time, DriveSchedule(time, voltage))).sin_theta
 
 
 def live(simulator: LiveSimulator, stamps: np.ndarray, voltage: np.ndarray) -> dict[int, float]:

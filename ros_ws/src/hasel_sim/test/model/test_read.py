@@ -46,7 +46,7 @@ def refusal(tmp_path):
 
 def test_the_models_that_come_with_the_package_can_be_read():
     """By their names."""
-    assert model_names() == ["beam", "swimmer"]
+    assert model_names() == ["arm", "beam", "swimmer"]
     for name in model_names():
         assert load_model(name).name == name
 
@@ -62,23 +62,25 @@ def test_an_unknown_key_is_refused_with_the_nearest_known_one(content, refusal):
 
 def test_a_key_with_another_unit_is_refused_with_the_right_one(content, refusal):
     """Millimetres where metres are expected."""
-    content["body"]["fin_length_mm"] = 1000 * content["body"].pop("fin_length_m")
-    sentence = refusal(content)
-    assert "fin_length_m" in sentence
-    content["body"]["fin_length_m"] = 0.03
-    assert "unknown key 'body.fin_length_mm'; the nearest known one is 'fin_length_m'" in refusal(content)
+    spine = content["body"]["spine"]
+    spine["fin_length_mm"] = 1000 * spine.pop("fin_length_m")
+    assert "unknown key 'body.spine.fin_length_mm'; the nearest known one is 'fin_length_m'" in refusal(
+        content
+    )
+    content["muscles"][1]["to_mm"] = 152.0
+    spine["fin_length_m"] = 1e-3 * spine.pop("fin_length_mm")
+    assert "unknown key 'muscles.1.to_mm'; the nearest known one is 'to_m'" in refusal(content)
 
 
 @pytest.mark.parametrize(
     ("section", "key", "value", "expected"),
     [
-        ("body", "body_length_m", -0.1, "greater than 0"),
-        ("body", "kind", "circle", "rectangle"),
-        ("body", "head_length_m", 0.158, "head_length_m < muscle_end_m < body_length_m"),
-        ("body", "fin_length_m", float("nan"), "finite"),
+        ("body", "length_m", -0.1, "greater than 0"),
+        ("body", "length_m", float("nan"), "finite"),
         ("material", "plane", "shell", "'strain' or 'stress'"),
         ("numerics", "quadrature_order", 5, "2 or 3"),
-        ("muscle", "fibre_stiffness_pa", "much", "number"),
+        ("numerics", "layers", 0, "greater than or equal to 1"),
+        ("body", "height_m", 0.01, "either height_m or outline"),
     ],
 )
 def test_a_value_out_of_range_is_refused_with_what_was_expected(
@@ -92,17 +94,17 @@ def test_a_value_out_of_range_is_refused_with_what_was_expected(
 
 
 def test_a_missing_section_is_named(content, refusal):
-    """Markers for all, a muscle for a swimmer."""
-    muscle = content.pop("muscle")
-    assert "a swimmer needs material.spine and muscle" in refusal(content)
-    content["muscle"] = muscle
+    """Markers for all, a material for a spine."""
+    spine = content["material"].pop("spine")
+    assert "body.spine has no material; expected material.spine" in refusal(content)
+    content["material"]["spine"] = spine
     del content["markers"]
     assert "the key 'markers' is missing: add it" in refusal(content)
 
 
 def test_an_outline_that_crosses_the_spine_is_refused_when_the_file_is_read(content, refusal):
     """Before any simulation."""
-    content["body"]["outline_coefficients"] = [0.3, -1.0]
+    content["body"]["outline"]["coefficients"] = [0.3, -1.0]
     assert "crosses the spine" in refusal(content)
 
 

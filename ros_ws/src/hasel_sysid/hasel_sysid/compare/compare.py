@@ -73,7 +73,7 @@ def comparison_of(
 def series_of(experiment: Experiment, simulation: Simulation) -> RunSeries:
     """Measured and simulated angle of one run. Raises SysidError when they have no frame in common."""
     schedule = experiment.run.schedule
-    drive = None if schedule is None else (schedule.time, schedule.voltage)
+    drive = None if schedule is None else (schedule.time, schedule.signal)
     series = run_series(
         experiment.name,
         experiment.run.time,

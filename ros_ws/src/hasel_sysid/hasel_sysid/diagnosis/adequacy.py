@@ -105,7 +105,7 @@ def _labels(evaluation: Evaluation) -> dict[str, list[str]]:
         count, time = int(used.sum()), run.time[used]
         voltage = None if run.schedule is None else run.schedule.at(time)
         cycle = None if voltage is None or count < 2 else drive_cycle(time, voltage)
-        level = "" if run.schedule is None else f"{np.abs(run.schedule.voltage).max(initial=0.0):.4g} V"
+        level = "" if run.schedule is None else f"{np.abs(run.schedule.signal).max(initial=0.0):.4g} V"
         side = [""] * count
         if voltage is not None:
             side = [{1: "upper", -1: "lower", 0: ""}[s] for s in driven_side(voltage)]

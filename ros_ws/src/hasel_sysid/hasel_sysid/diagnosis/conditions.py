@@ -18,7 +18,7 @@ def conditions(simulations: Sequence[Simulation]) -> dict[str, np.ndarray]:
 
 def _peak(simulation: Simulation) -> float:
     schedule = simulation.run.schedule
-    peak = 0.0 if schedule is None else float(np.abs(schedule.voltage).max(initial=0.0))
+    peak = 0.0 if schedule is None else float(np.abs(schedule.signal).max(initial=0.0))
     return peak if peak > 0 else np.nan
 
 

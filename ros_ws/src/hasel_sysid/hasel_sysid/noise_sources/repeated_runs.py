@@ -39,7 +39,7 @@ def _same(one: Run, other: Run) -> bool:
     if first is None or second is None:
         return first is second
     return (
-        first.voltage.shape == second.voltage.shape
+        first.signal.shape == second.signal.shape
         and np.allclose(first.time, second.time, atol=1e-6)
-        and np.allclose(first.voltage, second.voltage)
+        and np.allclose(first.signal, second.signal)
     )

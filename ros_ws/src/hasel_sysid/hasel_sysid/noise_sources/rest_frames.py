@@ -41,7 +41,7 @@ def _start(experiment: Experiment) -> float:
     run = experiment.run
     if run.schedule is None:
         return run.start
-    on = np.flatnonzero(np.any(run.schedule.voltage != 0, axis=1))
+    on = np.flatnonzero(np.any(run.schedule.signal != 0, axis=1))
     return float(run.schedule.time[on[0]]) if len(on) else float("inf")
 
 

@@ -4,7 +4,7 @@ from dataclasses import asdict, dataclass
 from itertools import product
 
 import numpy as np
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.run import Run
 
 _FRAME_RATE = 120.0
@@ -44,7 +44,7 @@ class Manoeuvre:
         time = np.arange(0.0, duration, 1 / _FRAME_RATE)
         return Run(str(self), time, self._schedule(duration))
 
-    def _schedule(self, duration: float) -> VoltageSchedule:
+    def _schedule(self, duration: float) -> DriveSchedule:
         if self.waveform == "box":
             time = np.arange(0.0, duration - 1e-9, 0.5 / self.frequency)
             upper = np.arange(len(time)) % 2 == 0
@@ -58,7 +58,7 @@ class Manoeuvre:
             alone = shape[:, 0]
             shape = np.zeros_like(shape)
             shape[:, 0 if self.muscles == "upper" else 1] = alone
-        return VoltageSchedule(time, self.voltage * shape)
+        return DriveSchedule(time, self.voltage * shape)
 
     def __str__(self) -> str:
         if self.load_factor is not None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hasel_recording import Recording, write_recording
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import Model, load_model, save_model
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
@@ -44,7 +44,7 @@ def write_boxes(
     frames = np.arange(0, periods / frequency, 1 / 120)
     side = np.mod(frames * frequency, 1) < 0.5
     drive = voltage * np.column_stack([side, ~side])
-    angle = simulate(truth, Run("r", frames, VoltageSchedule(frames, drive))).sin_theta
+    angle = simulate(truth, Run("r", frames, DriveSchedule(frames, drive))).sin_theta
     noise = 0.002 * np.random.default_rng(seed).normal(size=len(frames))
     write_recording(Recording(path.stem, frames, angle + noise, drive), path)
 

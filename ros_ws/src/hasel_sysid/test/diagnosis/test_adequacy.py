@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.noise import NoiseModel
 
@@ -15,7 +15,7 @@ NOISE = NoiseModel(white=4e-6, coloured=5e-6, correlation=0.9)
 def _run(voltage, frequency):
     time = np.arange(0, 2.0, 0.5 / frequency)
     upper = np.arange(len(time)) % 2 == 0
-    schedule = VoltageSchedule(time, voltage * np.stack([upper, ~upper], axis=1))
+    schedule = DriveSchedule(time, voltage * np.stack([upper, ~upper], axis=1))
     run = SimpleNamespace(name=f"{voltage:g}V_{frequency:g}Hz", time=TIME, schedule=schedule)
     return SimpleNamespace(run=run)
 

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.run import Run
 from hasel_sysid.diagnosis.constancy import trends
 from hasel_sysid.noise import NoiseModel
@@ -21,7 +21,7 @@ def box_run(voltage, frequency):
     return Run(
         "run",
         np.arange(0, 2 / frequency, 1 / 120.0),
-        VoltageSchedule(switches, np.where(upper, voltage, 0.0)),
+        DriveSchedule(switches, np.where(upper, voltage, 0.0)),
     )
 
 

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from hasel_recording import Recording
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import load_model
 from hasel_sim.parallel import SerialExecutor
@@ -20,7 +20,7 @@ from hasel_sysid.problem import Problem
 def trials() -> Trials:
     """Of a swimmer that is bent once, against an angle that it does not follow."""
     time = np.arange(0.0, 0.3, 1 / 60)
-    schedule = VoltageSchedule(np.zeros(1), np.array([[4500.0, 0.0]]))
+    schedule = DriveSchedule(np.zeros(1), np.array([[4500.0, 0.0]]))
     measured = Recording("bent", time, 0.2 * time, drive_signal=schedule.at(time))
     problem = Problem([Experiment(measured, Run("bent", time, schedule))], SerialExecutor())
     model = load_model("swimmer").with_levels([4500.0]).with_values({"amplitude_4500": 0.03})

@@ -11,7 +11,7 @@ from hasel_interfaces.msg import BendingAngle, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import Recording
 from hasel_recording.topics import MEASURED, SIMULATED, STATE
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import load_model, save_model
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
@@ -36,7 +36,7 @@ def recording(swimmer) -> Recording:
     time_s = np.arange(61) / 120
     upper = (time_s * 4) % 1 < 0.5
     voltage = 5500.0 * np.stack([upper, ~upper], axis=1)
-    run = Run("truth", time_s, VoltageSchedule(time_s, voltage))
+    run = Run("truth", time_s, DriveSchedule(time_s, voltage))
     return Recording("truth", time_s, simulate(swimmer.with_values(TRUTH), run).sin_theta, voltage)
 
 
@@ -149,7 +149,7 @@ def test_what_was_heard_is_fitted_while_the_node_goes_on(talk, recording):
 def test_a_missing_effect_is_named(talk, swimmer, recording):
     """Of two candidates the one that acts in the run, with its verdict, value and unit."""
     hidden = swimmer.with_effects("quadratic_drag").with_values({**TRUTH, "quadratic_drag.coefficient": 0.05})
-    run = Run("truth", recording.time_s, VoltageSchedule(recording.time_s, recording.voltage))
+    run = Run("truth", recording.time_s, DriveSchedule(recording.time_s, recording.voltage))
     noise = 1e-4 * np.random.default_rng(5).standard_normal(len(recording.time_s))
     measured = replace(recording, sin_theta=simulate(hidden, run).sin_theta + noise)
     talk.say(measured, recording.sin_theta)

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.noise_sources.between_periods import noise_between_periods
 
@@ -12,11 +12,11 @@ TIME = np.arange(0, 4.0, 1 / 120)
 TRUTH = NoiseModel(white=4e-6, coloured=5e-6, correlation=0.9)
 
 
-def box(frequency: float) -> VoltageSchedule:
+def box(frequency: float) -> DriveSchedule:
     """The two muscles in turn."""
     time = np.arange(0, 4.0, 0.5 / frequency)
     upper = np.arange(len(time)) % 2 == 0
-    return VoltageSchedule(time, 5000.0 * np.stack([upper, ~upper], axis=1))
+    return DriveSchedule(time, 5000.0 * np.stack([upper, ~upper], axis=1))
 
 
 def evaluation(missed, schedules, seed=0):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_recording import Recording
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.run import Run
 from hasel_sysid.dataset import Experiment
 from hasel_sysid.errors import SysidError
@@ -29,7 +29,7 @@ def swing(released, initial_time, seed=0, truth=TRUTH):
 
 def driven(first, seed, amplitude=0.1):
     """A body whose first muscle is switched on at `first` [s]."""
-    voltage = VoltageSchedule(np.array([-0.5, first]), np.array([[0.0, 0.0], [4000.0, 0.0]]))
+    voltage = DriveSchedule(np.array([-0.5, first]), np.array([[0.0, 0.0], [4000.0, 0.0]]))
     angle = np.where(first < TIME, amplitude * (1 - np.exp(-4 * (TIME - first))), 0.0) + noise(seed)
     return Experiment(Recording("driven", TIME, angle), Run("driven", TIME, voltage))
 

@@ -16,20 +16,20 @@ def test_no_voltage_exceeds_the_safe_maximum():
     """Neither by choice nor at the peak of a waveform."""
     library = manoeuvres(np.array([3500.0, 4500.0, 5500.0]), 4600.0)
     assert library
-    assert max(np.abs(m.run().schedule.voltage).max() for m in library) <= 4600.0
+    assert max(np.abs(m.run().schedule.signal).max() for m in library) <= 4600.0
 
 
 @pytest.mark.parametrize("waveform", ["box", "triangle", "sine"])
 def test_muscles_take_turns(waveform):
     """The two muscles are never driven together, and each gets the whole voltage once a period."""
-    voltage = Manoeuvre(5000.0, 1.0, 2, waveform, "both").run().schedule.voltage
+    voltage = Manoeuvre(5000.0, 1.0, 2, waveform, "both").run().schedule.signal
     assert not np.any((voltage[:, 0] > 0) & (voltage[:, 1] > 0))
     assert voltage.max(axis=0) == pytest.approx([5000.0, 5000.0], rel=0.02)
 
 
 def test_single_muscle_leaves_the_other_grounded():
     """Only the upper muscle sees a voltage."""
-    voltage = Manoeuvre(5000.0, 1.0, 2, "box", "upper").run().schedule.voltage
+    voltage = Manoeuvre(5000.0, 1.0, 2, "box", "upper").run().schedule.signal
     assert voltage[:, 0].max() == 5000.0
     assert not voltage[:, 1].any()
 

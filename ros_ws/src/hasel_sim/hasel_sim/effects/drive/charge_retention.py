@@ -39,6 +39,7 @@ class ChargeRetention(DriveEffect):
         "Reverse the polarity every cycle: retention vanishes, mechanical creep and gain drift stay."
     )
     citation = "Cisneros, Wu, Rabenorosoa, Le Gorrec, Mechatronics 109 (2025) 103342"
+    quantity = "voltage"
     stage = DriveStage.ZIPPING
 
     def respond(self, time: np.ndarray, signal: np.ndarray, p: SimpleNamespace) -> np.ndarray:

@@ -35,6 +35,7 @@ class CurrentLimit(DriveEffect):
         "limit."
     )
     citation = "Horowitz and Hill, The Art of Electronics, 3rd ed. (2015), section 1.4.4"
+    quantity = "voltage"
     stage = DriveStage.SUPPLY
 
     def respond(self, time: np.ndarray, signal: np.ndarray, p: SimpleNamespace) -> np.ndarray:

@@ -40,6 +40,7 @@ class DriveHysteresis(DriveEffect):
         "shrinks a lag."
     )
     citation = "Visintin, Differential Models of Hysteresis (1994), chapter III (play operator)"
+    quantity = "voltage"
     stage = DriveStage.ZIPPING
 
     def respond(self, time: np.ndarray, signal: np.ndarray, p: SimpleNamespace) -> np.ndarray:

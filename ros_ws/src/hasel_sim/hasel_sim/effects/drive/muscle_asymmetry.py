@@ -31,6 +31,7 @@ class MuscleAsymmetry(DriveEffect):
         "Swap the leads of the two muscles: an asymmetry of the muscles stays, one of the drive moves."
     )
     citation = "Kellaris, Gopaluni Venkata, Rothemund, Keplinger, Extreme Mechanics Letters 29 (2019) 100449"
+    needs_antagonists = True
     stage = DriveStage.TARGET
 
     def respond(self, time: np.ndarray, signal: np.ndarray, p: SimpleNamespace) -> np.ndarray:

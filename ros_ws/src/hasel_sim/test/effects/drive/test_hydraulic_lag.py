@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 
 
 def test_63_per_cent_after_one_release_time(response):
@@ -15,7 +15,7 @@ def test_63_per_cent_after_one_release_time(response):
 
 def test_a_steady_rise_runs_behind_by_the_rise_time(contraction_of):
     """While the sloped box rises, a first-order lag follows it one rise time later."""
-    schedule = VoltageSchedule(np.zeros(1), np.array([[5500.0, 0.0]]))
+    schedule = DriveSchedule(np.zeros(1), np.array([[5500.0, 0.0]]))
     times = np.linspace(0.0, 0.2, 81)
     plain = contraction_of(schedule, times)[:, 0]
     lagging = contraction_of(schedule, times, "hydraulic_lag", rise_time=0.02)[:, 0]

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.base import MaterialPoints
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.run import Run
@@ -28,7 +28,7 @@ def test_high_voltages_are_clipped_and_low_ones_are_not(coarse_swimmer):
     model = model.with_values({"antagonist_slack.stiffness": 2e5, "antagonist_slack.slack_strain": 0.008})
     change = []
     for level in (3500.0, 5500.0):
-        run = Run("held", np.arange(0, 0.5, 1 / 60), VoltageSchedule(np.zeros(1), np.array([[level, 0.0]])))
+        run = Run("held", np.arange(0, 0.5, 1 / 60), DriveSchedule(np.zeros(1), np.array([[level, 0.0]])))
         change.append(np.abs(simulate(model, run).sin_theta - simulate(coarse_swimmer, run).sin_theta).max())
     assert change[0] < 1e-9
     assert change[1] > 1e-3

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.base import MaterialPoints
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.run import Run
@@ -27,7 +27,7 @@ def test_a_held_body_bends_less_the_more_it_contracts(coarse_swimmer):
     """The loss of bending grows faster than in proportion to the contraction."""
     loss = []
     for level in (3500.0, 5500.0):
-        run = Run("held", np.array([0.0, 1.5]), VoltageSchedule(np.zeros(1), np.array([[level, 0.0]])))
+        run = Run("held", np.array([0.0, 1.5]), DriveSchedule(np.zeros(1), np.array([[level, 0.0]])))
         plain = simulate(coarse_swimmer, run).markers[-1]
         model = coarse_swimmer.with_effects("force_length").with_values({"force_length.weakening": 1.0})
         weak = simulate(model, run).markers[-1]

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.base import MaterialPoints
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.run import Run
@@ -48,7 +48,7 @@ def test_eight_times_the_stress_at_twice_the_strain():
 
 def test_the_body_bends_less(coarse_swimmer):
     """Held at 5.5 kV, a body with a stiffening spine comes to rest less bent."""
-    run = Run("held", np.array([0.0, 2.0]), VoltageSchedule(np.zeros(1), np.array([[5500.0, 0.0]])))
+    run = Run("held", np.array([0.0, 2.0]), DriveSchedule(np.zeros(1), np.array([[5500.0, 0.0]])))
     model = coarse_swimmer.with_effects("spine_stiffening").with_values({"spine_stiffening.stiffening": 1e9})
     plain, stiffer = (simulate(m, run).sin_theta[-1] for m in (coarse_swimmer, model))
     assert 0 < stiffer < 0.98 * plain

@@ -1,9 +1,9 @@
 """A commanded voltage as a step function."""
 
 import numpy as np
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 
-SCHEDULE = VoltageSchedule(
+SCHEDULE = DriveSchedule(
     np.array([0.0, 0.5, 0.7, 1.0]), np.array([[3500.0, 0.0], [3500.0, 0.0], [0.0, -4500.0], [0.0, 0.0]])
 )
 

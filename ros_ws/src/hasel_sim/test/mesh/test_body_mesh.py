@@ -1,11 +1,12 @@
-"""Meshes of the swimmer and the rectangle."""
+"""Meshes of planar strips: outline, spine and fin, muscles, regions, grading."""
 
 import numpy as np
 import pytest
 from hasel_sim.build import body_mesh, model_mesh
 from hasel_sim.errors import ModelError
-from hasel_sim.mesh.bodies import half_height
+from hasel_sim.mesh.body_mesh import Stretch, StripShape, strip_mesh
 from hasel_sim.mesh.mesh import Region
+from hasel_sim.mesh.outline import half_height
 from hasel_sim.mesh.serendipity import reference_gradients
 
 
@@ -16,9 +17,9 @@ def _areas(mesh) -> np.ndarray:
 def test_the_swimmer_has_the_area_of_its_outline_and_fin(swimmer):
     """Twice the integral of the half height, plus the fin."""
     mesh, body = model_mesh(swimmer), swimmer.description.body
-    polynomial = np.polynomial.Polynomial(body.outline_coefficients).integ()
-    area = 2 * body.largest_half_height_m * body.body_length_m * (polynomial(1.0) - polynomial(0.0))
-    fin = body.fin_length_m * body.spine_thickness_m
+    polynomial = np.polynomial.Polynomial(body.coefficients).integ()
+    area = 2 * body.largest_half_height_m * body.length_m * (polynomial(1.0) - polynomial(0.0))
+    fin = body.spine.fin_length_m * body.spine_thickness_m
     assert _areas(mesh).sum() == pytest.approx(area + fin, rel=1e-3)
 
 
@@ -26,6 +27,7 @@ def test_the_swimmer_has_the_area_of_its_outline_and_fin(swimmer):
 def test_the_mesh_follows_the_spine_and_the_regions(density, swimmer):
     """Every element lies in its region: spine within its faces, muscles between head and stalk on their side."""
     mesh, body = model_mesh(swimmer.with_numerics(mesh_density=density)), swimmer.description.body
+    place = swimmer.description.muscles[0]
     low, high = (getattr(mesh.nodes[mesh.elements], bound)(axis=1) for bound in ("min", "max"))
     spine, upper = mesh.region == Region.SPINE, mesh.region == Region.UPPER_MUSCLE
     lower, half = mesh.region == Region.LOWER_MUSCLE, 0.5 * body.spine_thickness_m
@@ -33,29 +35,63 @@ def test_the_mesh_follows_the_spine_and_the_regions(density, swimmer):
     assert low[upper, 1].min() == pytest.approx(half)
     assert high[lower, 1].max() == pytest.approx(-half)
     for muscle in (upper, lower):
-        assert low[muscle, 0].min() == pytest.approx(body.head_length_m)
-        assert high[muscle, 0].max() == pytest.approx(body.muscle_end_m)
-    assert high[spine, 0].max() == pytest.approx(body.body_length_m + body.fin_length_m)
+        assert low[muscle, 0].min() == pytest.approx(place.from_m)
+        assert high[muscle, 0].max() == pytest.approx(place.to_m)
+    assert high[spine, 0].max() == pytest.approx(body.whole_length_m)
 
 
-def test_one_number_refines_the_whole_mesh(swimmer):
-    """Twice the density, about three times the nodes; the default has 336."""
-    counts = [len(model_mesh(swimmer.with_numerics(mesh_density=d)).nodes) for d in (1.0, 2.0)]
-    assert counts[0] == 336
-    assert 2.5 < counts[1] / counts[0] < 3.5
+def test_the_default_is_graded_into_the_root_of_the_fin(swimmer):
+    """275 nodes; the columns beside the root are a sixteenth of the spine apart, and grow away from it."""
+    mesh, length = model_mesh(swimmer), swimmer.description.body.length_m
+    assert len(mesh.nodes) == 275
+    ends = np.unique(np.round(mesh.nodes[mesh.elements[:, :4], 0], 9))
+    steps, root = np.diff(ends), int(np.searchsorted(ends, length - 1e-6))
+    assert steps[[root - 1, root]] == pytest.approx(1e-3 / 16, rel=1e-3)
+    assert np.all(np.diff(steps[root:]) > 0)
+    assert np.all(np.diff(steps[root - 6 : root]) < 0)
+
+
+def test_the_density_scales_lengths_and_layers_are_asked_for_apart(swimmer):
+    """Twice the density is twice the elements; twice the layers cut the soft halves only."""
+    one, fine, thick = (
+        model_mesh(swimmer.with_numerics(**k)) for k in ({}, {"mesh_density": 2.0}, {"layers": 2})
+    )
+    assert len(fine.elements) == pytest.approx(2 * len(one.elements), rel=0.02)
+    assert (thick.region == Region.SPINE).sum() == (one.region == Region.SPINE).sum()
+    assert (thick.region != Region.SPINE).sum() == 2 * (one.region != Region.SPINE).sum()
+
+
+def test_muscles_and_regions_lie_where_they_are_said_to():
+    """Three muscles of one side and a stiff head: elements end at every border and carry their numbers."""
+    muscles = tuple(Stretch(a, a + 0.02, ("lower",)) for a in (0.01, 0.04, 0.07))
+    shape = StripShape(
+        0.1, 0.01, (1.0,), clamped=True, muscles=muscles, regions=(Stretch(0.0, 0.013, ("upper", "lower")),)
+    )
+    mesh = strip_mesh(shape, 1.0, 1)
+    corners = mesh.nodes[mesh.elements[:, :4]]
+    for number, muscle in enumerate(muscles, start=1):
+        own = corners[mesh.muscle == number]
+        assert own[..., 0].min() == pytest.approx(muscle.start)
+        assert own[..., 0].max() == pytest.approx(muscle.end)
+        assert own[..., 1].max() == pytest.approx(0.0)
+    stiff = corners[mesh.material == 1]
+    assert stiff[..., 0].max() == pytest.approx(0.013)
+    assert np.ptp(stiff[..., 1]) == pytest.approx(0.02)
+    assert mesh.nodes[mesh.tip, 0] == pytest.approx(0.1)
 
 
 def test_the_numbering_is_narrow_banded(swimmer):
     """The half bandwidth is that of two columns, not of the body, and narrower still along the fin."""
     reach = model_mesh(swimmer).reach
     assert reach.max() < 30
-    assert reach[-200:].max() < 16
+    assert reach[-120:].max() < 16
 
 
 def test_the_skin_runs_around_the_body_with_the_body_to_its_left(swimmer):
     """The area enclosed by the skin's edges is the mesh's (Green's theorem)."""
     mesh = model_mesh(swimmer)
-    start, end = mesh.nodes[mesh.skin[:, 0]], mesh.nodes[mesh.skin[:, 2]]
+    edges = np.concatenate([mesh.skin[:, :2], mesh.skin[:, 1:]])
+    start, end = mesh.nodes[edges[:, 0]], mesh.nodes[edges[:, 1]]
     enclosed = 0.5 * (start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0]).sum()
     assert enclosed == pytest.approx(_areas(mesh).sum(), rel=5e-3)
     assert sorted(mesh.skin[:, 0]) == sorted(mesh.skin[:, 2])
@@ -63,12 +99,13 @@ def test_the_skin_runs_around_the_body_with_the_body_to_its_left(swimmer):
 
 def test_the_outline_slope_is_how_nodes_move_with_a_coefficient(swimmer):
     """Against a mesh of a changed outline."""
-    body = swimmer.description.body
-    mesh = body_mesh(body, 1.0)
-    for index in range(len(body.outline_coefficients)):
-        changed = list(body.outline_coefficients)
+    description = swimmer.description
+    mesh = body_mesh(description)
+    for index in range(len(description.body.coefficients)):
+        changed = list(description.body.coefficients)
         changed[index] += 1e-3
-        moved = body_mesh(body.model_copy(update={"outline_coefficients": tuple(changed)}), 1.0)
+        body = description.body.with_outline(tuple(changed))
+        moved = body_mesh(description.model_copy(update={"body": body}))
         assert (moved.nodes - mesh.nodes) / 1e-3 == pytest.approx(mesh.outline_slope[index], abs=1e-12)
 
 
@@ -76,16 +113,16 @@ def test_the_outline_has_the_given_largest_height(swimmer):
     """The default's maximum is 7.5 mm at s = 0.35."""
     body = swimmer.description.body
     s = np.linspace(0, 1, 2001)
-    height = half_height(np.array(body.outline_coefficients), body.largest_half_height_m, s)
+    height = half_height(np.array(body.coefficients), body.largest_half_height_m, s)
     assert height.max() == pytest.approx(7.5e-3, rel=1e-3)
     assert s[height.argmax()] == pytest.approx(0.35, abs=0.01)
 
 
 def test_an_outline_that_crosses_the_spine_is_refused(swimmer):
     """The sentence says where and what to change."""
-    body = swimmer.description.body.model_copy(update={"outline_coefficients": (0.3, -0.5)})
-    with pytest.raises(ModelError, match=r"crosses the spine.*change outline_coefficients"):
-        body_mesh(body, 1.0)
+    body = swimmer.description.body.with_outline((0.3, -0.5))
+    with pytest.raises(ModelError, match=r"crosses the spine.*change the outline's coefficients"):
+        body_mesh(swimmer.description.model_copy(update={"body": body}))
 
 
 def test_a_clamped_rectangle_holds_its_first_nodes(rectangle):

@@ -1,0 +1,45 @@
+"""Strain softening."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hasel_sim.effects.base import MaterialPoints
+from hasel_sim.effects.registry import catalogue
+
+SHEAR, SOFTENING, STRAIN = 2e4, 0.4, 0.1
+
+
+def _stress(deformation: np.ndarray) -> np.ndarray:
+    zero = np.zeros(len(deformation))
+    at = MaterialPoints(deformation, 0 * deformation, zero, zero, zero, 0.0, SHEAR)
+    return catalogue()["strain_softening"].first_piola(
+        at, SimpleNamespace(softening=SOFTENING, reference_strain=STRAIN)
+    )
+
+
+def _energy(deformation: np.ndarray) -> np.ndarray:
+    volume = np.linalg.det(deformation)
+    excess = np.sum(deformation**2, axis=(1, 2)) - 2.0 - 2.0 * np.log(volume)
+    scale = 2 * STRAIN**2
+    return -0.5 * SOFTENING * SHEAR * (excess - scale * np.log1p(excess / scale))
+
+
+def test_the_stress_is_the_derivative_of_the_energy():
+    """First Piola stress = dW/dF, at random deformations."""
+    deformation = np.eye(2) + 0.1 * np.random.default_rng(0).standard_normal((5, 2, 2))
+    stress = _stress(deformation)
+    for i, k in np.ndindex(2, 2):
+        step = np.zeros((2, 2))
+        step[i, k] = 1e-6
+        change = (_energy(deformation + step) - _energy(deformation - step)) / 2e-6
+        assert stress[:, i, k] == pytest.approx(change, abs=1e-6 * np.abs(stress).max())
+
+
+def test_small_strains_meet_the_whole_modulus_and_large_ones_what_is_left():
+    """In simple shear, the stress lost over mu gamma grows from 0 to d, and is half of it near eps_0 sqrt 2."""
+    shear = np.array([1e-3, STRAIN * np.sqrt(2), 10.0])
+    deformation = np.tile(np.eye(2), (3, 1, 1))
+    deformation[:, 0, 1] = shear
+    lost = -_stress(deformation)[:, 0, 1] / (SHEAR * shear)
+    assert lost == pytest.approx([0.0, 0.5 * SOFTENING, SOFTENING], abs=2e-3)
