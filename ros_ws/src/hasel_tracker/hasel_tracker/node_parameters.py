@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hasel_tracker.calibration.settings_file import COLOUR_KEYS, SEARCH_KEYS, flat
-from hasel_tracker.tracking.tracker_settings import HEAD_SIDES, METHODS, TrackerSettings
+from hasel_tracker.tracking.tracker_settings import METHODS, TrackerSettings
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ PARAMETERS = (
     _search("largest_radius_px", "larger blobs are no markers [px]", 2.0, 1000.0),
     _search("region_px", "how far a marker may be from its prediction [px]", 2, 500),
     _search("edge_px", "half width of the band of a marker's edge; more if blurred [px]", 2, 50),
-    _search("head", "side of the picture on which the head starts", choices=HEAD_SIDES),
+    _search("head", "auto, the side of the picture on which the head starts, or a point X,Y near it"),
     _search("minimum_quality", "below it a marker counts as lost", 0.0, 1.0),
 )
 SEARCH_NAMES = COLOUR_KEYS + SEARCH_KEYS

@@ -6,10 +6,10 @@ import cv2
 import numpy as np
 
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.tracking.blobs import blobs_in_frame
 from hasel_tracker.tracking.colour_gate import HUE_CIRCLE, ColourRange
-from hasel_tracker.tracking.marker_order import body_line
-from hasel_tracker.tracking.moment_tracker import MomentTracker
+from hasel_tracker.tracking.marker_contour import measure_contour
+from hasel_tracker.tracking.marker_start import NUMBERS, search_start
+from hasel_tracker.tracking.marker_tracker import MarkerTracker
 from hasel_tracker.tracking.tracker_settings import TrackerSettings
 
 SEED_RADIUS_PX = 3
@@ -20,7 +20,7 @@ REGION_RADII = 1.4
 
 @dataclass(frozen=True)
 class LearnedColour:
-    """The settings, the markers found with them (3, 2) [px], the share of other pixels in the range."""
+    """The settings, the markers found with them (m, 2) [px], the share of other pixels in the range."""
 
     settings: TrackerSettings
     markers_px: np.ndarray
@@ -42,37 +42,34 @@ def learn_colour(
     points_px: np.ndarray | None = None,
     start: TrackerSettings = TrackerSettings(),  # noqa: B008
 ) -> LearnedColour:
-    """Learn from an 8-bit BGR frame; `points_px` (3, 2) are pixels on the markers, or None to find them.
+    """Learn from an 8-bit BGR frame; `points_px` (m, 2) are pixels on the markers, or None to find them.
 
-    Raises TrackerError if no three markers are found with what was learned.
+    Raises TrackerError if the markers are not found with what was learned.
     """
+    if points_px is not None:
+        start = replace(start, marker_count=len(points_px))
     centres = _found_centres(image, start) if points_px is None else np.asarray(points_px, float)
     colour = _range_around(cv2.cvtColor(image, cv2.COLOR_BGR2HSV), centres)
     radius = _radius(colour.mask(image), centres)
     region = max(start.region_px, round(REGION_RADII * radius))
     settings = replace(start, colour=colour, marker_radius_px=round(radius, 1), region_px=region)
-    tracker = MomentTracker(settings)
-    markers = tracker.update(image, 0.0)
-    if not markers.found.all():
-        raise TrackerError(
-            f"With the colour learned the markers are not found ({tracker.note}); point at them with --at."
-        )
+    tracker = MarkerTracker(settings, measure_contour)
+    try:
+        markers = tracker.place(image, centres, 0.0)
+    except TrackerError as error:
+        raise TrackerError(f"With the colour learned the markers are not found: {error}") from error
     return LearnedColour(
         settings, markers.positions, _stray_share(colour.mask(image), markers.positions, radius)
     )
 
 
 def _found_centres(image: np.ndarray, start: TrackerSettings) -> np.ndarray:
-    blobs = blobs_in_frame(image, start.colour, 2, start.smallest_radius_px)
-    row = body_line([blob for blob in blobs if blob.radius <= start.largest_radius_px])
-    if row is None:
+    search = search_start(image, start)
+    if search.row is None:
         raise TrackerError(
-            f"Found {len(blobs)} blobs in the starting colour range, of which no three look like markers "
-            f"in a row; "
-            "point at the markers with --at X,Y X,Y X,Y."
+            f"With the starting colour: {search.note}; point at the markers with --at X,Y X,Y …, head first."
         )
-    kept = [blob for blob in blobs if blob.radius <= start.largest_radius_px]
-    return np.array([kept[index].centre for index in row])
+    return search.row.centres
 
 
 def _range_around(hsv: np.ndarray, centres: np.ndarray) -> ColourRange:
@@ -107,9 +104,10 @@ def _radius(mask: np.ndarray, centres: np.ndarray) -> float:
         near = labels[max(y - 2, 0) : y + 3, max(x - 2, 0) : x + 3]
         if near.any():
             areas.append(statistics[near[near > 0][0], cv2.CC_STAT_AREA])
-    if len(areas) < 3:
+    if len(areas) < len(centres):
         raise TrackerError(
-            "The colour at the points given does not make three patches; point at the markers' middles."
+            f"The colour at the points given does not make {NUMBERS[len(centres)]} patches; point at the markers' "
+            "middles."
         )
     return float(np.sqrt(np.median(areas) / np.pi))
 

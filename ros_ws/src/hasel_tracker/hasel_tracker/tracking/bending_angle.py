@@ -1,21 +1,40 @@
-"""Bending angle of the body from the head, middle and tail markers."""
+"""Bending angle of the body from its markers."""
 
 import numpy as np
 
 
-def bending_angle(points: np.ndarray, mirrored: bool = False) -> tuple[float, float]:
+def head_middle_tail(points: np.ndarray) -> np.ndarray:
+    """The three points (3, 2) that make the angle, of markers (m, 2) in order, m at least 3.
+
+    The middle one is half-way along the row; of an even number it is half-way between the two in the middle.
+    """
+    points = np.asarray(points, dtype=float)
+    inner = points[(len(points) - 1) // 2 : len(points) // 2 + 1].mean(axis=0)
+    return np.stack([points[0], inner, points[-1]])
+
+
+def bending_angle(
+    points: np.ndarray, mirrored: bool = False, rest_direction_deg: float = 0.0
+) -> tuple[float, float]:
     """Return (sin θ, θ [rad]) from the markers in image axes (x right, y down).
 
-    `points` has shape (3, 2): head, middle, tail, in any one unit. With v_HM from head to middle and v_MT
+    `points` has shape (m, 2), from head to tail, in any one unit. With v_HM from head to middle and v_MT
     from middle to tail, sin θ = cross(v_HM, v_MT) / (|v_HM| |v_MT|), taken in axes with y up so that it is
-    positive when the upper muscle contracts. `mirrored` is for a camera that looks from below or over a
-    mirror. Markers that coincide or are NaN give NaN.
+    positive when the upper muscle contracts. Of two markers v_HM is where the straight body would point,
+    anticlockwise from right. `mirrored` is for a camera that looks from below or over a mirror. Markers that
+    coincide or are NaN give NaN.
     """
-    head, middle, tail = np.asarray(points, dtype=float)
-    front, rear = middle - head, tail - middle
+    points = np.asarray(points, dtype=float)
+    if len(points) == 2:
+        turn = np.radians(rest_direction_deg)
+        front, rear = np.array([np.cos(turn), -np.sin(turn)]), points[1] - points[0]
+    else:
+        head, middle, tail = head_middle_tail(points)
+        front, rear = middle - head, tail - middle
     lengths = np.hypot(*front) * np.hypot(*rear)
     if not lengths > 0.0:
         return float("nan"), float("nan")
+    # The image's y axis points down: its cross product is that of axes with y up, turned round.
     cross = front[1] * rear[0] - front[0] * rear[1]
     cross = -cross if mirrored else cross
     return float(cross / lengths), float(np.arctan2(cross, front @ rear))

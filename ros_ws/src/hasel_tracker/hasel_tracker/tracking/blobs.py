@@ -14,11 +14,15 @@ SINGLE_PIXELS = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
 
 @dataclass(frozen=True)
 class Blob:
-    """A connected patch: centre (2,) [px], area [px²], and roundness (0 to 1) from its bounding box."""
+    """A connected patch: centre (2,) [px], area [px²], roundness (0 to 1) from its bounding box.
+
+    cut: it touches the picture's edge, so that its centre and area may be those of a part.
+    """
 
     centre: np.ndarray
     area: float
     roundness: float
+    cut: bool = False
 
     @property
     def radius(self) -> float:
@@ -34,10 +38,11 @@ def find_blobs(mask: np.ndarray, minimum_area: float) -> list[Blob]:
         area = float(statistics[number, cv2.CC_STAT_AREA])
         if area < minimum_area:
             continue
-        width, height = statistics[number, cv2.CC_STAT_WIDTH], statistics[number, cv2.CC_STAT_HEIGHT]
+        left, top, width, height = (int(value) for value in statistics[number, :4])
+        cut = min(left, top) == 0 or left + width == mask.shape[1] or top + height == mask.shape[0]
         slimness = min(width, height) / max(width, height)
         filled = min(area / (0.25 * np.pi * width * height), 1.0)
-        blobs.append(Blob(centres[number].copy(), area, float(slimness * filled)))
+        blobs.append(Blob(centres[number].copy(), area, float(slimness * filled), cut))
     return sorted(blobs, key=lambda blob: -blob.area)
 
 
@@ -46,21 +51,32 @@ def blobs_in_frame(image: np.ndarray, gate: ColourRange, step: int, minimum_radi
     coarse = np.ascontiguousarray(image[::step, ::step])
     mask = gate.mask(coarse)
     found = find_blobs(mask, max(np.pi * minimum_radius**2 / step**2, 3.0))
-    return [Blob(blob.centre * step, blob.area * step**2, blob.roundness) for blob in found]
+    return [Blob(blob.centre * step, blob.area * step**2, blob.roundness, blob.cut) for blob in found]
 
 
-def nearest_outline(mask: np.ndarray, predicted: np.ndarray, area: float) -> np.ndarray | None:
-    """Outer contour (n, 1, 2) of the patch of about `area` [px²] nearest to `predicted` (2,), or None."""
+@dataclass(frozen=True)
+class Outline:
+    """The contour (n, 1, 2) nearest to a prediction, its distance from it, and that of the next like it [px]."""
+
+    contour: np.ndarray
+    distance_px: float
+    rival_px: float
+
+
+def nearest_outline(mask: np.ndarray, predicted: np.ndarray, area: float) -> Outline | None:
+    """Outer contour of the patch of about `area` [px²] nearest to `predicted` (2,), or None."""
     opened = cv2.morphologyEx(mask, cv2.MORPH_OPEN, SINGLE_PIXELS)
-    outlines, _ = cv2.findContours(opened, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
-    nearest, shortest = None, np.inf
-    for outline in outlines:
+    contours, _ = cv2.findContours(opened, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    found = []
+    for contour in contours:
         # A contour runs through the centres of the outermost pixels.
-        enclosed = cv2.contourArea(outline) + 0.5 * len(outline) + 1.0
+        enclosed = cv2.contourArea(contour) + 0.5 * len(contour) + 1.0
         if not LEAST_AREA_SHARE * area < enclosed < MOST_AREA_SHARE * area:
             continue
-        x, y, width, height = cv2.boundingRect(outline)
-        distance = np.hypot(x + 0.5 * width - predicted[0], y + 0.5 * height - predicted[1])
-        if distance < shortest:
-            nearest, shortest = outline, distance
-    return nearest
+        x, y, width, height = cv2.boundingRect(contour)
+        middle = x + 0.5 * (width - 1), y + 0.5 * (height - 1)
+        found.append((float(np.hypot(middle[0] - predicted[0], middle[1] - predicted[1])), contour))
+    if not found:
+        return None
+    found.sort(key=lambda each: each[0])
+    return Outline(found[0][1], found[0][0], found[1][0] if len(found) > 1 else float("inf"))

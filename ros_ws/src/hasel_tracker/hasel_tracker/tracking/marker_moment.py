@@ -13,12 +13,12 @@ moment is taken of it along the line from the background's colour to the marker'
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import cv2
 import numpy as np
 
+from hasel_tracker.tracking.marker_measurement import MarkerMeasurement
 from hasel_tracker.tracking.marker_surroundings import Surroundings, look_around, middle_value, sector_of
 
 RING_WIDTH_PX = 3
@@ -26,22 +26,8 @@ MINIMUM_CONTRAST = 12.0
 MINIMUM_INSIDE_PX = 5
 REFINEMENTS = 2
 TEXTURED = 0.16
+NOISE_AT_HALF_QUALITY = 0.25
 CHROMA_BLUR_PX = 1
-
-
-@dataclass(frozen=True)
-class MarkerMeasurement:
-    """Centre (2,) [px], area [px²], contrast to the background and noise around [grey levels], solidity."""
-
-    centre: np.ndarray
-    area: float
-    contrast: float
-    noise: float
-    solidity: float
-
-    def moved_by(self, offset: np.ndarray) -> "MarkerMeasurement":
-        """The same in pixels whose origin lies `offset` (2,) before."""
-        return replace(self, centre=self.centre + offset)
 
 
 def measure_marker(image: np.ndarray, outline: np.ndarray, edge_px: int) -> MarkerMeasurement | None:
@@ -82,7 +68,13 @@ def _measure(
         return None
     centre, area = _centre_and_area(share, outer, surroundings)
     solidity = min(cv2.contourArea(outline) / max(cv2.contourArea(hull), 1.0), 1.0)
-    return MarkerMeasurement(np.add(centre, (left, top)), area, contrast, surroundings.noise, solidity)
+    noise = surroundings.noise / contrast
+    band = 2.0 * edge_px * 2.0 * np.sqrt(np.pi * area)
+    sigma_px = noise * np.sqrt(0.5 * band * area / np.pi) / area
+    clarity = 1.0 / (1.0 + (noise / NOISE_AT_HALF_QUALITY) ** 2)
+    return MarkerMeasurement(
+        np.add(centre, (left, top)), area, contrast, surroundings.noise, solidity, float(sigma_px), float(clarity)
+    )
 
 
 def _luma(region: np.ndarray, _inside: np.ndarray, _ring: np.ndarray) -> np.ndarray:
@@ -90,12 +82,14 @@ def _luma(region: np.ndarray, _inside: np.ndarray, _ring: np.ndarray) -> np.ndar
 
 
 def _colourfulness(region: np.ndarray, inside: np.ndarray, ring: np.ndarray) -> np.ndarray:
-    """Colour along the axis from the marker to the background, brightness left out."""
-    marker, background = cv2.mean(region, inside)[:3], cv2.mean(region, ring)[:3]
-    axis = np.subtract(background, marker)
+    return (region @ chroma_axis(region, inside, ring)).astype(np.float32)
+
+
+def chroma_axis(region: np.ndarray, inside: np.ndarray, outside: np.ndarray) -> np.ndarray:
+    """Unit vector (3,) of colour from the marker to the background, brightness left out; masks are 8-bit."""
+    axis = np.subtract(cv2.mean(region, outside)[:3], cv2.mean(region, inside)[:3])
     axis -= axis.mean()
-    axis /= max(np.linalg.norm(axis), 1e-9)
-    return (region @ axis).astype(np.float32)
+    return axis / max(np.linalg.norm(axis), 1e-9)
 
 
 def _marker_share(

@@ -1,74 +1,76 @@
-"""Which three blobs are the markers, and which of them is the head, the middle and the tail."""
+"""Which blobs are the markers that were lost, so that markers do not swap and strangers are not taken for them."""
 
-from itertools import combinations, permutations
+from itertools import permutations
 
 import numpy as np
 
 from hasel_tracker.tracking.blobs import Blob
 
 MOST_CANDIDATES = 8
-LARGEST_START_COST = 60.0
+MOST_LOST = 2
 CHORD_TOLERANCE = 0.2
+LARGEST_AREA_RATIO = 2.0
+LARGEST_TURN_RAD = 2.1
 
 
-def body_line(blobs: list[Blob]) -> np.ndarray | None:
-    """Indices (3,) of the three blobs most like markers in a row, the middle one second; None if none are.
-
-    Markers are alike in size, round, about equally far apart and not folded onto each other.
-    """
-    candidates = _most_marker_like(blobs)
-    best, lowest = None, LARGEST_START_COST
-    for triple in combinations(candidates, 3):
-        for middle in range(3):
-            order = [triple[middle - 1], triple[middle], triple[(middle + 1) % 3]]
-            cost = _row_cost([blobs[index] for index in order])
-            if cost < lowest:
-                best, lowest = np.array(order), cost
-    return best
-
-
-def _most_marker_like(blobs: list[Blob]) -> list[int]:
-    by_roundness = sorted(range(len(blobs)), key=lambda index: -blobs[index].roundness)
-    return by_roundness[:MOST_CANDIDATES]
-
-
-def _row_cost(row: list[Blob]) -> float:
-    areas = np.log([blob.area for blob in row])
-    front, rear = row[1].centre - row[0].centre, row[2].centre - row[1].centre
-    lengths = np.hypot(*front), np.hypot(*rear)
-    if min(lengths) < 4.0 * max(blob.radius for blob in row):
-        return np.inf
-    turn = np.arccos(np.clip(front @ rear / (lengths[0] * lengths[1]), -1.0, 1.0))
-    uneven = np.log(lengths[0] / lengths[1]) / 0.3
-    unlike = (areas - np.median(areas)) / 0.4
-    unround = (1.0 - np.array([blob.roundness for blob in row])) / 0.3
-    return float(unlike @ unlike + unround @ unround + uneven**2 + (turn / 0.8) ** 2)
-
-
-def assign_lost(
+def assignments_of_lost(
     blobs: list[Blob], known: np.ndarray, expected: np.ndarray, chords: np.ndarray, areas: np.ndarray
-) -> dict[int, Blob]:
-    """Blobs for the lost markers so that the distances along the body stay what they were.
+) -> list[dict[int, Blob]]:
+    """Ways to give the lost markers blobs so that the distances along the body stay what they were, best first.
 
-    known: (3, 2) with NaN for lost markers [px]; expected: (3, 2) where each was last seen; chords: (2,)
-    distances head–middle and middle–tail [px]; areas: (3,) [px²]. Returns marker number → blob; empty if
-    nothing fits.
+    known: (m, 2) with NaN for lost markers [px]; expected: (m, 2) where each was last seen; chords: (m - 1,) distances
+    from marker to marker [px]; areas: (m,) [px²]. Marker number → blob; empty if nothing fits, or more are lost than
+    their neighbours can vouch for.
     """
     lost = np.flatnonzero(np.isnan(known[:, 0]))
+    if len(lost) > MOST_LOST or len(lost) == len(known):
+        return []
     near = 0.1 * chords.sum()
-    best, lowest = {}, np.inf
-    for choice in permutations(range(min(len(blobs), MOST_CANDIDATES)), len(lost)):
+    # Those far from every place where a lost marker may be are not worth a try.
+    tried = sorted(blobs, key=lambda blob: np.linalg.norm(expected[lost] - blob.centre, axis=1).min())
+    found = []
+    for choice in permutations(tried[:MOST_CANDIDATES], len(lost)):
         trial = known.copy()
-        trial[lost] = [blobs[index].centre for index in choice]
-        stretch = np.linalg.norm(np.diff(trial, axis=0), axis=1) / chords - 1.0
-        if np.abs(stretch).max() > CHORD_TOLERANCE:
+        trial[lost] = [blob.centre for blob in choice]
+        steps = np.diff(trial, axis=0)
+        stretch = np.linalg.norm(steps, axis=1) / chords - 1.0
+        unlike = np.log([blob.area / areas[number] for blob, number in zip(choice, lost, strict=True)])
+        if np.abs(stretch).max() > CHORD_TOLERANCE or np.abs(unlike).max() > np.log(LARGEST_AREA_RATIO):
             continue
-        unlike = np.log([blobs[i].area / areas[j] for i, j in zip(choice, lost, strict=True)])
-        if np.abs(unlike).max() > 1.0:
+        if _sharpest_turn(steps) > LARGEST_TURN_RAD:
             continue
         jump = (trial[lost] - expected[lost]) / near
         cost = (stretch @ stretch) / 0.05**2 + (unlike @ unlike) / 0.3**2 + (jump**2).sum()
-        if cost < lowest:
-            best = {int(j): blobs[i] for i, j in zip(choice, lost, strict=True)}
-            lowest = cost
-    return best
+        found.append((float(cost), {int(number): blob for number, blob in zip(lost, choice, strict=True)}))
+    return [assignment for _, assignment in sorted(found, key=lambda each: each[0])]
+
+
+def _sharpest_turn(steps: np.ndarray) -> float:
+    if len(steps) < 2:
+        return 0.0
+    along = np.unwrap(np.arctan2(steps[:, 1], steps[:, 0]))
+    return float(np.abs(np.diff(along)).max())
+
+
+def misplaced(positions: np.ndarray, residual_px: np.ndarray, chords: np.ndarray) -> np.ndarray:
+    """Which markers (m,) are nowhere near their distance from their neighbours.
+
+    positions: (m, 2) [px]; residual_px: (m,) how far each is from where it was predicted; chords: (m - 1,) [px].
+    """
+    wrong = np.abs(np.linalg.norm(np.diff(positions, axis=0), axis=1) / chords - 1.0) > CHORD_TOLERANCE
+    blame = np.zeros(len(positions), bool)
+    for number in np.flatnonzero(wrong):
+        first, last = number, number + 1
+        if blame[first] or blame[last]:
+            continue
+        votes = [_wrong_chords(wrong, each) for each in (first, last)]
+        if votes[0] != votes[1]:
+            blame[first if votes[0] > votes[1] else last] = True
+        else:
+            blame[first if np.nan_to_num(residual_px[first]) >= np.nan_to_num(residual_px[last]) else last] = True
+    return blame
+
+
+def _wrong_chords(wrong: np.ndarray, marker: int) -> float:
+    """Share of a marker's chords that are wrong."""
+    return float(wrong[max(marker - 1, 0) : marker + 1].mean())

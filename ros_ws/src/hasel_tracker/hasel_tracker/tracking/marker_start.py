@@ -1,0 +1,63 @@
+"""Find the markers in one picture with nothing known but what they look like, or refuse and say why."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from hasel_tracker.tracking.blobs import Blob, blobs_in_frame
+from hasel_tracker.tracking.body_link import BodyLink, body_link
+from hasel_tracker.tracking.doubt import Doubt
+from hasel_tracker.tracking.marker_row import MarkerRow, marker_candidates, rows_on_a_body
+from hasel_tracker.tracking.tracker_settings import TrackerSettings
+
+NUMBERS = dict(
+    zip(range(2, 16), "two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen".split(),
+        strict=True)
+)  # fmt: skip
+DARK_PICTURE = 60.0
+
+
+@dataclass(frozen=True)
+class StartSearch:
+    """What one picture gives: a row (either end first) if there is exactly one, else why not. links: looked at."""
+
+    row: MarkerRow | None
+    doubt: Doubt
+    note: str
+    links: int
+
+
+def whole_frame_blobs(image: np.ndarray, settings: TrackerSettings) -> list[Blob]:
+    """Blobs of marker colour of a size that a marker may have, in full pixels, from every few pixels of the image."""
+    radius = settings.marker_radius_px or settings.smallest_radius_px
+    step = int(np.clip(0.5 * radius, 1, 4))
+    found = blobs_in_frame(image, settings.colour, step, 0.7 * radius)
+    largest = 1.5 * settings.marker_radius_px or settings.largest_radius_px
+    return [blob for blob in found if blob.radius <= largest]
+
+
+def search_start(image: np.ndarray, settings: TrackerSettings) -> StartSearch:
+    """Look for the one row of markers with a body between them."""
+    blobs = whole_frame_blobs(image, settings)
+    candidates = marker_candidates(blobs)
+    looked: list[BodyLink] = []
+
+    def link(first: Blob, last: Blob) -> BodyLink:
+        looked.append(body_link(image, first.centre, last.centre, 0.5 * (first.radius + last.radius)))
+        return looked[-1]
+
+    rows = rows_on_a_body(candidates, settings.marker_count, link)
+    word = NUMBERS[settings.marker_count]
+    if len(rows) == 1:
+        return StartSearch(rows[0], Doubt.NONE, "", len(looked))
+    if rows:
+        note = (
+            f"more than one row of {word} dots lies on a body ({len(candidates)} dots seen); say which with --at or "
+            "--roi, or how many there are with --markers"
+        )
+        return StartSearch(None, Doubt.AMBIGUOUS, note, len(looked))
+    note = f"found {len(blobs)} blobs of marker colour, of which no {word} look like markers in a row on a body"
+    if cv2.mean(image[::8, ::8])[1] < DARK_PICTURE:
+        note += "; the picture is dark: learn the colour with `calibrate colour --at`"
+    return StartSearch(None, Doubt.NONE, note, len(looked))
