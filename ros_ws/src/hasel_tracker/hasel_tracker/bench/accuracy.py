@@ -13,8 +13,10 @@ from hasel_tracker.render.camera_view import CameraView
 from hasel_tracker.render.degradation import Degradation
 from hasel_tracker.render.motion import BendingMotion
 from hasel_tracker.render.renderer import RenderedFrame, Renderer
+from hasel_tracker.offline.tracked_run import track_frames
+from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.video_source import VideoSource
-from hasel_tracker.tracking.bending_tracker import BendingTracker
+from hasel_tracker.tracking.bending_tracker import DEFAULT_METHOD, BendingTracker
 from hasel_tracker.video.video_writer import H264Writer
 
 FRAME_RATE_HZ = 120.0
@@ -22,7 +24,10 @@ FRAME_RATE_HZ = 120.0
 
 @dataclass(frozen=True)
 class Condition:
-    """A way of taking the picture; `photograph` and `skin` name pictures of scikit-image behind and on the body."""
+    """A way of taking the picture; `photograph` and `skin` name pictures of scikit-image behind and on the body.
+
+    pointed_at: the user points at the markers in the first frame, as the body cannot be told from the ground.
+    """
 
     name: str
     degradation: Degradation = field(default_factory=Degradation)
@@ -32,6 +37,7 @@ class Condition:
     skin: str = ""
     h264_rate_factor: int | None = None
     at_rest: bool = False
+    pointed_at: bool = False
 
 
 CONDITIONS = (
@@ -44,7 +50,12 @@ CONDITIONS = (
     Condition("blurred optics (σ 2 px)", Degradation(noise_levels=2.0, blur_px=2.0)),
     Condition("motion blur (4 ms)", Degradation(noise_levels=2.0, exposure_s=0.004)),
     Condition("tilted 15°, lens", Degradation(noise_levels=2.0), tilt_rad=0.26, radial_distortion=-0.1),
-    Condition("photograph: gravel", Degradation(noise_levels=2.0, jpeg_quality=75), photograph="gravel"),
+    Condition(
+        "photograph: gravel, with --at",
+        Degradation(noise_levels=2.0, jpeg_quality=75),
+        photograph="gravel",
+        pointed_at=True,
+    ),
     Condition("photograph: coffee", Degradation(noise_levels=2.0, jpeg_quality=75), photograph="coffee"),
     Condition("photograph on the skin: brick", Degradation(noise_levels=2.0, jpeg_quality=75), skin="brick"),
     Condition("at rest, MJPEG 75", Degradation(noise_levels=3.0, jpeg_quality=75), at_rest=True),
@@ -73,21 +84,21 @@ class Accuracy:
 def measure_accuracy(
     condition: Condition,
     frames: int,
-    method: str = "moment",
+    method: str = DEFAULT_METHOD,
     width_px: int = 1920,
     height_px: int = 1080,
 ) -> Accuracy:
     """Track `frames` rendered pictures of a condition and compare with the truth."""
     renderer = renderer_for(condition, width_px, height_px)
     calibration = exact_calibration(renderer.view) if condition.tilt_rad else None
-    tracker = BendingTracker(method=method, calibration=calibration)
-    errors, angle_errors = [], []
-    for frame in pictures(renderer, condition, frames):
-        tracked = tracker.update(frame.image, frame.time_s)
-        errors.append(tracked.markers.positions - frame.markers_px)
-        angle_errors.append(tracked.sin_theta - frame.sin_theta)
-    squared = (np.array(errors) ** 2).sum(axis=2)
-    angle_errors = np.array(angle_errors)
+    truth = list(pictures(renderer, condition, frames))
+    run = track_frames(
+        (Frame(index, frame.time_s, image=frame.image) for index, frame in enumerate(truth)),
+        BendingTracker(method=method, calibration=calibration),
+        placed={0: truth[0].markers_px} if condition.pointed_at else None,
+    )
+    squared = ((run.markers_px - [frame.markers_px for frame in truth]) ** 2).sum(axis=2)
+    angle_errors = run.sin_theta - [frame.sin_theta for frame in truth]
     return Accuracy(
         condition.name,
         np.sqrt(np.nanmean(squared, axis=0)),

@@ -55,7 +55,8 @@ def learn_colour(
     settings = replace(start, colour=colour, marker_radius_px=round(radius, 1), region_px=region)
     tracker = MarkerTracker(settings, measure_contour)
     try:
-        markers = tracker.place(image, centres, 0.0)
+        markers = tracker.update(image, 0.0) if points_px is None else tracker.place(image, centres, 0.0)
+        markers = markers if markers.found.all() else tracker.place(image, centres, 0.0)
     except TrackerError as error:
         raise TrackerError(f"With the colour learned the markers are not found: {error}") from error
     return LearnedColour(

@@ -65,7 +65,7 @@ def _dot_for_hidden_tail(seed: int) -> LabScene:
     random = np.random.default_rng(seed)
     swimmer = replace(RIGHT_WAY, hidden=((TAIL, 0.1, 0.35),), bend_rad=0.6)
     _, middle, tail = swimmer.dots(0.1)
-    angle = random.choice([-1, 1]) * random.uniform(0.3, 0.9)
+    angle = random.choice([-1, 1]) * random.uniform(0.5, 0.9)
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     place = middle + turn @ (tail - middle)
     return LabScene((swimmer,), (BlueDot(*place, radius=11.0),), seed=seed, exposure_s=0.0)

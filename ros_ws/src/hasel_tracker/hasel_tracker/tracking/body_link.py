@@ -17,6 +17,7 @@ STEP_SHARE = 0.006
 LARGEST_BOW = 0.2
 SHEARS = (-0.05, -0.025, 0.0, 0.025, 0.05)
 PATHS_KEPT = 24
+REFINED_STEPS = 4
 BESIDE_RADII = (2.5, 5.0)
 BESIDE_SAMPLES = 3
 LEAST_SPREAD = 3.0
@@ -24,11 +25,15 @@ OUTLIER_SHARE = 0.1
 OUTLIER_DENSITY = np.log(OUTLIER_SHARE) - 3 * np.log(256.0)
 LEAST_EVIDENCE = 5.0  # random grounds reach 4.8 in hundreds of trials, bodies have 6 and more
 WIDEST_SHARE = 0.2
+SKIN_RADII = 0.7
+LEAST_CONTRAST = 5.0
+CLEAR_OF_RIM = 2.0
 
 
 @dataclass(frozen=True)
 class BodyLink:
-    """Evidence of a body between two dots (least of the thirds) [nats per sample], and its width [px]."""
+    """Evidence of a body between two dots (least of the thirds) [nats per sample], and its width [px] (NaN if it
+    cannot be told)."""
 
     evidence: float
     width_px: float
@@ -59,19 +64,23 @@ def body_link(image: np.ndarray, first: np.ndarray, last: np.ndarray, radius_px:
     colours = cv2.remap(
         image, points[..., 0].astype(np.float32), points[..., 1].astype(np.float32), cv2.INTER_LINEAR
     ).astype(np.float32)  # (stations, offsets, 3)
-    paths = _paths(station, length, step)
-    best, best_at = NO_LINK, None
-    candidates = paths
+    candidates, centre, band = _paths(station, length, step), len(offset) // 2, 2.0 * radius_px / step
+    most, width = -np.inf, 0.0
     for gap in beside:
-        paths = _most_distinct(colours, candidates, len(offset) // 2, gap / step)
-        evidence, models = _evidence(colours, paths, len(offset) // 2, gap / step, 2.0 * radius_px / step)
+        paths = _most_distinct(colours, candidates, centre, gap / step)
+        evidence, models = _evidence(colours, paths, centre, gap / step, band)
         number = int(np.argmax(evidence))
-        if evidence[number] > best.evidence:
-            best = BodyLink(float(evidence[number]), 0.0)
-            best_at = paths[number], tuple(each[number] for each in models)
-    if best_at is None:
-        return NO_LINK
-    return BodyLink(best.evidence, _width(colours, *best_at, len(offset) // 2) * step)
+        smooth = paths[number]
+        near = _refined(colours, paths[number], tuple(each[number] for each in models), centre)
+        paths = np.stack([paths[number], near])
+        evidence, models = _evidence(colours, paths, centre, gap / step, band)
+        number = int(np.argmax(evidence))
+        most = max(most, float(evidence[number]))
+        # The widest gap at which a body is seen: a nearer one may see no more than a spine within it.
+        if evidence[number] > LEAST_EVIDENCE:
+            skin = max(round(SKIN_RADII * radius_px / step), 1)
+            width = _width(colours, smooth, models[2][number], centre, skin) * step
+    return BodyLink(most, width)
 
 
 def _paths(station: np.ndarray, length: float, step: float) -> np.ndarray:
@@ -95,6 +104,33 @@ def _most_distinct(colours: np.ndarray, paths: np.ndarray, centre: int, gap: flo
     alike = np.minimum(np.abs(np.diff(path, axis=1)).sum(axis=2), 60.0).mean(axis=1)
     chosen = np.concatenate([np.argsort(-apart)[:PATHS_KEPT], np.argsort(alike - apart)[:PATHS_KEPT]])
     return paths[np.unique(chosen)]
+
+
+def _refined(
+    colours: np.ndarray, path: np.ndarray, models: tuple[np.ndarray, ...], centre: int
+) -> np.ndarray:
+    """The smooth path within a few steps of `path` (stations,) that looks most like the body."""
+    inner, outer = _log_densities(colours, models)
+    reach = np.arange(-REFINED_STEPS, REFINED_STEPS + 1)
+    places = np.clip(np.rint(centre + path).astype(int)[:, None] + reach, 0, colours.shape[1] - 1)
+    gain = np.take_along_axis((inner - outer).reshape(colours.shape[:2]), places, axis=1)
+    total, came = gain[0], []
+    for row in gain[1:]:
+        padded = np.pad(total, 1, constant_values=-np.inf)
+        choices = np.stack([padded[:-2], padded[1:-1], padded[2:]])
+        came.append(choices.argmax(axis=0) - 1)
+        total = choices.max(axis=0) + row
+    chosen = [int(total.argmax())]
+    for back in reversed(came):
+        chosen.append(chosen[-1] + int(back[chosen[-1]]))
+    return places[np.arange(STATIONS), chosen[::-1]].astype(float) - centre
+
+
+def _log_densities(colours: np.ndarray, models: tuple[np.ndarray, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """Log densities of every colour (1, stations · offsets) as the body's and as that of what is beside."""
+    trend, inner_spread, beside, outer_spread = models
+    inner = _log_density((colours - trend).reshape(1, -1, 3), inner_spread[None])
+    return inner, _log_density((colours - beside[:, None]).reshape(1, -1, 3), outer_spread[None])
 
 
 def _evidence(
@@ -138,17 +174,31 @@ def _log_density(rest: np.ndarray, spread: np.ndarray) -> np.ndarray:
     return np.logaddexp(usual, OUTLIER_DENSITY)
 
 
-def _width(colours: np.ndarray, path: np.ndarray, models: tuple[np.ndarray, ...], centre: int) -> float:
-    """Median over the stations of how many offsets about the path look like the body rather than what is beside."""
-    trend, inner_spread, beside, outer_spread = models
-    inner = _log_density((colours - trend).reshape(1, -1, 3), inner_spread[None])
-    outer = _log_density((colours - beside[:, None]).reshape(1, -1, 3), outer_spread[None])
-    body = (inner > outer).reshape(colours.shape[:2])
-    widths = []
-    for row, start in zip(body, np.rint(centre + path).astype(int), strict=True):
-        if row[start]:
-            gaps = np.flatnonzero(~row)
-            right = gaps[gaps > start].min(initial=len(row))
-            left = gaps[gaps < start].max(initial=-1)
-            widths.append(right - left - 1)
-    return float(np.median(widths)) if widths else 0.0
+def _width(colours: np.ndarray, path: np.ndarray, beside: np.ndarray, centre: int, skin: int) -> float:
+    """Width of the body in steps: where the profile across it falls to half of what it is beside the spine.
+
+    The profile is the median along the way, so that noise, glints and grains of the ground largely cancel; `skin` steps
+    from the path lies the skin rather than a spine. A shadow lies the other way from the background than a bright
+    body, and is not counted. NaN where the profile does not stand out.
+    """
+    places = np.rint(centre + path).astype(int)
+    half = min(places.min(), colours.shape[1] - 1 - places.max())
+    reach = np.arange(-half, half + 1)
+    across = colours[np.arange(STATIONS)[:, None], places[:, None] + reach] - beside[:, None]
+    profile = np.median(across, axis=0)
+    rim = max(half // 4, 2)
+    # Light that falls from one side to the other is no body.
+    left_rim, right_rim = np.median(profile[:rim], axis=0), np.median(profile[-rim:], axis=0)
+    profile = profile - 0.5 * (left_rim + right_rim) - (reach / (2.0 * half - rim))[:, None] * (right_rim - left_rim)
+    skin_colour = 0.5 * (profile[half - skin] + profile[half + skin])
+    contrast = float(np.linalg.norm(skin_colour))
+    rest = np.median(np.linalg.norm(np.concatenate([profile[:rim], profile[-rim:]]), axis=1))
+    if contrast < max(LEAST_CONTRAST, CLEAR_OF_RIM * rest):
+        return 2.0 * skin if contrast < LEAST_CONTRAST else float("nan")
+    share = profile @ skin_colour / contrast**2
+    share[half - skin : half + skin + 1] = 1.0
+    # What is no wider than the skin's distance from the path, such as a spine beside it, does not end the body.
+    body = np.convolve(share >= 0.5, np.ones(skin + 1), mode="full")
+    right = np.flatnonzero(body[half + skin :] < 0.5)
+    left = np.flatnonzero(body[: half + 1][::-1] < 0.5)
+    return float((right[0] if right.size else half + 1) + (left[0] if left.size else half + 1) - 1)

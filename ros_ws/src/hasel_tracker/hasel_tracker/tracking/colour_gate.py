@@ -1,6 +1,6 @@
 """Which pixels may be a marker: a range of hue, saturation and value."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -8,6 +8,8 @@ import numpy as np
 from hasel_tracker.errors import TrackerError
 
 HUE_CIRCLE = 180
+BRIGHT_VALUE = 200.0
+BRIGHT_PERCENTILE = 99.0
 
 
 @dataclass(frozen=True)
@@ -27,6 +29,11 @@ class ColourRange:
                     f"The colour range has {name} = {value}; expected 0 to {limit}. "
                     "Learn a range from a frame with `calibrate colour`."
                 )
+
+    def for_light_of(self, image: np.ndarray) -> "ColourRange":
+        """The range with its lowest value lowered for an 8-bit BGR picture whose bright parts are dim."""
+        bright = np.percentile(image[::8, ::8].max(axis=2), BRIGHT_PERCENTILE)
+        return replace(self, value_low=round(self.value_low * min(bright / BRIGHT_VALUE, 1.0)))
 
     def mask(self, image: np.ndarray) -> np.ndarray:
         """Pixels of an 8-bit BGR image inside the range: 255, else 0; shape (height, width)."""

@@ -24,7 +24,7 @@ def thicker_first(links: tuple[BodyLink, ...]) -> bool | None:
     half = (len(links) + 1) // 2
     front = np.mean([link.width_px for link in links[:half]])
     rear = np.mean([link.width_px for link in links[-half:]])
-    if min(front, rear) <= 0.0 or max(front, rear) < CLEAR_RATIO * min(front, rear):
+    if not (min(front, rear) > 0.0 and max(front, rear) > CLEAR_RATIO * min(front, rear)):
         return None
     return bool(front > rear)
 

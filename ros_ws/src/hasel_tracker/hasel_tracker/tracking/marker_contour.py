@@ -13,6 +13,7 @@ import numpy as np
 
 from hasel_tracker.tracking.marker_measurement import MarkerMeasurement
 from hasel_tracker.tracking.marker_moment import chroma_axis
+from hasel_tracker.tracking.marker_surroundings import middle_value
 
 RAYS = 64
 STEP_PX = 0.5
@@ -109,12 +110,12 @@ def _measure(
     inner = cv2.remap(
         signal, middle[None, :, 0].astype(np.float32), middle[None, :, 1].astype(np.float32), cv2.INTER_LINEAR
     )
-    inside = float(np.median(inner))
+    inside = middle_value(inner.ravel())
     outer = values[:, steps >= 1.0]
-    if np.median(outer) < inside:
+    if middle_value(outer.ravel()) < inside:
         values, outer, inside = -values, -outer, -inside
     level = np.partition(outer, -2, axis=1)[:, -2]
-    contrast = float(np.median(level - inside))
+    contrast = middle_value(level - inside)
     if contrast < MINIMUM_CONTRAST:
         return None
     crossing = _crossings(values, 0.5 * (level + inside), reach, rough)
@@ -122,7 +123,7 @@ def _measure(
     if usable.mean() < MINIMUM_INLIERS:
         return None
     edge = start + crossing[:, None] * direction
-    fit = _ellipse(edge[usable], start, float(np.median(rough)))
+    fit = _ellipse(edge[usable], start, middle_value(rough))
     if fit is None:
         return None
     centre, area, spread, weight = fit
@@ -156,29 +157,26 @@ def _ellipse(
     About its centre, the radius of a slight ellipse is R + p cos 2φ + q sin 2φ; a shift of the centre adds
     a cos φ + b sin φ.
     """
-    centre, weight = start.copy(), np.ones(len(points))
+    centre, one = start.copy(), np.ones(len(points))
+    weight = one
     for _ in range(REWEIGHTINGS):
         offset = points - centre
         distance = np.hypot(offset[:, 0], offset[:, 1])
         cosine, sine = offset[:, 0] / distance, offset[:, 1] / distance
-        design = np.column_stack(
-            [np.ones(len(points)), cosine, sine, cosine**2 - sine**2, 2.0 * cosine * sine]
-        )
-        weighted = design * weight[:, None]
+        design = np.stack([one, cosine, sine, cosine**2 - sine**2, 2.0 * cosine * sine])
+        weighted = design * weight
         try:
-            found = np.linalg.solve(weighted.T @ design, weighted.T @ distance)
+            found = np.linalg.solve(weighted @ design.T, weighted @ distance)
         except np.linalg.LinAlgError:
             return None
-        left = distance - design @ found
-        half = len(left) // 2
-        spread = 1.48 * float(np.partition(np.abs(left), half)[half]) + 0.02
+        left = distance - found @ design
+        spread = 1.48 * middle_value(np.abs(left)) + 0.02
         # Tukey's weights: what is far off has none.
         weight = np.square(np.maximum(1.0 - np.square(left / (4.0 * spread)), 0.0))
         centre = centre + found[1:3]
         if not np.hypot(*(centre - start)) < radius:
             return None
-    seen = weight > 0.1
-    spread = float(np.sqrt(np.average(np.square(left), weights=weight))) if seen.any() else np.inf
+    spread = float(np.sqrt(weight @ np.square(left) / weight.sum()))
     radius = found[0]
     area = np.pi * (radius**2 - 0.5 * (found[3] ** 2 + found[4] ** 2))
     return centre, float(area), spread, weight

@@ -19,7 +19,7 @@ def marker_names(count: int) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class MarkerSet:
-    """Positions (m, 2) [px], quality (m,) and standard deviation (m,) [px] from head to tail.
+    """Positions (m, 2) [px], quality (m,) and standard deviation (m,) [px], if known, from head to tail.
 
     A lost marker is NaN with quality 0. doubt: why the whole set is not to be trusted though it is there; vouches_for:
     how many frames directly before, held in doubt, this one has shown to be right.
@@ -27,7 +27,7 @@ class MarkerSet:
 
     positions: np.ndarray
     quality: np.ndarray
-    sigma_px: np.ndarray
+    sigma_px: np.ndarray | None = None
     doubt: Doubt = Doubt.NONE
     vouches_for: int = 0
 

@@ -1,6 +1,6 @@
 """Find the markers in one picture with nothing known but what they look like, or refuse and say why."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -39,6 +39,7 @@ def whole_frame_blobs(image: np.ndarray, settings: TrackerSettings) -> list[Blob
 
 def search_start(image: np.ndarray, settings: TrackerSettings) -> StartSearch:
     """Look for the one row of markers with a body between them."""
+    settings = replace(settings, colour=settings.colour.for_light_of(image))
     blobs = whole_frame_blobs(image, settings)
     candidates = marker_candidates(blobs)
     looked: list[BodyLink] = []

@@ -1,12 +1,13 @@
 """Follow the markers from frame to frame; find them at the start and when lost; say when that is in doubt."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.tracking.blobs import Outline, nearest_outline
-from hasel_tracker.tracking.body_link import body_link
+from hasel_tracker.tracking.body_link import BodyLink, body_link
 from hasel_tracker.tracking.doubt import Doubt
 from hasel_tracker.tracking.head_side import head_word, nearer_to, on_side, thicker_first
 from hasel_tracker.tracking.marker_contour import OUTSIDE_PX
@@ -41,7 +42,7 @@ class MarkerTracker:
     """Follows `settings.marker_count` markers that `measure` locates within their outlines."""
 
     def __init__(self, settings: TrackerSettings, measure: Measure) -> None:
-        self.settings = settings
+        self.settings = self._asked = settings
         self.note = ""
         self._measure_within = measure
         self._count = settings.marker_count
@@ -59,6 +60,7 @@ class MarkerTracker:
         self._chords: np.ndarray | None = None
         self._reach_px = float(self.settings.region_px)
         self._body_seen = True
+        self._by_thickness = False
         self._linked_at_s = -np.inf
         self._time_s = np.nan
         self._trust = Trust()
@@ -75,6 +77,7 @@ class MarkerTracker:
         """
         if len(points) != self._count:
             raise TrackerError(f"Found {len(points)} points for {self._count} markers; give one each, head first.")
+        self._adapt(image)
         blobs = whole_frame_blobs(image, self.settings)
         reach = self.settings.region_px
         placed = []
@@ -118,7 +121,8 @@ class MarkerTracker:
     def _start(self, image: np.ndarray, time_s: float) -> MarkerSet:
         if time_s < self._search_after_s:
             return MarkerSet.lost(self._count)
-        search = search_start(image, self.settings)
+        self._adapt(image)
+        search = search_start(image, self._asked)
         if search.links > CHEAP_SEARCH_LINKS:
             self._search_after_s = time_s + SEARCH_PERIOD_S
         following = self._chords is not None
@@ -133,9 +137,14 @@ class MarkerTracker:
             return MarkerSet.lost(self._count)
         self._forget()
         self.note = note
+        self._by_thickness = thicker_first(row.links) is True
         self._begin(found, time_s)
         doubt = self._trust.shake(Doubt.STARTING)
         return self._as_set(found, np.ones(self._count, bool), doubt, 0)
+
+    def _adapt(self, image: np.ndarray) -> None:
+        """Take the marker's colour as it is in this picture's light."""
+        self.settings = replace(self._asked, colour=self._asked.colour.for_light_of(image))
 
     def _headed(self, row: MarkerRow, following: bool) -> tuple[MarkerRow | None, Doubt, str]:
         """The row with its head first, if that can be told, and how."""
@@ -278,7 +287,7 @@ class MarkerTracker:
         """All were away for a moment: the one row in the picture, in the order that is nearest to the last."""
         if time_s < self._search_after_s:
             return None
-        search = search_start(image, self.settings)
+        search = search_start(image, self._asked)
         if search.links > CHEAP_SEARCH_LINKS:
             self._search_after_s = time_s + SEARCH_PERIOD_S
         if search.row is None:
@@ -298,8 +307,10 @@ class MarkerTracker:
         return self._linked(image, self._positions, links)
 
     def _linked(self, image: np.ndarray, positions: np.ndarray, links: object) -> bool:
-        radius = np.sqrt(np.median(self._areas) / np.pi)
-        return all(body_link(image, positions[each], positions[each + 1], radius).seen for each in links)
+        return all(link.seen for link in self._links_at(image, positions, links))
+
+    def _links_at(self, image: np.ndarray, positions: np.ndarray, links: object) -> tuple[BodyLink, ...]:
+        return tuple(body_link(image, positions[each], positions[each + 1], self.radius_px) for each in links)
 
     # -- judging ----------------------------------------------------------------------------------------------------
 
@@ -361,7 +372,9 @@ class MarkerTracker:
         due |= time_s - self._linked_at_s > LINK_PERIOD_S
         if due and self._body_seen:
             positions = np.array([each.centre for each in measured])
-            if not self._linked(image, positions, range(self._count - 1)):
+            links = self._links_at(image, positions, range(self._count - 1))
+            turned = self._by_thickness and thicker_first(links) is False
+            if turned or not all(link.seen for link in links):
                 return self._trust.disagree(), 0
             self._linked_at_s = time_s
         if event is not Doubt.NONE:

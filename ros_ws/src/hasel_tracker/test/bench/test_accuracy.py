@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from hasel_tracker.bench.accuracy import CONDITIONS, Condition, measure_accuracy, renderer_for
 from hasel_tracker.render.degradation import Degradation
-from hasel_tracker.tracking.bending_tracker import BendingTracker
+from hasel_tracker.tracking.bending_tracker import DEFAULT_METHOD, BendingTracker
 
 NAMED = {each.name: each for each in CONDITIONS}
 FRAMES = 10
@@ -19,7 +19,7 @@ FRAMES = 10
         ("blurred optics (σ 2 px)", 0.06),
         ("motion blur (4 ms)", 0.05),
         ("tilted 15°, lens", 0.05),
-        ("photograph: gravel", 0.4),
+        ("photograph: gravel, with --at", 0.4),
         ("photograph: coffee", 0.4),
         ("photograph on the skin: brick", 0.4),
     ],
@@ -48,14 +48,14 @@ def test_angle_needs_the_calibration_when_tilted():
     """Seen at a slant through a lens, the pixels alone give an angle that is off by far more than the calibrated."""
     condition = NAMED["tilted 15°, lens"]
     frame = renderer_for(condition, 960, 540).frame(0.12)
-    uncalibrated = BendingTracker().update(frame.image, 0.0).sin_theta
-    calibrated = measure_accuracy(condition, 16, "moment", 960, 540).sin_theta_rms
+    uncalibrated = BendingTracker().update(frame.image, 0.0, frame.markers_px).sin_theta
+    calibrated = measure_accuracy(condition, 16, DEFAULT_METHOD, 960, 540).sin_theta_rms
     assert abs(uncalibrated - frame.sin_theta) > 20.0 * calibrated
 
 
 def test_csrt_is_less_accurate_side_by_side():
     """On the same frames CSRT is more than ten times farther from the truth."""
     condition = NAMED["MJPEG quality 75"]
-    moment = measure_accuracy(condition, 6, "moment", 960, 540)
+    moment = measure_accuracy(condition, 6, DEFAULT_METHOD, 960, 540)
     csrt = measure_accuracy(condition, 6, "csrt", 960, 540)
     assert np.mean(csrt.marker_rms_px) > 10.0 * np.mean(moment.marker_rms_px)

@@ -3,7 +3,8 @@ import pytest
 from hasel_tracker.calibration.colour_learning import learn_colour
 from hasel_tracker.calibration.learned_picture import SELECTED, learned_picture
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.tracking.moment_tracker import MomentTracker
+from hasel_tracker.tracking.marker_contour import measure_contour
+from hasel_tracker.tracking.marker_tracker import MarkerTracker
 
 
 def test_blue_markers_are_learned_without_help(frames):
@@ -20,7 +21,7 @@ def test_markers_of_any_colour_are_learned_by_pointing(frames, channels):
     """Green, red and purple markers are learned from a pixel on each, and then followed by themselves."""
     picture = np.ascontiguousarray(frames[30].image[..., channels])
     learned = learn_colour(picture, frames[30].markers_px[::-1] + 1.0)
-    markers = MomentTracker(learned.settings).update(picture, 0.0)
+    markers = MarkerTracker(learned.settings, measure_contour).update(picture, 0.0)
     assert np.abs(markers.positions - frames[30].markers_px).max() < 0.3
 
 

@@ -16,7 +16,7 @@ def test_saved_and_loaded(tmp_path):
     ("text", "message"),
     [
         ("/**: {ros__parameters: {hue_lo: 3}}", "'hue_lo', which is not known; did you mean 'hue_low'"),
-        ("/**: {ros__parameters: {head: north}}", "expected one of auto, left, right"),
+        ("/**: {ros__parameters: {head: north}}", "expected auto, left, right"),
         ("/**: {ros__parameters: {hue_low: abc}}", "wrong kind"),
         ("just text", "not a ROS 2 parameter file"),
     ],

@@ -24,7 +24,7 @@ def test_follows_within_pixels(frames, given_boxes):
 
 def test_two_boxes_are_not_enough():
     """Boxes for two markers are refused with what is expected."""
-    with pytest.raises(TrackerError, match="Found 2 boxes for CSRT; expected three"):
+    with pytest.raises(TrackerError, match="Found 2 boxes for CSRT; expected 3, from head to tail"):
         CsrtTracker(boxes=[(0, 0, 9, 9), (20, 0, 9, 9)])
 
 
@@ -37,5 +37,5 @@ def test_plain_opencv_is_told_what_to_install(monkeypatch):
 
 def test_unknown_method_is_refused():
     """A method that does not exist is named with those that do."""
-    with pytest.raises(TrackerError, match="'kcf'; expected moment or csrt"):
+    with pytest.raises(TrackerError, match="'kcf'; expected one of contour, moment, csrt"):
         BendingTracker(method="kcf")

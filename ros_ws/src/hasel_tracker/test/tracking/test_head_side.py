@@ -4,7 +4,8 @@ from hasel_tracker.render.camera_view import CameraView
 from hasel_tracker.render.degradation import Degradation
 from hasel_tracker.render.motion import BendingMotion
 from hasel_tracker.render.renderer import Renderer
-from hasel_tracker.tracking.head_side import starts_at_head
+from hasel_tracker.tracking.body_link import BodyLink, body_link
+from hasel_tracker.tracking.head_side import head_word, nearer_to, on_side, thicker_first
 
 
 @pytest.mark.parametrize("roll", np.radians([0.0, 70.0, 180.0, 250.0]))
@@ -13,24 +14,30 @@ def test_head_is_the_end_before_the_thicker_half(roll, bend_time_s):
     """However the swimmer lies and bends, the head is told from the tail by the body's thickness."""
     view = CameraView(960, 960, 3600.0, roll_rad=float(roll))
     frame = Renderer(BendingMotion(), view, degradation=Degradation(noise_levels=3.0)).frame(bend_time_s)
-    first, why = starts_at_head(frame.image, frame.markers_px, "auto")
-    reverse, _ = starts_at_head(frame.image, frame.markers_px[::-1], "auto")
-    assert (first, reverse) == (True, False)
-    assert "thicker" in why
+    head, middle, tail = frame.markers_px
+    links = tuple(body_link(frame.image, *pair, 7.2) for pair in ((head, middle), (middle, tail)))
+    assert (thicker_first(links), thicker_first(links[::-1])) == (True, False)
 
 
 @pytest.mark.parametrize(
     ("side", "first"), [("left", True), ("right", False), ("top", False), ("bottom", True)]
 )
 def test_side_as_set(side, first):
-    """A side that is set decides whatever the picture shows."""
+    """A side that is set says which end it is."""
     row = np.array([[100.0, 300.0], [300.0, 200.0], [500.0, 100.0]])
-    assert starts_at_head(np.zeros((400, 600, 3), np.uint8), row, side)[0] is first
+    assert on_side(row, side) is first
 
 
-def test_featureless_body_falls_back_to_the_left_and_says_so():
-    """Without a body to be seen the left end is taken for the head, and the note says that this is a guess."""
-    row = np.array([[500.0, 200.0], [300.0, 200.0], [100.0, 200.0]])
-    first, why = starts_at_head(np.full((400, 600, 3), 180, np.uint8), row, "auto")
-    assert not first
-    assert "left end is taken" in why
+def test_point_near_the_head():
+    """A point that is set says which end is nearer to it."""
+    row = np.array([[100.0, 300.0], [300.0, 200.0], [500.0, 100.0]])
+    assert nearer_to(row, head_word("90,310"))
+    assert not nearer_to(row, head_word("480, 150"))
+    with pytest.raises(ValueError, match="could not convert"):
+        head_word("upwards")
+
+
+@pytest.mark.parametrize("widths", [(30.0, 28.0), (30.0, 25.0), (0.0, 30.0), (float("nan"), 30.0)])
+def test_halves_that_look_alike_are_not_guessed(widths):
+    """Where the two halves are about equally thick, or one cannot be measured, there is no answer."""
+    assert thicker_first(tuple(BodyLink(9.0, width) for width in widths)) is None

@@ -23,7 +23,7 @@ def measured(picture: np.ndarray, near: np.ndarray) -> np.ndarray:
     """Centre found in a picture (float BGR), or NaN."""
     image = np.clip(np.rint(picture), 0, 255).astype(np.uint8)
     outline = nearest_outline(ColourRange().mask(image), near, 450.0)
-    found = measure_marker(image, outline, 3)
+    found = measure_marker(image, outline.contour, 3)
     return np.full(2, np.nan) if found is None else found.centre
 
 
@@ -113,6 +113,6 @@ def test_other_marker_sizes(radius):
     position = np.array([40.3, 39.6])
     image = np.rint(disc(position, WATER, radius)).astype(np.uint8)
     outline = nearest_outline(ColourRange().mask(image), position, np.pi * radius**2)
-    found = measure_marker(image, outline, 3)
+    found = measure_marker(image, outline.contour, 3)
     assert np.linalg.norm(found.centre - position) < 0.01
     assert found.area == pytest.approx(np.pi * radius**2, rel=0.02)

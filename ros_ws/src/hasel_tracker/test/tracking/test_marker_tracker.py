@@ -8,15 +8,24 @@ from hasel_tracker.render.motion import BendingMotion
 from hasel_tracker.render.renderer import Renderer
 from hasel_tracker.tracking.bending_tracker import BendingTracker
 from hasel_tracker.tracking.colour_gate import ColourRange
-from hasel_tracker.tracking.moment_tracker import MomentTracker
+from hasel_tracker.tracking.doubt import Doubt
+from hasel_tracker.tracking.marker_contour import measure_contour
+from hasel_tracker.tracking.marker_moment import measure_marker
+from hasel_tracker.tracking.marker_tracker import MarkerTracker
 from hasel_tracker.tracking.tracker_settings import TrackerSettings
 
 WATER = (188, 196, 198)
 
 
-def test_follows_a_beat(frames):
+def contour_tracker(settings: TrackerSettings = TrackerSettings()) -> MarkerTracker:  # noqa: B008
+    """A tracker with the default method."""
+    return MarkerTracker(settings, measure_contour)
+
+
+@pytest.mark.parametrize("method", [measure_contour, measure_marker])
+def test_follows_a_beat(frames, method):
     """Through a whole beat the markers stay within 0.15 px of the truth, in the right order, with high quality."""
-    tracker = MomentTracker()
+    tracker = MarkerTracker(TrackerSettings(), method)
     for frame in frames:
         markers = tracker.update(frame.image, frame.time_s)
         assert np.abs(markers.positions - frame.markers_px).max() < 0.15
@@ -25,7 +34,7 @@ def test_follows_a_beat(frames):
 
 def test_nothing_to_see_says_what_was_found():
     """An empty picture gives no markers, and a note that says why."""
-    tracker = MomentTracker()
+    tracker = contour_tracker()
     markers = tracker.update(np.full((360, 640, 3), 190, np.uint8), 0.0)
     assert not markers.found.any()
     assert markers.quality.tolist() == [0.0, 0.0, 0.0]
@@ -34,7 +43,7 @@ def test_nothing_to_see_says_what_was_found():
 
 def test_lost_marker_is_nan_while_the_others_are_followed(renderer):
     """In the very frame in which the middle marker is covered it is NaN with quality 0; the others are right."""
-    tracker = MomentTracker()
+    tracker = contour_tracker()
     tracker.update(renderer.frame(0.0).image, 0.0)
     hidden = renderer.frame(1 / 120, 1, hidden=(1,))
     markers = tracker.update(hidden.image, 1 / 120)
@@ -46,7 +55,7 @@ def test_lost_marker_is_nan_while_the_others_are_followed(renderer):
 
 def test_half_covered_marker_is_lost_rather_than_wrong(renderer):
     """A marker half under something is not reported with the centre of its visible half."""
-    tracker = MomentTracker()
+    tracker = contour_tracker()
     frame = renderer.frame(0.0)
     tracker.update(frame.image, 0.0)
     picture = renderer.frame(1 / 120, 1).image.copy()
@@ -60,7 +69,7 @@ def test_half_covered_marker_is_lost_rather_than_wrong(renderer):
 def test_reflection_across_a_marker_is_refused_or_harmless(length_px, width_px):
     """Whatever part of a marker a bright reflection covers, the marker is lost or off by less than a pixel."""
     frame = Renderer(BendingMotion(amplitude_rad=0.0), degradation=Degradation(noise_levels=2.0)).frame(0.0)
-    tracker = MomentTracker()
+    tracker = contour_tracker()
     tracker.update(frame.image, 0.0)
     rows, columns = np.indices(frame.image.shape[:2])
     lost = 0
@@ -78,7 +87,7 @@ def test_reflection_across_a_marker_is_refused_or_harmless(length_px, width_px):
 def test_swimmer_put_back_the_other_way_round(renderer, away_s, kept):
     """Taken out for over a second and put back turned round, its head is found anew; a short gap keeps the order."""
     turned = Renderer(renderer.motion, replace(renderer.view, roll_rad=np.pi)).frame(0.2)
-    tracker = MomentTracker()
+    tracker = contour_tracker()
     before = renderer.frame(0.0)
     tracker.update(before.image, 0.0)
     for time_s in np.arange(0.05, away_s, 0.05):
@@ -91,14 +100,14 @@ def test_swimmer_put_back_the_other_way_round(renderer, away_s, kept):
 
 def test_dropped_frames_do_not_lose_a_fast_marker(frames):
     """With only every third frame the prediction goes by time, so that nothing is lost."""
-    tracker = MomentTracker(TrackerSettings(region_px=8))
+    tracker = contour_tracker(TrackerSettings(region_px=8))
     for frame in frames[::3]:
         assert tracker.update(frame.image, frame.time_s).found.all()
 
 
 def test_markers_of_another_colour(frames):
     """With the colour range set, green markers are followed as well as blue ones."""
-    tracker = MomentTracker(TrackerSettings(colour=ColourRange(40, 80, 90, 35)))
+    tracker = contour_tracker(TrackerSettings(colour=ColourRange(40, 80, 90, 35)))
     green = frames[30].image[..., [1, 0, 2]]
     markers = tracker.update(np.ascontiguousarray(green), 0.0)
     assert np.abs(markers.positions - frames[30].markers_px).max() < 0.2

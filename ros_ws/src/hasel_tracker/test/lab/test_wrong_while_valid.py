@@ -1,0 +1,46 @@
+"""Scenes of another renderer in which a wrong angle was once called valid, and pictures of real laboratories."""
+
+import pytest
+from hasel_tracker.lab.catalogue import ADVERSARIAL, REAL
+from hasel_tracker.lab.wrong_while_valid import measure_honesty
+
+FRAMES = {
+    "tail hidden, a blue dot at its distance": 48,
+    "gliding into the picture": 40,
+    "tail covered at the start": 14,
+    "away for over a second, back turned": 68,
+    "a blue dot drifts past the tail": 24,
+}
+SEVERAL = ("dots", "dot", "two swimmers", "reflection", "tether")
+QUICK = (
+    "electrodes, H.264 crf 28", "textured ground", "exposure × 0.2", "dark tank", "dark body", "dots of 10 px",
+    "640 × 480, dots of 12 px", "30 frames/s, 4 Hz",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("case", ADVERSARIAL, ids=lambda case: case.name)
+def test_no_wrong_angle_is_called_valid(case):
+    """Whatever else is blue, hidden, reflected or alike at both ends: no valid angle is off by more than 0.01."""
+    seeds = 2 if any(word in case.name for word in SEVERAL) and case.name not in FRAMES else 1
+    honesty = measure_honesty(case, FRAMES.get(case.name, 8), seeds)
+    assert honesty.wrong == 0, str(honesty)
+    if case.expected:
+        assert honesty.lost_share < 0.5, str(honesty)
+    if case.name.startswith(("no swimmer", "three blue dots", "body without taper, head on", "two swimmers")):
+        assert honesty.valid == 0, str(honesty)
+
+
+@pytest.mark.parametrize("case", [each for each in REAL if each.name in QUICK], ids=lambda case: case.name)
+def test_pictures_of_real_laboratories_are_tracked(case):
+    """Compressed, dark, small, coarse or textured pictures on default settings: hardly a frame is lost, none wrong."""
+    honesty = measure_honesty(case, 10)
+    assert (honesty.wrong, honesty.lost_share) == (0, pytest.approx(0.0, abs=0.11)), str(honesty)
+    assert honesty.rms_px < 0.3
+    assert honesty.sin_theta_rms < 3e-3
+
+
+def test_the_standard_deviation_from_the_picture_is_about_the_error():
+    """Of noisy pictures without structure by the dots, σ of sin θ is within a factor of three of the true error."""
+    case = next(each for each in REAL if each.name == "Bayer, 4:2:0, noise")
+    honesty = measure_honesty(case, 12)
+    assert honesty.sin_theta_rms / 3 < honesty.sin_theta_std < 3 * honesty.sin_theta_rms
