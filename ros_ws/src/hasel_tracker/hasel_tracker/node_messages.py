@@ -12,7 +12,7 @@ from hasel_tracker.live.health_report import HealthReport
 from hasel_tracker.live.tracking_statistics import Health
 from hasel_tracker.node_parameters import NodeParameter
 from hasel_tracker.tracking.bending_tracker import TrackedFrame
-from hasel_tracker.tracking.marker_set import MARKER_NAMES
+from hasel_tracker.tracking.marker_set import marker_names
 
 
 def stamp(stamp_ns: int) -> Time:
@@ -21,14 +21,18 @@ def stamp(stamp_ns: int) -> Time:
 
 
 def angle_message(tracked: TrackedFrame, stamp_ns: int, frame_id: str) -> BendingAngle:
-    """The bending angle of a frame captured at `stamp_ns`; NaN and not valid if a marker was lost."""
+    """The bending angle of a frame captured at `stamp_ns`; NaN and not valid if a marker was lost or in doubt."""
     message = BendingAngle()
     message.header.stamp, message.header.frame_id = stamp(stamp_ns), frame_id
     message.sin_theta, message.theta, message.valid = tracked.sin_theta, tracked.theta, tracked.valid
-    message.sin_theta_std, message.marker_name = float("nan"), MARKER_NAMES
-    message.marker_x = tracked.markers.positions[:, 0]
-    message.marker_y = tracked.markers.positions[:, 1]
-    message.marker_quality = tracked.markers.quality
+    message.sin_theta_std, message.doubt = tracked.sin_theta_std, int(tracked.markers.doubt)
+    message.marker_name = list(tracked.markers.names)
+    message.marker_x = tracked.markers.positions[:, 0].tolist()
+    message.marker_y = tracked.markers.positions[:, 1].tolist()
+    message.marker_quality = tracked.markers.quality.tolist()
+    if tracked.positions_m is not None:
+        message.marker_x_m = tracked.positions_m[:, 0].tolist()
+        message.marker_y_m = tracked.positions_m[:, 1].tolist()
     return message
 
 
@@ -50,7 +54,7 @@ def diagnostic_status(
         "frames without angle": f"{health.lost_share:.3f}",
         **{
             f"quality of {name}": f"{value:.2f}"
-            for name, value in zip(MARKER_NAMES, health.quality, strict=True)
+            for name, value in zip(marker_names(len(health.quality)), health.quality, strict=True)
         },
         **details,
     }

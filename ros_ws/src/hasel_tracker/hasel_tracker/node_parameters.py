@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from hasel_tracker.calibration.settings_file import COLOUR_KEYS, SEARCH_KEYS, flat
+from hasel_tracker.tracking.bending_tracker import DEFAULT_METHOD
 from hasel_tracker.tracking.tracker_settings import METHODS, TrackerSettings
 
 
@@ -38,8 +39,10 @@ PARAMETERS = (
     NodeParameter("exposure", -1.0, "in the camera driver's units; -1 leaves it to the camera", -1.0, 1e6),
     NodeParameter("queue_size", 8, "frames that may wait; the oldest is dropped when full", 1, 1000),
     NodeParameter("decode_threads", 2, "threads that decode JPEG", 1, 16),
-    NodeParameter("method", "moment", "how markers are located", choices=METHODS),
+    NodeParameter("method", DEFAULT_METHOD, "how markers are located", choices=METHODS),
     NodeParameter("calibration", "", "file from `calibrate board`; empty for none"),
+    NodeParameter("roi", "", "look only within X,Y,WIDTH,HEIGHT of the picture; empty for all of it [px]"),
+    NodeParameter("at", "", "the markers in the first frame, X,Y X,Y …, head first; empty to find them [px]"),
     NodeParameter("mirrored", False, "the camera looks from below or over a mirror"),
     NodeParameter("frame_id", "camera", "of the stamped messages"),
     NodeParameter("preview_rate", 5.0, "of the annotated picture; 0 for none [1/s]", 0.0, 30.0),
@@ -55,6 +58,13 @@ PARAMETERS = (
     _search("region_px", "how far a marker may be from its prediction [px]", 2, 500),
     _search("edge_px", "half width of the band of a marker's edge; more if blurred [px]", 2, 50),
     _search("head", "auto, the side of the picture on which the head starts, or a point X,Y near it"),
+    _search("marker_count", "how many markers, in order along the body", 2, 15),
+    _search(
+        "rest_direction_deg",
+        "of two markers: where the straight body points, anticlockwise from right [°]",
+        -180.0,
+        180.0,
+    ),
     _search("minimum_quality", "below it a marker counts as lost", 0.0, 1.0),
 )
 SEARCH_NAMES = COLOUR_KEYS + SEARCH_KEYS

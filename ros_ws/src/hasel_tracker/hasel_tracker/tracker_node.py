@@ -7,6 +7,7 @@ from datetime import datetime
 from pathlib import Path
 
 import cv2
+import numpy as np
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_interfaces.msg import BendingAngle
@@ -115,6 +116,8 @@ class TrackerNode(Node):
             self._value("method"),
             CameraCalibration.load(Path(calibration)) if calibration else None,
             self._value("mirrored"),
+            roi=_region(self._value("roi")),
+            start_at=_points(self._value("at")),
         )
 
     def _publish(self, frame: Frame, tracked: TrackedFrame) -> None:
@@ -185,6 +188,24 @@ class TrackerNode(Node):
     def _apply_settings(self, parameters: list[Parameter]) -> None:
         if any(each.name in SEARCH_NAMES for each in parameters):
             self._live.tracker = self._new_tracker({})
+
+
+def _region(text: str) -> tuple[int, int, int, int] | None:
+    try:
+        x, y, width, height = (int(part) for part in text.split(",")) if text else (0,) * 4
+    except ValueError:
+        raise TrackerError(f"The parameter roi is '{text}'; expected X,Y,WIDTH,HEIGHT in pixels.") from None
+    return (x, y, width, height) if text else None
+
+
+def _points(text: str) -> np.ndarray | None:
+    try:
+        points = np.array([[float(part) for part in word.split(",")] for word in text.split()])
+    except ValueError:
+        points = np.zeros(1)
+    if text and (points.ndim != 2 or points.shape[1] != 2):
+        raise TrackerError(f"The parameter at is '{text}'; expected X,Y X,Y … in pixels, head first.")
+    return points if text else None
 
 
 def main() -> int:

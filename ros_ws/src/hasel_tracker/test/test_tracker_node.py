@@ -151,12 +151,17 @@ def test_image_topic_services_and_parameters(observer, start, frames, tmp_path):
 
     started_video = observer.call(SetBool, "/hasel_tracker/record_video", SetBool.Request(data=True))
     assert started_video.success
-    seen = show(frames[40].image, 1000)
-    assert seen.header.stamp.sec == 1000
+    assert show(frames[40].image, 1000).doubt == BendingAngle.STARTING
+    assert not show(frames[40].image, 1001).valid
+    seen = show(frames[40].image, 1002)
+    assert seen.valid
+    assert seen.header.stamp.sec == 1002
+    assert [*seen.marker_name] == ["head", "middle", "tail"]
+    assert 0.0 < seen.sin_theta_std < 0.01
     assert seen.sin_theta == pytest.approx(frames[40].sin_theta, abs=2e-3)
     assert [*seen.marker_x] == pytest.approx(frames[40].markers_px[:, 0], abs=0.2)
 
-    blank = show(np.full_like(frames[0].image, 190), 1001)
+    blank = show(np.full_like(frames[0].image, 190), 1003)
     assert not blank.valid
     assert np.isnan([blank.sin_theta, blank.theta, *blank.marker_x, *blank.marker_y]).all()
     assert [*blank.marker_quality] == [0.0, 0.0, 0.0]
@@ -164,7 +169,7 @@ def test_image_topic_services_and_parameters(observer, start, frames, tmp_path):
     finished = observer.call(SetBool, "/hasel_tracker/record_video", SetBool.Request(data=False))
     assert finished.success
     source = VideoSource(Path(started_video.message))
-    assert len(list(source)) == 2
+    assert len(list(source)) == 4
     assert source.start_stamp_ns == 1000 * 10**9
     assert not observer.call(SetBool, "/hasel_tracker/record_video", SetBool.Request(data=False)).success
 
@@ -174,14 +179,14 @@ def test_image_topic_services_and_parameters(observer, start, frames, tmp_path):
 
     refused = set_parameter("head", "north")
     assert not refused.successful
-    assert "expected one of auto, left" in refused.reason
+    assert "expected auto, left" in refused.reason
     assert not set_parameter("width", 640).successful
     assert set_parameter("hue_low", 40).successful
     assert set_parameter("hue_high", 80).successful
-    assert not show(frames[40].image, 1002).valid  # blue markers are not looked for any more
+    assert not show(frames[40].image, 1004).valid  # blue markers are not looked for any more
     assert set_parameter("hue_high", 130).successful
     assert observer.call(Trigger, "/hasel_tracker/restart", Trigger.Request()).success
-    assert show(frames[40].image, 1003).valid
+    assert [show(frames[40].image, stamp_s).valid for stamp_s in (1005, 1006, 1007)] == [False, False, True]
 
     request = DescribeParameters.Request(names=["frame_rate"])
     described = observer.call(DescribeParameters, "/hasel_tracker/describe_parameters", request).descriptors[
@@ -198,7 +203,7 @@ def test_image_topic_services_and_parameters(observer, start, frames, tmp_path):
     [
         (["source:=/nowhere/video.mp4"], "/nowhere/video.mp4 does not exist"),
         (["source:=/dev/video97"], "The camera /dev/video97 cannot be opened"),
-        (["source:=topic:/x", "head:=north"], "expected one of auto"),
+        (["source:=topic:/x", "head:=north"], "expected auto"),
         (["source:=topic:/x", "calibration:=none.yaml"], "The calibration none.yaml cannot be read"),
     ],
 )
@@ -213,7 +218,7 @@ def test_impossible_start_ends_with_one_sentence(start, parameters, message):
 
 def test_angle_message_of_a_frame(frames):
     """The message has the frame's stamp to the nanosecond, pixels and qualities in the order head, middle, tail."""
-    tracked = BendingTracker().update(frames[30].image, 0.25)
+    tracked = BendingTracker().update(frames[30].image, 0.25, frames[30].markers_px)
     message = angle_message(tracked, 1_700_000_000_123_456_789, "camera")
     assert (message.header.stamp.sec, message.header.stamp.nanosec) == (1_700_000_000, 123_456_789)
     assert message.header.frame_id == "camera"

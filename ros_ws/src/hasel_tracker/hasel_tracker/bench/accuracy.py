@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
+from hasel_tracker.offline.tracked_run import track_frames
 from hasel_tracker.render.background import filling
 from hasel_tracker.render.camera_view import CameraView
 from hasel_tracker.render.degradation import Degradation
 from hasel_tracker.render.motion import BendingMotion
 from hasel_tracker.render.renderer import RenderedFrame, Renderer
-from hasel_tracker.offline.tracked_run import track_frames
 from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.video_source import VideoSource
 from hasel_tracker.tracking.bending_tracker import DEFAULT_METHOD, BendingTracker

@@ -7,11 +7,11 @@ import cv2
 import numpy as np
 
 from hasel_tracker.bench.accuracy import FRAME_RATE_HZ
+from hasel_tracker.offline.tracked_run import track_frames
 from hasel_tracker.render.camera_view import CameraView
 from hasel_tracker.render.degradation import Degradation
 from hasel_tracker.render.motion import BendingMotion, SampledMotion
 from hasel_tracker.render.renderer import RenderedFrame, Renderer
-from hasel_tracker.offline.tracked_run import track_frames
 from hasel_tracker.sources.frame import Frame
 from hasel_tracker.tracking.bending_tracker import BendingTracker
 
@@ -102,7 +102,8 @@ def measure_robustness(case: str, count: int, width_px: int = 1920) -> Robustnes
     """Track a case with default settings and compare with the truth."""
     shown = list(CASES[case](count, width_px))
     run = track_frames(
-        (Frame(index, frame.time_s, image=frame.image) for index, (frame, _) in enumerate(shown)), BendingTracker()
+        (Frame(index, frame.time_s, image=frame.image) for index, (frame, _) in enumerate(shown)),
+        BendingTracker(),
     )
     unseen = false_angles = late = 0
     for (frame, seen), valid, positions in zip(shown, run.valid, run.markers_px, strict=True):

@@ -12,7 +12,7 @@ from hasel_tracker.calibration.board_calibration import VIEWS_FOR_LENS, Board, c
 from hasel_tracker.calibration.colour_learning import learn_colour
 from hasel_tracker.calibration.learned_picture import learned_picture
 from hasel_tracker.calibration.settings_file import save_settings
-from hasel_tracker.commands.command import run_command
+from hasel_tracker.commands.command import point, run_command
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.sources.folder_source import IMAGE_SUFFIXES
 from hasel_tracker.sources.video_source import VideoSource
@@ -24,7 +24,7 @@ def parser() -> argparse.ArgumentParser:
     kinds = options.add_subparsers(dest="kind", required=True)
     colour = kinds.add_parser("colour", help="learn the markers' colour and size from one frame")
     colour.add_argument("frame", type=Path, help="image, or video (its first frame)")
-    colour.add_argument("--at", type=_point, nargs=3, metavar="X,Y", help="a pixel on each marker, any order")
+    colour.add_argument("--at", type=point, nargs="+", metavar="X,Y", help="a pixel on each marker")
     colour.add_argument(
         "--output", "-o", type=Path, default=Path("markers.yaml"), help="default: %(default)s"
     )
@@ -85,11 +85,6 @@ def _image(path: Path) -> np.ndarray:
             raise TrackerError(f"{path} is not a readable image; give a PNG or JPEG file.")
         return image
     return next(iter(VideoSource(path, threads=1))).image
-
-
-def _point(text: str) -> tuple[float, float]:
-    x, _, y = text.partition(",")
-    return float(x), float(y)
 
 
 if __name__ == "__main__":

@@ -31,3 +31,9 @@ def progress_bar() -> Progress:
         TimeRemainingColumn(),
         console=Console(stderr=True),
     )
+
+
+def point(text: str) -> tuple[float, float]:
+    """A point X,Y of the command line [px]."""
+    x, _, y = text.partition(",")
+    return float(x), float(y)

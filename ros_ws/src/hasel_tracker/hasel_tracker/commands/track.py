@@ -3,13 +3,17 @@
 import argparse
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
 from hasel_tracker.calibration.settings_file import load_settings
-from hasel_tracker.commands.command import progress_bar, run_command
+from hasel_tracker.commands.command import point, progress_bar, run_command
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.offline.drive import Alignment, Drive, align_by_movement, align_by_stamp, read_drive
+from hasel_tracker.offline.fixes import read_fixes
 from hasel_tracker.offline.movement import cut_to_periods
 from hasel_tracker.offline.run_output import write_run
 from hasel_tracker.offline.tracked_run import TrackedRun, track_frames
@@ -17,7 +21,7 @@ from hasel_tracker.sources.folder_source import FolderSource
 from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.open_source import open_recorded
 from hasel_tracker.sources.video_source import VideoSource
-from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
+from hasel_tracker.tracking.bending_tracker import DEFAULT_METHOD, BendingTracker, TrackedFrame
 from hasel_tracker.tracking.tracker_settings import METHODS, TrackerSettings
 from hasel_tracker.video.annotation import annotate
 from hasel_tracker.video.video_writer import H264Writer
@@ -25,15 +29,34 @@ from hasel_tracker.video.video_writer import H264Writer
 
 def parser() -> argparse.ArgumentParser:
     """The command's options."""
-    options = argparse.ArgumentParser(prog="track", description="Track the three markers of a video.")
+    options = argparse.ArgumentParser(prog="track", description="Track the markers of a video.")
     options.add_argument("video", type=Path, help="video file, or folder of images")
     options.add_argument("--output", "-o", type=Path, required=True, help="recording to write: .csv or .mcap")
     options.add_argument(
         "--annotate", type=Path, metavar="VIDEO", help="write a video of what was found (H.264)"
     )
-    options.add_argument("--method", choices=METHODS, default="moment", help="default: %(default)s")
+    options.add_argument("--method", choices=METHODS, default=DEFAULT_METHOD, help="default: %(default)s")
     options.add_argument(
-        "--box", type=_box, nargs=3, metavar="X,Y,W,H", help="boxes for csrt: head, middle, tail"
+        "--markers", type=int, metavar="N", help="how many, 2 to 15 (default: 3, or as --settings says)"
+    )
+    options.add_argument(
+        "--head", metavar="SIDE", help="where the head is in the first frame: left, right, top, bottom or X,Y"
+    )
+    options.add_argument(
+        "--at",
+        type=point,
+        nargs="+",
+        metavar="X,Y",
+        help="the markers in the first frame, head first, by hand",
+    )
+    options.add_argument(
+        "--fix", type=Path, metavar="FILE", help="frames and the markers' positions in them, by hand (YAML)"
+    )
+    options.add_argument(
+        "--roi", type=_region, metavar="X,Y,W,H", help="look only within this part of the picture"
+    )
+    options.add_argument(
+        "--box", type=_box, nargs="+", metavar="X,Y,W,H", help="boxes for csrt, from head to tail"
     )
     options.add_argument("--settings", type=Path, help="colour, size and region, from `calibrate colour`")
     options.add_argument("--calibration", type=Path, help="lens and perspective, from `calibrate board`")
@@ -67,22 +90,25 @@ def _track(options: argparse.Namespace) -> None:
         )
     drive = None if options.drive is None else read_drive(options.drive)
     source = open_recorded(options.video, options.frame_rate)
+    placed = {} if options.fix is None else read_fixes(options.fix)
+    placed |= {} if options.at is None else {0: np.array(options.at)}
     tracker = BendingTracker(
-        load_settings(options.settings) if options.settings else TrackerSettings(),
+        _settings(options, placed),
         options.method,
         CameraCalibration.load(options.calibration) if options.calibration else None,
         options.mirrored,
         options.box,
+        options.roi,
     )
-    run = _follow(source, tracker, options.annotate)
+    run = _follow(source, tracker, options.annotate, placed)
     print(f"{options.video}: {run}")
     if source.damaged_frames:
         print(f"warning: {source.damaged_frames} frames are damaged and were left out.", file=sys.stderr)
     print(f"Markers: {tracker.note}.")
     if not run.valid.any():
         raise TrackerError(
-            f"No frame of {options.video} shows three markers ({tracker.note}); "
-            "learn their colour with `calibrate colour`."
+            f"No frame of {options.video} gives an angle ({tracker.note}); point at the markers with --at, or learn "
+            "their colour with `calibrate colour`."
         )
     alignment = None if drive is None else _align(run, drive, options.merge)
     if alignment is not None:
@@ -97,7 +123,10 @@ def _track(options: argparse.Namespace) -> None:
 
 
 def _follow(
-    source: VideoSource | FolderSource, tracker: BendingTracker, annotated: Path | None
+    source: VideoSource | FolderSource,
+    tracker: BendingTracker,
+    annotated: Path | None,
+    placed: dict[int, np.ndarray],
 ) -> TrackedRun:
     video = None if annotated is None else H264Writer(annotated, source.frame_rate_hz)
     with progress_bar() as progress:
@@ -109,7 +138,7 @@ def _follow(
             progress.advance(task)
 
         try:
-            return track_frames(source, tracker, seen, source.start_stamp_ns)
+            return track_frames(source, tracker, seen, source.start_stamp_ns, placed)
         finally:
             if video is not None:
                 video.close()
@@ -125,6 +154,26 @@ def _align(run: TrackedRun, drive: Drive, merge: str) -> Alignment:
 def _metadata(options: argparse.Namespace) -> dict[str, str]:
     metadata = {"source": options.video.name, "tracking_method": options.method}
     return metadata | ({"model": options.model} if options.model else {})
+
+
+def _settings(options: argparse.Namespace, placed: dict[int, np.ndarray]) -> TrackerSettings:
+    """Settings from the file, with what the command line says beside it."""
+    settings = load_settings(options.settings) if options.settings else TrackerSettings()
+    if options.head is not None:
+        settings = replace(settings, head=options.head)
+    counts = {len(points) for points in placed.values()} | ({options.markers} - {None})
+    if len(counts) > 1:
+        raise TrackerError(
+            f"The numbers of markers given differ ({sorted(counts)}); give all markers everywhere."
+        )
+    return replace(settings, marker_count=counts.pop()) if counts else settings
+
+
+def _region(text: str) -> tuple[int, int, int, int]:
+    values = [int(part) for part in text.split(",")]
+    if len(values) != 4 or min(values) < 0:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a region X,Y,WIDTH,HEIGHT in pixels")
+    return tuple(values)
 
 
 def _box(text: str) -> tuple[int, int, int, int]:

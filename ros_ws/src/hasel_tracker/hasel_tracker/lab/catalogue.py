@@ -39,7 +39,8 @@ def _scattered(seed: int, count: int, swimmers: tuple[LabSwimmer, ...]) -> LabSc
     """Dots anywhere in the picture, of sizes like a marker's or not."""
     random = np.random.default_rng(seed)
     dots = tuple(
-        BlueDot(*random.uniform([60, 60], [1220, 660]), radius=float(random.uniform(7, 17))) for _ in range(count)
+        BlueDot(*random.uniform([60, 60], [1220, 660]), radius=float(random.uniform(7, 17)))
+        for _ in range(count)
     )
     turned = tuple(_somewhere(random, each) for each in swimmers)
     return LabScene(turned, dots, seed=seed, exposure_s=0.0)
@@ -97,9 +98,14 @@ ADVERSARIAL = (
     LabCase("tail hidden, a blue dot at its distance", _dot_for_hidden_tail),
     LabCase(
         "gliding into the picture",
-        _one(LabScene((replace(RIGHT_WAY, start_px=(-120.0, 360.0), drift_px_s=(500.0, 0.0), rest_s=0.05),),
-                      exposure_s=0.0, frame_rate_hz=60.0)),
-    ),  # fmt: skip
+        _one(
+            LabScene(
+                (replace(RIGHT_WAY, start_px=(-120.0, 360.0), drift_px_s=(500.0, 0.0), rest_s=0.05),),
+                exposure_s=0.0,
+                frame_rate_hz=60.0,
+            )
+        ),
+    ),
     LabCase(
         "tail covered at the start",
         _one(LabScene((replace(RIGHT_WAY, hidden=((TAIL, 0.0, 0.05),)),), exposure_s=0.0)),
@@ -122,18 +128,21 @@ ADVERSARIAL = (
         lambda seed: LabScene(
             (replace(RIGHT_WAY, bend_rad=0.4),),
             (BlueDot(890.0, 180.0 + 12 * seed, velocity=(60.0, 560.0)),),
-            seed=seed, exposure_s=0.0,
-        ),
-        expected=False,
-    ),  # fmt: skip
-    LabCase(
-        "tether across a dot's rim",
-        lambda seed: LabScene(
-            (replace(RIGHT_WAY, bend_rad=0.3),), bars=((650.0, 0.0, 640.0 + 4.0 * seed, 720.0, 4.0),), seed=seed,
+            seed=seed,
             exposure_s=0.0,
         ),
         expected=False,
-    ),  # fmt: skip
+    ),
+    LabCase(
+        "tether across a dot's rim",
+        lambda seed: LabScene(
+            (replace(RIGHT_WAY, bend_rad=0.3),),
+            bars=((650.0, 0.0, 640.0 + 4.0 * seed, 720.0, 4.0),),
+            seed=seed,
+            exposure_s=0.0,
+        ),
+        expected=False,
+    ),
 )
 
 RAW = LabScene((replace(RIGHT_WAY, electrodes=True),))
@@ -151,18 +160,25 @@ REAL = (
     LabCase("defocus σ 3 px", _one(replace(RAW, camera=LabCamera(blur_px=3.0)))),
     LabCase("motion blur 8 ms", _one(replace(RAW, exposure_s=0.008))),
     LabCase("dark tank", _one(replace(RAW, water=(38.0, 36.0, 32.0)))),
-    LabCase(
-        "dark body", _one(LabScene((replace(RIGHT_WAY, body_colour=(58.0, 56.0, 54.0)),)))
-    ),
+    LabCase("dark body", _one(LabScene((replace(RIGHT_WAY, body_colour=(58.0, 56.0, 54.0)),)))),
     LabCase("dots of 10 px", _one(LabScene((replace(RIGHT_WAY, dot_radius_px=5.0, half_width_px=16.0),)))),
     LabCase("dots of 60 px", _one(LabScene((replace(RIGHT_WAY, dot_radius_px=30.0, half_width_px=50.0),)))),
     LabCase(
         "640 × 480, dots of 12 px",
-        _one(LabScene((LabSwimmer(480.0, (80.0, 240.0), dot_radius_px=6.0, half_width_px=18.0,
-                                  fin_half_width_px=2.0),), size_px=(640, 480))),
-    ),  # fmt: skip
+        _one(
+            LabScene(
+                (
+                    LabSwimmer(
+                        480.0, (80.0, 240.0), dot_radius_px=6.0, half_width_px=18.0, fin_half_width_px=2.0
+                    ),
+                ),
+                size_px=(640, 480),
+            )
+        ),
+    ),
     LabCase(
-        "30 frames/s, 4 Hz", _one(LabScene((replace(RIGHT_WAY, frequency_hz=4.0, bend_rad=0.6),), frame_rate_hz=30.0))
+        "30 frames/s, 4 Hz",
+        _one(LabScene((replace(RIGHT_WAY, frequency_hz=4.0, bend_rad=0.6),), frame_rate_hz=30.0)),
     ),
 )
 CASES = (*ADVERSARIAL, *REAL)

@@ -44,8 +44,8 @@ class LabScene:
     """Everything before the camera. The first of `swimmers` is the one whose truth is given; there may be none.
 
     texture: contrast of a random ground in grey levels, 0 for plain water; grain_px: size of its grains. reflection:
-    (y of the wall [px], strength): the first swimmer, mirrored, seen in a pane before it. bars: dark lines (x0, y0, x1, y1, width) before the
-    swimmer, such as a tether. shadow: share of light that the swimmer's shadow takes.
+    (y of the wall [px], strength): the first swimmer, mirrored, seen in a pane before it. bars: dark lines (x0, y0, x1,
+    y1, width) before the swimmer, such as a tether. shadow: share of light that the swimmer's shadow takes.
     """
 
     swimmers: tuple[LabSwimmer, ...] = (LabSwimmer(),)

@@ -96,14 +96,18 @@ class LabSwimmer:
 
     def _half_width(self, station: np.ndarray) -> np.ndarray:
         nose = np.sqrt(np.clip(station / 0.06, 0.0, 1.0))
-        body = self.half_width_px * nose * (1.0 - (1.0 - self.taper) * np.clip(station / self.fin_from, 0.0, 1.0))
+        body = (
+            self.half_width_px
+            * nose
+            * (1.0 - (1.0 - self.taper) * np.clip(station / self.fin_from, 0.0, 1.0))
+        )
         return np.where(station < self.fin_from, body, self.fin_half_width_px)
 
     def _electrodes(self, canvas: Canvas, line: np.ndarray, station: float, strength: float) -> None:
         """Dark bars across the body, a few pixels before and behind a dot."""
         gap = (self.dot_radius_px + 3.5) / self.length_px
         for begin, end in ((station - gap - 0.03, station - gap), (station + gap, station + gap + 0.03)):
-            if 0.0 <= begin and end < self.fin_from:
+            if begin >= 0.0 and end < self.fin_from:
                 part = line[round(begin * SEGMENTS) : round(end * SEGMENTS) + 1]
                 if len(part) > 1:
                     canvas.strip(part, np.full(len(part), 0.45 * self.half_width_px), DARK, strength)

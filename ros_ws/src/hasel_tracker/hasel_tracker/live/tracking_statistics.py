@@ -10,7 +10,7 @@ from hasel_tracker.tracking.bending_tracker import TrackedFrame
 
 @dataclass(frozen=True)
 class Health:
-    """One interval: frame rate [1/s], latency from capture to angle [s], mean quality (3,), share lost."""
+    """One interval: frame rate [1/s], latency from capture to angle [s], mean quality (m,), share lost."""
 
     frames: int
     frame_rate_hz: float
@@ -49,7 +49,7 @@ class TrackingStatistics:
             frames = len(self._stamps)
             if frames == 0:
                 nothing = float("nan")
-                return Health(0, 0.0, nothing, nothing, np.zeros(3), nothing)
+                return Health(0, 0.0, nothing, nothing, np.zeros(0), nothing)
             span_s = (self._stamps[-1] - self._stamps[0]) * 1e-9
             health = Health(
                 frames,

@@ -11,7 +11,7 @@ from hasel_recording.topics import MEASURED, STATE
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.offline.drive import Alignment, Drive
 from hasel_tracker.offline.tracked_run import TrackedRun
-from hasel_tracker.tracking.marker_set import MARKER_NAMES
+from hasel_tracker.tracking.marker_set import marker_names
 
 ACTIVE = 2  # SupplyState.ACTIVE
 UNKNOWN = [float("nan")] * 2
@@ -38,7 +38,11 @@ def write_run(
 def _write_csv(path: Path, run: TrackedRun, drive: Drive | None, metadata: dict[str, str]) -> str:
     time_s = run.time_s - run.time_s[0]
     voltage = None if drive is None else drive.at(time_s)
-    recording = Recording(path.stem, time_s, run.sin_theta, voltage, run.markers_px, "px", metadata=metadata)
+    markers, unit = (run.markers_px, "px") if run.markers_m is None else (run.markers_m, "m")
+    names = marker_names(markers.shape[1])
+    recording = Recording(
+        path.stem, time_s, run.sin_theta, voltage, markers, unit, metadata=metadata, marker_names=names
+    )
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", RecordingWarning)
         write_recording(recording, path)
@@ -60,9 +64,12 @@ def _angle(run: TrackedRun, index: int) -> dict[str, object]:
     return bending_angle_message(
         float(run.sin_theta[index]),
         float(run.theta[index]),
-        marker_names=MARKER_NAMES,
-        pixels=run.markers_px[index],
-        quality=run.quality[index],
+        float("nan") if run.sin_theta_std is None else float(run.sin_theta_std[index]),
+        marker_names(run.markers_px.shape[1]),
+        run.markers_px[index],
+        None if run.markers_m is None else run.markers_m[index],
+        run.quality[index],
+        0 if run.doubt is None else int(run.doubt[index]),
     )
 
 

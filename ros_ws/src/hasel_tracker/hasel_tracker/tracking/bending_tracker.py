@@ -51,7 +51,9 @@ class TrackedFrame:
     def believed(self) -> "TrackedFrame":
         """The same frame after a later one has vouched for it."""
         sin_theta, theta = self.held
-        return replace(self, sin_theta=sin_theta, theta=theta, markers=replace(self.markers, doubt=Doubt.NONE))
+        return replace(
+            self, sin_theta=sin_theta, theta=theta, markers=replace(self.markers, doubt=Doubt.NONE)
+        )
 
     def __str__(self) -> str:
         if self.valid:
@@ -64,7 +66,8 @@ class TrackedFrame:
 class BendingTracker:
     """Tracks with a method and turns positions into the angle.
 
-    roi: (x, y, width, height) [px] outside of which nothing is looked at.
+    roi: (x, y, width, height) [px] outside of which nothing is looked at. start_at: (m, 2) [px], where a person says
+    that the markers are in the first image.
     """
 
     def __init__(
@@ -75,6 +78,7 @@ class BendingTracker:
         mirrored: bool = False,
         boxes: list[tuple[int, int, int, int]] | None = None,
         roi: tuple[int, int, int, int] | None = None,
+        start_at: np.ndarray | None = None,
     ) -> None:
         if method not in METHODS:
             raise TrackerError(f"The tracking method is '{method}'; expected one of {', '.join(METHODS)}.")
@@ -82,6 +86,7 @@ class BendingTracker:
         self.calibration = calibration
         self.mirrored = mirrored
         self.roi = roi
+        self._start_at = start_at
         self._markers = _method(method, settings, boxes)
 
     @property
@@ -100,12 +105,15 @@ class BendingTracker:
                 f"BGR order."
             )
         view, corner = _within(image, self.roi)
+        at, self._start_at = self._start_at if at is None else at, None
         if at is None:
             markers = self._markers.update(view, time_s)
         elif isinstance(self._markers, MarkerTracker):
             markers = self._markers.place(view, np.asarray(at, float) - corner, time_s)
         else:
-            raise TrackerError("Markers can be pointed at only with the methods contour and moment; use one of them.")
+            raise TrackerError(
+                "Markers can be pointed at only with the methods contour and moment; use one of them."
+            )
         markers = replace(markers, positions=markers.positions + corner)
         return self._angle(markers, time_s, image.shape[1::-1])
 
@@ -125,7 +133,9 @@ class BendingTracker:
         shown = angle if seen else (float("nan"), float("nan"))
         return TrackedFrame(time_s, markers, *shown, std, positions_m, angle)
 
-    def _standard_deviation(self, points: np.ndarray, sigma_px: np.ndarray, slopes: np.ndarray | None) -> float:
+    def _standard_deviation(
+        self, points: np.ndarray, sigma_px: np.ndarray, slopes: np.ndarray | None
+    ) -> float:
         """Standard deviation of sin θ from that of the markers [px]; slopes: (2, m, 2) of the plane per pixel."""
         if not np.isfinite(points).all():
             return float("nan")
@@ -141,9 +151,7 @@ class BendingTracker:
         return float(np.sqrt(variance))
 
 
-def _method(
-    method: str, settings: TrackerSettings, boxes: list[tuple[int, int, int, int]] | None
-) -> _Method:
+def _method(method: str, settings: TrackerSettings, boxes: list[tuple[int, int, int, int]] | None) -> _Method:
     if method == "csrt":
         return CsrtTracker(settings, boxes)
     return MarkerTracker(settings, measure_marker if method == "moment" else measure_contour)

@@ -27,7 +27,7 @@ LEAST_EVIDENCE = 5.0  # random grounds reach 4.8 in hundreds of trials, bodies h
 WIDEST_SHARE = 0.2
 SKIN_RADII = 0.7
 LEAST_CONTRAST = 5.0
-CLEAR_OF_RIM = 2.0
+CLEAR_OF_RIM = 2.5
 
 
 @dataclass(frozen=True)
@@ -189,7 +189,11 @@ def _width(colours: np.ndarray, path: np.ndarray, beside: np.ndarray, centre: in
     rim = max(half // 4, 2)
     # Light that falls from one side to the other is no body.
     left_rim, right_rim = np.median(profile[:rim], axis=0), np.median(profile[-rim:], axis=0)
-    profile = profile - 0.5 * (left_rim + right_rim) - (reach / (2.0 * half - rim))[:, None] * (right_rim - left_rim)
+    profile = (
+        profile
+        - 0.5 * (left_rim + right_rim)
+        - (reach / (2.0 * half - rim))[:, None] * (right_rim - left_rim)
+    )
     skin_colour = 0.5 * (profile[half - skin] + profile[half + skin])
     contrast = float(np.linalg.norm(skin_colour))
     rest = np.median(np.linalg.norm(np.concatenate([profile[:rim], profile[-rim:]]), axis=1))
@@ -197,8 +201,9 @@ def _width(colours: np.ndarray, path: np.ndarray, beside: np.ndarray, centre: in
         return 2.0 * skin if contrast < LEAST_CONTRAST else float("nan")
     share = profile @ skin_colour / contrast**2
     share[half - skin : half + skin + 1] = 1.0
-    # What is no wider than the skin's distance from the path, such as a spine beside it, does not end the body.
-    body = np.convolve(share >= 0.5, np.ones(skin + 1), mode="full")
-    right = np.flatnonzero(body[half + skin :] < 0.5)
+    # What is no wider than a dot's radius, such as a spine beside the path, does not end the body.
+    gap = 1 + round(skin / SKIN_RADII)
+    body = np.convolve(share >= 0.5, np.ones(gap + 1), mode="full")
+    right = np.flatnonzero(body[half + gap :] < 0.5)
     left = np.flatnonzero(body[: half + 1][::-1] < 0.5)
     return float((right[0] if right.size else half + 1) + (left[0] if left.size else half + 1) - 1)

@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.tracking.marker_set import MarkerSet
 from hasel_tracker.tracking.marker_moment import measure_marker
+from hasel_tracker.tracking.marker_set import MarkerSet
 from hasel_tracker.tracking.marker_tracker import MarkerTracker
 from hasel_tracker.tracking.tracker_settings import TrackerSettings
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from hasel_tracker.tracking.body_link import BodyLink
 
-CLEAR_RATIO = 1.3
+CLEAR_RATIO = 1.5
 SIDES = ("left", "right", "top", "bottom")
 
 

@@ -105,7 +105,9 @@ def _measure(
     steps = np.arange(-edge_px - 1.0, edge_px + OUTSIDE_PX, STEP_PX)
     reach = np.maximum(rough[:, None] + steps, 0.0)
     points = (start + reach[..., None] * direction[:, None, :]).astype(np.float32)
-    values = cv2.remap(signal, points[..., 0], points[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    values = cv2.remap(
+        signal, points[..., 0], points[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
+    )
     middle = start + 0.5 * (rough[:, None] * direction)
     inner = cv2.remap(
         signal, middle[None, :, 0].astype(np.float32), middle[None, :, 1].astype(np.float32), cv2.INTER_LINEAR

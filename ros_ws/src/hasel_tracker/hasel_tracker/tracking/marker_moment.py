@@ -73,7 +73,13 @@ def _measure(
     sigma_px = noise * np.sqrt(0.5 * band * area / np.pi) / area
     clarity = 1.0 / (1.0 + (noise / NOISE_AT_HALF_QUALITY) ** 2)
     return MarkerMeasurement(
-        np.add(centre, (left, top)), area, contrast, surroundings.noise, solidity, float(sigma_px), float(clarity)
+        np.add(centre, (left, top)),
+        area,
+        contrast,
+        surroundings.noise,
+        solidity,
+        float(sigma_px),
+        float(clarity),
     )
 
 

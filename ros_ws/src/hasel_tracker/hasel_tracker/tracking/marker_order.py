@@ -67,7 +67,9 @@ def misplaced(positions: np.ndarray, residual_px: np.ndarray, chords: np.ndarray
         if votes[0] != votes[1]:
             blame[first if votes[0] > votes[1] else last] = True
         else:
-            blame[first if np.nan_to_num(residual_px[first]) >= np.nan_to_num(residual_px[last]) else last] = True
+            blame[
+                first if np.nan_to_num(residual_px[first]) >= np.nan_to_num(residual_px[last]) else last
+            ] = True
     return blame
 
 

@@ -65,7 +65,12 @@ def possible_rows(blobs: list[Blob], count: int) -> list[tuple[int, ...]]:
 
 
 def _step_cost(
-    row: tuple[int, ...], index: int, centres: np.ndarray, areas: np.ndarray, radii: np.ndarray, apart: np.ndarray
+    row: tuple[int, ...],
+    index: int,
+    centres: np.ndarray,
+    areas: np.ndarray,
+    radii: np.ndarray,
+    apart: np.ndarray,
 ) -> float:
     last = row[-1]
     length = apart[last, index]

@@ -11,10 +11,10 @@ from hasel_tracker.tracking.doubt import Doubt
 from hasel_tracker.tracking.marker_row import MarkerRow, marker_candidates, rows_on_a_body
 from hasel_tracker.tracking.tracker_settings import TrackerSettings
 
-NUMBERS = dict(
-    zip(range(2, 16), "two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen".split(),
-        strict=True)
-)  # fmt: skip
+WORDS = (
+    "two three four five six seven eight nine ten eleven twelve thirteen fourteen fifteen".split()  # noqa: SIM905
+)
+NUMBERS = dict(enumerate(WORDS, start=2))
 DARK_PICTURE = 60.0
 
 
@@ -58,7 +58,9 @@ def search_start(image: np.ndarray, settings: TrackerSettings) -> StartSearch:
             "--roi, or how many there are with --markers"
         )
         return StartSearch(None, Doubt.AMBIGUOUS, note, len(looked))
-    note = f"found {len(blobs)} blobs of marker colour, of which no {word} look like markers in a row on a body"
+    note = (
+        f"found {len(blobs)} blobs of marker colour, of which no {word} look like markers in a row on a body"
+    )
     if cv2.mean(image[::8, ::8])[1] < DARK_PICTURE:
         note += "; the picture is dark: learn the colour with `calibrate colour --at`"
     return StartSearch(None, Doubt.NONE, note, len(looked))

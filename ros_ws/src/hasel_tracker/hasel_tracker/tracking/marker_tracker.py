@@ -76,7 +76,9 @@ class MarkerTracker:
         Raises TrackerError where there is no marker within the region about a point.
         """
         if len(points) != self._count:
-            raise TrackerError(f"Found {len(points)} points for {self._count} markers; give one each, head first.")
+            raise TrackerError(
+                f"Found {len(points)} points for {self._count} markers; give one each, head first."
+            )
         self._adapt(image)
         blobs = whole_frame_blobs(image, self.settings)
         reach = self.settings.region_px
@@ -85,8 +87,8 @@ class MarkerTracker:
             near = min(blobs, key=lambda blob: np.linalg.norm(blob.centre - point), default=None)
             if near is None or np.linalg.norm(near.centre - point) > reach + near.radius:
                 raise TrackerError(
-                    f"No dot of marker colour is at {point[0]:.0f},{point[1]:.0f} (within {reach} px) at {time_s:.3f} s; "
-                    "point at its middle, or learn its colour with `calibrate colour --at`."
+                    f"No dot of marker colour is at {point[0]:.0f},{point[1]:.0f} (within {reach} px) at "
+                    f"{time_s:.3f} s; point at its middle, or learn its colour with `calibrate colour --at`."
                 )
             placed.append(near)
         found = [self._measure(image, blob.centre, blob.area, reach)[0] for blob in placed]
@@ -110,7 +112,8 @@ class MarkerTracker:
             # What comes back after a while may lie the other way round: head and tail are told apart anew.
             self._forget()
             return self._start(image, time_s)
-        if unseen_s.max() > LOOK_EVERYWHERE_AFTER_S and time_s >= self._search_after_s:
+        missed_s = self._time_s - self._seen_at_s
+        if missed_s.max() > LOOK_EVERYWHERE_AFTER_S and time_s >= self._search_after_s:
             markers = self._start(image, time_s)
             if markers.found.all():
                 return markers
@@ -126,12 +129,16 @@ class MarkerTracker:
         if search.links > CHEAP_SEARCH_LINKS:
             self._search_after_s = time_s + SEARCH_PERIOD_S
         following = self._chords is not None
-        row, doubt, note = self._headed(search.row, following) if search.row else (None, search.doubt, search.note)
+        row, doubt, note = (
+            self._headed(search.row, following) if search.row else (None, search.doubt, search.note)
+        )
         if row is None:
             self._search_after_s = max(self._search_after_s, time_s + following * SEARCH_PERIOD_S)
             self.note = self.note if following else note
             return MarkerSet.lost(self._count, doubt)
-        found = [self._measure(image, blob.centre, blob.area, self.settings.region_px)[0] for blob in row.blobs]
+        found = [
+            self._measure(image, blob.centre, blob.area, self.settings.region_px)[0] for blob in row.blobs
+        ]
         if not all(found):
             self.note = self.note if following else "the markers were found but their edges are not clear"
             return MarkerSet.lost(self._count)
@@ -168,7 +175,10 @@ class MarkerTracker:
         by_layout = self._first_by_layout(centres)
         if by_layout is not None:
             return by_layout, "the head is told by the markers' distances"
-        return None, "both halves of the body look alike: say where the head is with --head left, right or X,Y"
+        return (
+            None,
+            "both halves of the body look alike: say where the head is with --head left, right or X,Y",
+        )
 
     def _first_by_layout(self, centres: np.ndarray) -> bool | None:
         """Whether the distances between the markers are those known from before, if they tell the ends apart."""
@@ -296,7 +306,9 @@ class MarkerTracker:
         thicker = thicker_first(row.links)
         if thicker is False:
             return None  # it lies the other way round: it is started anew when the old order is forgotten
-        found = [self._measure(image, blob.centre, blob.area, self.settings.region_px)[0] for blob in row.blobs]
+        found = [
+            self._measure(image, blob.centre, blob.area, self.settings.region_px)[0] for blob in row.blobs
+        ]
         return found if all(found) else None
 
     def _links_of(self, numbers: dict[int, object]) -> set[int]:
@@ -422,4 +434,3 @@ class MarkerTracker:
             positions[number], sigma[number] = measured[number].centre, measured[number].sigma_px
             quality[number] = self._quality(measured[number], number)
         return MarkerSet(positions, quality, sigma, doubt, vouched)
-

@@ -18,7 +18,7 @@ class TrackerSettings:
     how far a marker may be from where it is predicted. edge_px: half width of the band in which a marker's edge lies
     (more for blurred pictures). head: the side of the picture on which the head starts, or a point 'X,Y' near it;
     `auto` takes the thicker half of the body for the front. minimum_quality: below it a marker counts as lost.
-    rest_direction_deg: of two markers alone, where the straight body points from head to tail, anticlockwise from right.
+    rest_direction_deg: of two markers alone, where the straight body points, anticlockwise from right.
     """
 
     colour: ColourRange = field(default_factory=ColourRange)

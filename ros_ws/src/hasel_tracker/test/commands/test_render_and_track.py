@@ -124,7 +124,7 @@ def test_colour_and_board_from_the_command_line(folder, capsys):
     ("command", "arguments", "message"),
     [
         (track, ["nothing.mp4", "-o", "run.csv"], "nothing.mp4 does not exist"),
-        (track, ["grey", "-o", "run.csv", "--frame-rate", "30"], "No frame of grey shows three markers"),
+        (track, ["grey", "-o", "run.csv", "--frame-rate", "30"], "No frame of grey gives an angle"),
         (track, ["grey", "-o", "run.txt"], "neither .csv nor .mcap"),
         (track, ["grey", "-o", "run.csv", "--drive", "no.csv"], "There is no drive recording no.csv"),
         (render, ["out.mp4", "--motion", "no.csv"], "no.csv"),

@@ -21,7 +21,7 @@ def test_disc_has_its_area_and_its_centre():
         rows, columns = np.indices(weight.shape)
         assert weight.sum() == pytest.approx(np.pi * radius**2, rel=6e-3)
         found = [(weight * columns).sum() / weight.sum(), (weight * rows).sum() / weight.sum()]
-        assert found == pytest.approx(centre, abs=4e-3)
+        assert found == pytest.approx(centre, abs=8e-3)
 
 
 def test_body_keeps_its_length_and_rests_straight():
@@ -46,7 +46,9 @@ def test_dots_lie_where_the_truth_says():
 def test_same_seed_same_picture():
     """Noise depends on the seed alone."""
     scene = LabScene((), (BlueDot(50.0, 50.0),), size_px=(160, 120))
-    first, again, other = (next(iter(each.frames(1))).image for each in (scene, scene, replace(scene, seed=2)))
+    first, again, other = (
+        next(iter(each.frames(1))).image for each in (scene, scene, replace(scene, seed=2))
+    )
     assert (first == again).all()
     assert (first != other).any()
 

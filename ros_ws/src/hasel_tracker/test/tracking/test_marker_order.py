@@ -31,7 +31,10 @@ def test_lost_tail_is_found_by_its_distance():
 def test_two_that_fit_are_both_told():
     """Two blobs at the right distance are two answers, the one nearer to where the marker was first."""
     near, far = blob(1490.0, 420.0), blob(1380.0, 880.0)
-    assert [each[2] for each in assignments_of_lost([far, near], without(2), BODY, CHORDS, AREAS)] == [near, far]
+    assert [each[2] for each in assignments_of_lost([far, near], without(2), BODY, CHORDS, AREAS)] == [
+        near,
+        far,
+    ]
 
 
 def test_two_lost_markers_are_not_swapped():

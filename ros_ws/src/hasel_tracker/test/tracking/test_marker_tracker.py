@@ -8,7 +8,6 @@ from hasel_tracker.render.motion import BendingMotion
 from hasel_tracker.render.renderer import Renderer
 from hasel_tracker.tracking.bending_tracker import BendingTracker
 from hasel_tracker.tracking.colour_gate import ColourRange
-from hasel_tracker.tracking.doubt import Doubt
 from hasel_tracker.tracking.marker_contour import measure_contour
 from hasel_tracker.tracking.marker_moment import measure_marker
 from hasel_tracker.tracking.marker_tracker import MarkerTracker
@@ -116,8 +115,10 @@ def test_markers_of_another_colour(frames):
 def test_tracked_frame_reads_as_a_sentence(frames):
     """A result prints with its angle, or with which marker is lost."""
     tracker = BendingTracker()
-    assert "sin θ is" in str(tracker.update(frames[0].image, 0.0))
-    lost = tracker.update(np.full_like(frames[0].image, 190), 1 / 120)
+    said = [str(tracker.update(frame.image, frame.time_s)) for frame in frames[:3]]
+    assert "the markers were only just found" in said[0]
+    assert "sin θ is" in said[2]
+    lost = tracker.update(np.full_like(frames[0].image, 190), 3 / 120)
     assert not lost.valid
     assert str(lost).endswith("head and middle and tail lost.")
 

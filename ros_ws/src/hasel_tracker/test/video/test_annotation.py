@@ -1,6 +1,8 @@
 import numpy as np
 from hasel_tracker.tracking.bending_tracker import BendingTracker
-from hasel_tracker.video.annotation import COLOURS, annotate, preview
+from hasel_tracker.video.annotation import BODY_COLOUR, HEAD_COLOUR, TAIL_COLOUR, annotate, preview
+
+COLOURS = (HEAD_COLOUR, BODY_COLOUR, TAIL_COLOUR)
 
 
 def ring_centre(picture: np.ndarray, colour: tuple[int, int, int]) -> np.ndarray:
