@@ -47,15 +47,13 @@ def diagnostic_status(
     node_name: str, report: HealthReport, health: Health, details: dict[str, Any]
 ) -> DiagnosticStatus:
     """The tracker's health for /diagnostics."""
+    names = marker_names(len(health.quality)) if health.frames else ()
     values = {
         "frame rate [1/s]": f"{health.frame_rate_hz:.2f}",
         "mean latency [ms]": f"{1e3 * health.mean_latency_s:.2f}",
         "worst latency [ms]": f"{1e3 * health.worst_latency_s:.2f}",
         "frames without angle": f"{health.lost_share:.3f}",
-        **{
-            f"quality of {name}": f"{value:.2f}"
-            for name, value in zip(marker_names(len(health.quality)), health.quality, strict=True)
-        },
+        **{f"quality of {name}": f"{value:.2f}" for name, value in zip(names, health.quality, strict=True)},
         **details,
     }
     return DiagnosticStatus(

@@ -10,7 +10,10 @@ from hasel_tracker.tracking.bending_tracker import TrackedFrame
 
 @dataclass(frozen=True)
 class Health:
-    """One interval: frame rate [1/s], latency from capture to angle [s], mean quality (m,), share lost."""
+    """One interval: frame rate [1/s], latency from capture to angle [s], share lost.
+
+    quality: mean of each marker, (m,); empty when no frame arrived.
+    """
 
     frames: int
     frame_rate_hz: float

@@ -39,7 +39,9 @@ class StrainSoftening(MaterialEffect):
             scan=(0.02, 0.05, 0.1, 0.2),
         ),
     )
-    signature = "Large swings are slower than small ones, and the body bends more than in proportion to the drive."
+    signature = (
+        "Large swings are slower than small ones, and the body bends more than in proportion to the drive."
+    )
     confused_with = ("drive_softening", "spine_stiffening", "force_length")
     separated_by = "Ring-downs from several heights without drive: frequency over amplitude."
     citation = "Payne, Journal of Applied Polymer Science 6 (1962) 57"
