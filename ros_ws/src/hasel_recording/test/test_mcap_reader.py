@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hasel_recording import McapRecorder, RecordingError, RecordingWarning, read_recording
 from hasel_recording.bending_angle_message import bending_angle_message
-from hasel_recording.topics import COMMAND, MEASURED, SIMULATED, STATE
+from hasel_recording.topics import COMMAND, DRIVE, MEASURED, SIMULATED, STATE
 from mcap.writer import Writer
 
 EPOCH_NS = 1_790_000_000_000_000_000
@@ -143,3 +143,31 @@ def test_repeated_state_counts_once(recorder):
         recorder.write(STATE, state(upper, 0.0), 5)
     recorder.write(MEASURED, angle(0.1), 5)
     assert read(recorder).voltage.tolist() == [[2000.0, 0.0]]
+
+
+def test_frames_before_the_supply_knew_its_voltage_are_left_out(recorder):
+    """A driver that begins in a fault says NaN: what comes before its first voltage is not used, and said."""
+    for milliseconds, upper in ((0, math.nan), (10, math.nan), (20, 0.0), (30, 4000.0)):
+        recorder.write(STATE, state(upper, upper), EPOCH_NS + milliseconds * 1_000_000)
+    for milliseconds in (5, 15, 25, 35):
+        recorder.write(MEASURED, angle(0.1), EPOCH_NS + milliseconds * 1_000_000)
+    with pytest.warns(RecordingWarning, match="2 frames before the first /hasel/state"):
+        run = read(recorder)
+    assert run.voltage[:, 0].tolist() == [0.0, 4000.0]
+
+
+def test_a_drive_signal_is_refused_where_it_is_not_understood(recorder):
+    """Other channels in mid-run, and units that are not SI, are one sentence each."""
+    recorder.write(DRIVE, {"channel": ["pressure_chamber_mbar"], "value": [1.0]}, 1)
+    recorder.write(MEASURED, angle(0.1), 2)
+    with pytest.raises(RecordingError, match="expected the SI unit, pressure_chamber_pa"):
+        read(recorder)
+
+
+def test_a_drive_signal_keeps_its_channels(recorder):
+    """A message with other channels than the first is refused with its number."""
+    recorder.write(DRIVE, {"channel": ["pressure_a_pa"], "value": [1.0]}, 1)
+    recorder.write(DRIVE, {"channel": ["pressure_a_pa", "pressure_b_pa"], "value": [1.0, 2.0]}, 2)
+    recorder.write(MEASURED, angle(0.1), 3)
+    with pytest.raises(RecordingError, match="message 2 on /hasel/drive has 2 values"):
+        read(recorder)

@@ -12,7 +12,7 @@ from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import compare_parser
 from hasel_sysid.command_line.progress import progress_bar
 from hasel_sysid.command_line.running import run_command
-from hasel_sysid.command_line.shown import show
+from hasel_sysid.command_line.shown import code_after, show
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.dataset import Experiment, for_model
 from hasel_sysid.report.from_results import comparison_content
@@ -32,7 +32,7 @@ def run(options: argparse.Namespace) -> int:
     return run_command(lambda: _compare(options))
 
 
-def _compare(options: argparse.Namespace) -> None:
+def _compare(options: argparse.Namespace) -> int:
     experiments, unseen = load_all(options)
     names = options.model or [None]
     seen = len(experiments)
@@ -55,6 +55,7 @@ def _compare(options: argparse.Namespace) -> None:
             print(f"{len(comparisons)} of {len(models)} models were compared", file=sys.stderr)
         raise
     _finish(options, comparisons)
+    return code_after(comparisons[0].set_up)
 
 
 def _worth_it(models: Sequence[tuple[str, Model]], experiments: Sequence[Experiment]) -> int | None:

@@ -11,7 +11,7 @@ from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import diagnose_parser
 from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
-from hasel_sysid.command_line.shown import show
+from hasel_sysid.command_line.shown import code_after, show
 from hasel_sysid.compare import compare
 from hasel_sysid.diagnosis import diagnose
 from hasel_sysid.fit import fit_least_squares
@@ -31,7 +31,7 @@ def run(options: argparse.Namespace) -> int:
     return run_command(lambda: _diagnose(options))
 
 
-def _diagnose(options: argparse.Namespace) -> None:
+def _diagnose(options: argparse.Namespace) -> int:
     given = load_inputs(options)
     with executor(options.jobs, options.scheduler) as pool, progress_bar("diagnose") as progress:
         problem = Problem(given.experiments, pool, given.noise)
@@ -45,6 +45,7 @@ def _diagnose(options: argparse.Namespace) -> None:
     if options.json:
         write_json({**comparison.to_json(), **diagnosis_json(found)}, options.json)
     print(f"Wrote {write_report(diagnosis_content(found, comparison), options.output)}.")
+    return code_after(comparison.set_up)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import fit_parser
 from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
-from hasel_sysid.command_line.shown import show
+from hasel_sysid.command_line.shown import code_after, show
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.data_gate import Finding
 from hasel_sysid.errors import SysidError
@@ -35,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
     return run_command(lambda: _fit(options))
 
 
-def _fit(options: argparse.Namespace) -> None:
+def _fit(options: argparse.Namespace) -> int:
     given = load_inputs(options)
     if not given.model.free:
         raise SysidError(
@@ -55,6 +55,7 @@ def _fit(options: argparse.Namespace) -> None:
             print(f"wrote the best model so far, without uncertainties, to {path}", file=sys.stderr)
         raise
     _finish(options, result, comparison, given.said)
+    return code_after(comparison.set_up)
 
 
 def _finish(

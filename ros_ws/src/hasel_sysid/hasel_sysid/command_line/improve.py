@@ -14,7 +14,7 @@ from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import improve_parser
 from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
-from hasel_sysid.command_line.shown import show, tell
+from hasel_sysid.command_line.shown import code_after, show, tell
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.compare.compare import comparison_of
 from hasel_sysid.dataset import Experiment
@@ -39,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
     return run_command(lambda: _improve(options))
 
 
-def _improve(options: argparse.Namespace) -> None:
+def _improve(options: argparse.Namespace) -> int:
     given = load_inputs(options)
     experiments, unseen, label, model = given.experiments, given.unseen, given.label, given.model
     options.output.mkdir(parents=True, exist_ok=True)
@@ -69,6 +69,7 @@ def _improve(options: argparse.Namespace) -> None:
     tell(start.set_up, given.said)
     show([stages[0]], [*given.said, *start.set_up])
     _finish(options, found, start, stages, suggestions)
+    return code_after([*given.said, *stages[0].set_up])
 
 
 def _next_runs(found: Improvement, pool: Executor) -> list[Suggestion]:

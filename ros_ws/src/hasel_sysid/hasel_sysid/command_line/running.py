@@ -11,11 +11,11 @@ from hasel_sim.errors import HaselSimError
 
 from hasel_sysid.errors import SysidError
 
-BAD_INPUT, INTERRUPTED = 2, 130
+BAD_INPUT, MISLEADING, INTERRUPTED = 2, 3, 130
 
 
-def run_command(work: Callable[[], None]) -> int:
-    """Run a command; its exit code is 0, 2 after an error told on stderr, 130 after Ctrl-C."""
+def run_command(work: Callable[[], int | None]) -> int:
+    """Run a command; its exit code is what `work` returns or 0, 2 after an error told on stderr, 130 after Ctrl-C."""
     with warnings.catch_warnings():
         warnings.simplefilter("always", RecordingWarning)
         usual = warnings.showwarning
@@ -28,7 +28,7 @@ def run_command(work: Callable[[], None]) -> int:
 
         warnings.showwarning = show
         try:
-            work()
+            return work() or 0
         except (HaselSimError, SysidError, RecordingError) as error:
             return _refuse(str(error))
         except BrokenProcessPool:
@@ -45,7 +45,6 @@ def run_command(work: Callable[[], None]) -> int:
         except KeyboardInterrupt:
             print("stopped", file=sys.stderr)
             return INTERRUPTED
-    return 0
 
 
 def _refuse(sentence: str) -> int:

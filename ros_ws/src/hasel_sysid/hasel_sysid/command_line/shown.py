@@ -5,9 +5,10 @@ from collections.abc import Sequence
 
 from rich.console import Console
 
+from hasel_sysid.command_line.running import MISLEADING
 from hasel_sysid.compare import Comparison
 from hasel_sysid.compare.table import condition_table, run_table
-from hasel_sysid.data_gate import Finding, check_recording
+from hasel_sysid.data_gate import Finding, Severity, check_recording
 from hasel_sysid.dataset import Experiment
 
 
@@ -29,6 +30,11 @@ def show(comparisons: Sequence[Comparison], said: Sequence[Finding] = ()) -> Non
         print(comparison)
         for sentence in comparison.where.sentences():
             print(f"  {sentence}")
+
+
+def code_after(findings: Sequence[Finding]) -> int:
+    """Exit code of a command that ran to its end: MISLEADING where a recording has a fault that misleads."""
+    return MISLEADING if any(finding.severity is Severity.ERROR for finding in findings) else 0
 
 
 def tell(findings: Sequence[Finding], said: Sequence[Finding] = ()) -> None:

@@ -5,6 +5,7 @@ from hasel_recording import Recording
 from scipy.ndimage import median_filter
 
 from hasel_sysid.data_gate.finding import Finding, error, warning
+from hasel_sysid.where_it_fails.drive_cycle import comparable, drive_cycle
 from hasel_sysid.where_it_fails.noise import high_frequency_noise
 
 _MANY_LOST = 0.2
@@ -14,6 +15,7 @@ _JUMP_IN_USUAL = 8.0
 """A jump stands out from how far frames usually are from their neighbours' median: a fast swing is no jump."""
 _SMALLEST_JUMP = 0.05
 _LEAST_MOTION_IN_NOISE = 10.0
+_FRAMES_PER_CYCLE = 8
 
 
 def check_angle(recording: Recording) -> list[Finding]:
@@ -23,7 +25,7 @@ def check_angle(recording: Recording) -> list[Finding]:
     if len(sin_theta) < 16:
         return lost
     unit = _unit(sin_theta)
-    return lost + (unit or [*_frozen(recording), *_jumps(sin_theta), *_motion(sin_theta)])
+    return lost + (unit or [*_frozen(recording), *_jumps(sin_theta), *_motion(recording, sin_theta)])
 
 
 def _lost(recording: Recording) -> list[Finding]:
@@ -71,7 +73,9 @@ def _jumps(sin_theta: np.ndarray) -> list[Finding]:
     return [warning("jumping marker", jumps, evidence, "another object is taken for a marker: cover it")]
 
 
-def _motion(sin_theta: np.ndarray) -> list[Finding]:
+def _motion(recording: Recording, sin_theta: np.ndarray) -> list[Finding]:
+    if _too_fast_to_tell(recording):
+        return []
     noise = high_frequency_noise(sin_theta)
     span = float(np.subtract(*np.percentile(sin_theta, [98, 2])))
     if noise == 0 and span > 0:
@@ -82,3 +86,13 @@ def _motion(sin_theta: np.ndarray) -> list[Finding]:
     evidence = f"the body moves by {ratio:.1f} times the noise"
     advice = "drive it harder or nearer to its resonance, and check that the muscles are connected"
     return [(error if ratio < 6 else warning)("too little excitation", ratio, evidence, advice)]
+
+
+def _too_fast_to_tell(recording: Recording) -> bool:
+    """Whether the drive repeats within so few frames that the motion cannot be told from the noise of single frames."""
+    if not recording.driven:
+        return False
+    time, values = recording.drive()
+    cycle = drive_cycle(time, comparable(values, recording.channels))
+    frame = float(np.median(np.diff(recording.time_s)))
+    return cycle is not None and cycle.period < _FRAMES_PER_CYCLE * frame

@@ -13,6 +13,8 @@ _LIKELY = {
 }
 """Largest magnitudes [SI] between which a drive is in its SI unit, and what it is in otherwise."""
 _FEW_LEVELS = 8
+_SEEN_AT_FRAMES = 2.05
+"""A switch is seen up to one frame late, so regular ones seem to be up to two frames more or less apart."""
 
 
 def check_command(recording: Recording) -> list[Finding]:
@@ -116,7 +118,7 @@ def _switching(recording: Recording, time: np.ndarray, values: np.ndarray) -> li
     distances = _recurrences(time, values)
     if len(distances):
         spread = float(np.ptp(distances))
-        if spread > max(1.6 * frame, 0.05 * float(np.median(distances))):
+        if spread > max(_SEEN_AT_FRAMES * frame, 0.05 * float(np.median(distances))):
             low, high = distances.min() * 1e3, distances.max() * 1e3
             evidence = f"switches that should be one period apart are {low:.0f} to {high:.0f} ms apart"
             return [

@@ -5,6 +5,7 @@ from hasel_recording import Recording
 
 from hasel_sysid.data_gate.finding import Finding, error, warning
 
+_FEWEST_FRAMES = 16
 _MOST_JITTER = 0.2
 _MANY_DROPPED = 0.2
 _LOWEST_RATE_HZ = 25.0
@@ -17,10 +18,10 @@ _CHANCE = 3.0
 def check_frames(recording: Recording) -> list[Finding]:
     """Faults of the times alone."""
     time = recording.time_s
-    if len(time) < 16:
-        return [
-            error("too few frames", len(time), f"there are {len(time)} frames", "record at least one period")
-        ]
+    seen = int(recording.valid.sum())
+    if seen < _FEWEST_FRAMES:
+        evidence = f"{seen} of {len(time)} frames have an angle, expected {_FEWEST_FRAMES} at least"
+        return [error("too few frames", seen, evidence, "record at least one period")]
     steps = np.diff(time)
     backwards = int(np.count_nonzero(steps <= 0))
     if backwards:

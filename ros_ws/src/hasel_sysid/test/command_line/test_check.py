@@ -90,7 +90,10 @@ def test_one_frame_is_one_sentence(tmp_path, capsys):
     for command in (check, compare):
         assert command.main([str(path)]) == 2
         out = capsys.readouterr()
-        assert "too few frames: there are 1 frames; record at least one period" in out.out + out.err
+        assert (
+            "too few frames: 1 of 1 frames have an angle, expected 16 at least; record at least one period"
+            in out.out + out.err
+        )
 
 
 def test_several_files_end_with_those_not_to_be_used(lab_file, tmp_path, capsys):

@@ -10,6 +10,7 @@ import pytest
 from hasel_recording import Recording, read_recording, write_recording
 from hasel_sim.model import load_model, save_model
 from hasel_sysid.command_line import compare, convert, fit
+from hasel_sysid.command_line.running import MISLEADING
 
 FREQUENCY = 2.0
 
@@ -81,12 +82,12 @@ def test_unreadable_recording_is_skipped(folder, tmp_path, capsys):
 
 
 def test_faults_of_the_set_up_come_first_and_once(folder, tmp_path, capsys):
-    """A flipped recording is named as an error on stderr, once, before it is fitted, and in the JSON file."""
+    """A flipped recording is named as an error on stderr, once, before it is fitted, in the JSON file and by the exit code."""
     recording = read_recording(folder / "run_3500.csv")
     path = tmp_path / "flipped.csv"
     write_recording(replace(recording, sin_theta=-recording.sin_theta), path)
     arguments = [str(path), "--model", str(folder / "truth.yaml"), "--jobs", "1", "--output", str(tmp_path)]
-    assert fit.main([*arguments, "--json", str(tmp_path / "f.json")]) == 0
+    assert fit.main([*arguments, "--json", str(tmp_path / "f.json")]) == MISLEADING
     said = capsys.readouterr().err
     assert said.startswith("error: flipped: sign flip or swapped channels")
     assert said.count("the body first bends away") == 1
@@ -124,6 +125,41 @@ def test_header_names_the_model(folder, tmp_path, capsys):
     )
     assert compare.main([str(path), "--output", str(tmp_path), "--jobs", "1"]) == 2
     assert "model 'beam' has no muscles" in capsys.readouterr().err
+
+
+def test_a_model_that_was_never_fitted_is_said_first(folder, tmp_path, capsys):
+    """First guesses are called so before their errors are shown; a fitted model is not."""
+    run = str(folder / "run_3500.csv")
+    assert compare.main([run, "--model", str(folder / "coarse.yaml"), "--output", str(tmp_path)]) == 0
+    assert "note: model 'coarse' was never fitted" in capsys.readouterr().err
+    assert compare.main([run, "--model", str(folder / "truth.yaml"), "--output", str(tmp_path)]) == 0
+    assert "never fitted" not in capsys.readouterr().err
+
+
+def test_the_drive_may_be_a_file_of_its_own(folder, tmp_path, capsys):
+    """Angles and drive in two files, with other names and units, compare as the one file does."""
+    model = [
+        "--model",
+        str(folder / "truth.yaml"),
+        "--output",
+        str(tmp_path),
+        "--json",
+        str(tmp_path / "c.json"),
+    ]
+    whole = read_recording(folder / "run_3500.csv")
+    angles = "".join(
+        f"{t};{np.degrees(np.arcsin(s))}\n" for t, s in zip(whole.time_s, whole.sin_theta, strict=True)
+    )
+    (tmp_path / "angles.csv").write_text("t;angle_deg\n" + angles.replace(".", ","))
+    drive = "".join(
+        f"{1e3 * t},{u / 1e3},{v / 1e3}\n" for t, (u, v) in zip(whole.time_s, whole.voltage, strict=True)
+    )
+    (tmp_path / "drive.csv").write_text("time_ms,voltage_upper_kv,voltage_lower_kv\n" + drive)
+    mapping = ["--map", "time=t,sin_theta=angle_deg", "--drive", str(tmp_path / "drive.csv")]
+    assert compare.main([str(folder / "run_3500.csv"), *model]) == 0
+    expected = json.loads((tmp_path / "c.json").read_text())["mae_fit"]
+    assert compare.main([str(tmp_path / "angles.csv"), *mapping, *model]) == 0
+    assert json.loads((tmp_path / "c.json").read_text())["mae_fit"] == pytest.approx(expected, rel=1e-6)
 
 
 def test_convert_goes_both_ways(folder, tmp_path):
