@@ -82,7 +82,7 @@ def test_unreadable_recording_is_skipped(folder, tmp_path, capsys):
 
 
 def test_faults_of_the_set_up_come_first_and_once(folder, tmp_path, capsys):
-    """A flipped recording is named as an error on stderr, once, before it is fitted, in the JSON file and by the exit code."""
+    """A flipped recording is an error on stderr, once, before it is fitted, in the JSON file and by the exit code."""
     recording = read_recording(folder / "run_3500.csv")
     path = tmp_path / "flipped.csv"
     write_recording(replace(recording, sin_theta=-recording.sin_theta), path)
