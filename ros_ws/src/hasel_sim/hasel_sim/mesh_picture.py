@@ -16,12 +16,10 @@ from hasel_sim.mesh.mesh import Mesh, Region
 from hasel_sim.model import Model
 
 SUFFIXES = (".png", ".svg", ".pdf")
-COLOURS = {
-    Region.SOFT: ("#d9d2c5", "soft, no muscle"),
-    Region.SPINE: ("#44505c", "spine and fin"),
-    Region.UPPER_MUSCLE: ("#d9654b", "upper muscle"),
-    Region.LOWER_MUSCLE: ("#4b86b4", "lower muscle"),
-}
+SOFT, SPINE = "#d9d2c5", "#44505c"
+MUSCLES = ("#d9654b", "#4b86b4", "#8a5fa8", "#c9a227", "#3f8f6b", "#b0547c")
+"""Colours of the muscles in the model file's order, from the start again where there are more."""
+HATCHES = ("//", "\\\\", "xx", "..")
 _AROUND = [0, 4, 1, 5, 2, 6, 3, 7]
 """Local nodes of an element in the order of its edge."""
 
@@ -30,21 +28,20 @@ def draw_mesh(model: Model) -> Figure:
     """A figure of the body at rest, to scale, in millimetres."""
     mesh = model_mesh(model)
     width, height = 1e3 * np.ptp(mesh.nodes, axis=0)
-    figure = Figure(figsize=(12, float(np.clip(1.6 + 11 * height / width, 2.2, 9))), layout="constrained")
+    figure = Figure(figsize=(12, float(np.clip(2.2 + 14 * height / width, 2.8, 9))), layout="constrained")
     axes = figure.add_subplot()
-    _add_elements(axes, mesh)
+    handles = _add_elements(axes, mesh, model)
     _add_nodes(axes, mesh)
     _add_markers(axes, model)
+    _add_loads(axes, mesh, model)
     axes.set_aspect("equal")
-    axes.margins(0.02, 0.15)
+    axes.margins(0.04, 0.3)
     axes.set_xlabel("x, along the body at rest [mm]")
     axes.set_ylabel("y [mm]")
     elements, nodes = len(mesh.elements), len(mesh.nodes)
     axes.set_title(f"{model.name}: {elements} elements, {nodes} nodes")
-    present = [region for region in COLOURS if region in mesh.region]
-    patches = [Patch(color=COLOURS[region][0], label=_name(model, region)) for region in present]
-    handles = patches + axes.get_legend_handles_labels()[0]
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False)
+    handles += axes.get_legend_handles_labels()[0]
+    figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 6), frameon=False)
     return figure
 
 
@@ -62,16 +59,26 @@ def save_picture(figure: Figure, path: Path) -> None:
         ) from None
 
 
-def _name(model: Model, region: Region) -> str:
-    return COLOURS[region][1] if model.has_muscles else "body"
-
-
-def _add_elements(axes, mesh: Mesh) -> None:
+def _add_elements(axes, mesh: Mesh, model: Model) -> list[Patch]:
+    """Draw every element; what its colours and hatches mean comes back."""
     outlines = 1e3 * mesh.nodes[mesh.elements[:, _AROUND]]
-    colours = [COLOURS[Region(region)][0] for region in mesh.region]
+    description = model.description
+    colours = np.where(mesh.region == Region.SPINE, SPINE, SOFT).astype(object)
+    handles = [Patch(color=SOFT, label="soft" if model.has_muscles or model.has_spine else "body")]
+    if model.has_spine:
+        handles.append(Patch(color=SPINE, label="spine and fin"))
+    for number, muscle in enumerate(description.muscles, start=1):
+        colour = MUSCLES[(number - 1) % len(MUSCLES)]
+        colours[mesh.muscle == number] = colour
+        handles.append(Patch(color=colour, label=f"muscle {muscle.name} ({muscle.channel})"))
     axes.add_collection(
-        PolyCollection(list(outlines), facecolors=colours, edgecolors="white", linewidths=0.5)
+        PolyCollection(list(outlines), facecolors=list(colours), edgecolors="white", linewidths=0.5)
     )
+    for number, region in enumerate(description.body.regions, start=1):
+        style = {"facecolor": "none", "edgecolor": "#333333", "hatch": HATCHES[(number - 1) % len(HATCHES)]}
+        axes.add_collection(PolyCollection(list(outlines[mesh.material == number]), linewidths=0.0, **style))
+        handles.append(Patch(label=f"region {region.name}", linewidth=0.0, **style))
+    return handles
 
 
 def _add_nodes(axes, mesh: Mesh) -> None:
@@ -82,7 +89,27 @@ def _add_nodes(axes, mesh: Mesh) -> None:
 
 
 def _add_markers(axes, model: Model) -> None:
-    for point, name in zip(1e3 * marker_points(model), ("head", "middle", "tail"), strict=True):
-        label = "markers" if name == "head" else None
+    points, names = 1e3 * marker_points(model), model.description.marker_names()
+    for point, name in zip(points, names, strict=True):
+        label = "markers" if name == names[0] else None
         axes.plot(*point, "o", color="#2ca02c", markeredgecolor="white", markersize=9, label=label)
         axes.annotate(name, point, (0, 9), textcoords="offset points", ha="center", fontsize=9)
+
+
+def _add_loads(axes, mesh: Mesh, model: Model) -> None:
+    """The plate on the tip, and an arrow along gravity."""
+    plate = model.description.body.tip_plate
+    if plate:
+        axes.plot(
+            *(1e3 * mesh.nodes[mesh.tip]).T,
+            color="black",
+            linewidth=4,
+            label=f"tip plate, {plate.mass_kg_per_m:g} kg/m",
+        )
+    gravity = np.array(model.description.material.gravity_m_per_s2)
+    size = np.linalg.norm(gravity)
+    if size > 0:
+        centre, half = np.array([0.93, 0.9]), np.array([0.03, 0.08]) * gravity / (2 * size)
+        places = {"xycoords": "axes fraction", "textcoords": "axes fraction"}
+        axes.annotate("", centre + half, centre - half, arrowprops={"arrowstyle": "-|>"}, **places)
+        axes.annotate(f"g = {size:.3g} m/s²", (0.9, 0.9), ha="right", va="center", xycoords="axes fraction")

@@ -11,6 +11,8 @@ from hasel_sim.mechanics.motion import DriveState
 from hasel_sim.mechanics.stepper import Stepper
 from hasel_sim.mechanics.steps import StepPlan, plan_steps
 from hasel_sim.model import Model
+from hasel_sim.model.constants import constants
+from hasel_sim.model.model import response_parameters
 from hasel_sim.run import Run
 
 
@@ -100,9 +102,9 @@ class PreparedRun:
 
     def _drives(self, name: str) -> bool:
         identity = name.rpartition(".")[0]
-        return (not identity and self.muscles > 0) or any(
-            isinstance(e, DriveEffect) and e.id == identity for e in self.model.effects
-        )
+        if any(isinstance(e, DriveEffect) and e.id == identity for e in self.model.effects):
+            return True
+        return self.model.is_amplitude(name) or name in response_parameters(self.model.description)
 
     def declared(self, name: str) -> EffectParameter:
         """What the effect, or the baseline, says about a parameter."""
@@ -111,7 +113,7 @@ class PreparedRun:
             if effect.id == identity:
                 return next(p for p in effect.parameters if p.name == own)
         parameter = self.model.parameter(name)
-        if identity:
+        if name in constants(self.model.description):
             return constant_parameter(self.model, name)
         return EffectParameter(
             name, name, parameter.unit, 0.0, parameter.lower, parameter.upper, parameter.value or 0.1

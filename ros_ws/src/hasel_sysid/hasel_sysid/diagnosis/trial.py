@@ -130,7 +130,8 @@ def _bounded_step(
     value = np.array([p.value for p in parameters])
     lower = np.array([p.lower for p in parameters]) - value
     upper = np.array([p.upper for p in parameters]) - value
-    limited = np.array(["." not in name for name in names])
+    of_effects = {f"{effect.id}.{p.name}" for effect in model.effects for p in effect.parameters}
+    limited = np.array([name not in of_effects for name in names])
     reach = np.where(limited, _MOST_CHANGE * np.abs(value), np.inf)
     lower, upper = np.maximum(lower, -reach), np.minimum(upper, reach)
     scale = np.linalg.norm(jacobian, axis=0)
