@@ -12,11 +12,8 @@ from hasel_sim.model import Model
 from hasel_sim.run import Run
 
 from hasel_sysid.data_gate import refusal
-from hasel_sysid.drive_match import matched
+from hasel_sysid.drive_match import check_levels, matched
 from hasel_sysid.errors import SysidError
-
-_FAR_BEYOND = 1.25
-"""A level this many times the highest known one is not extrapolated to."""
 
 _MOST_LEVELS = 8
 """More voltages than this (a ramp, a sine) share so many amplitudes, spread over their range."""
@@ -93,37 +90,15 @@ def load_experiments(
 def for_model(model: Model, experiments: Sequence[Experiment]) -> list[Experiment]:
     """The experiments with exactly the channels of the model.
 
-    Raises SysidError where channels do not fit, or where a level lies far beyond those that the model knows.
+    Raises SysidError where channels do not fit, where one is driven beyond what the model file allows, or far beyond
+    the levels that the model knows.
     """
     chosen = matched(model, [each.recording for each in experiments])
-    found = [
+    check_levels(model, chosen)
+    return [
         each if recording is each.recording else experiment(recording)
         for each, recording in zip(experiments, chosen, strict=True)
     ]
-    check_levels(model, found)
-    return found
-
-
-def check_levels(model: Model, experiments: Sequence[Experiment]) -> None:
-    """Raise SysidError where a run is driven far beyond the levels of a model that has some.
-
-    Beyond the highest level the contraction goes on with the slope it has there, which is 4 % short of a quadratic law
-    at a quarter more, and worse further out.
-    """
-    if not len(model.levels):
-        return
-    highest = float(max(model.levels))
-    for each in experiments:
-        if each.run.schedule is None:
-            continue
-        level = float(max(each.run.schedule.levels(), default=0.0))
-        if level > _FAR_BEYOND * highest:
-            unit = each.recording.channels[0].unit
-            raise SysidError(
-                f"{each.name} is driven with {level:g} {unit}, far beyond the levels that model '{model.name}' knows "
-                f"({', '.join(f'{known:g}' for known in model.levels)} {unit}): fit it on a run at about that level, "
-                "or leave this one out"
-            )
 
 
 def drive_levels(experiments: Sequence[Experiment], channels: tuple[str, ...] | None = None) -> np.ndarray:

@@ -12,10 +12,19 @@ from hasel_sim.model import Model
 
 from hasel_sysid.errors import SysidError
 
+_FAR_BEYOND = 1.25
+"""A level this many times the highest known one is not extrapolated to."""
+
 
 def model_channels(model: Model) -> tuple[DriveChannel, ...]:
     """What drives a model's body, as a recording knows it; empty for a passive one."""
     return tuple(channel.column for channel in model.description.channels)
+
+
+def drive_unit(model: Model) -> str:
+    """Unit of everything that drives a model; empty where units differ or nothing does."""
+    units = {channel.unit for channel in model.description.channels}
+    return units.pop() if len(units) == 1 else ""
 
 
 def matched(model: Model, recordings: Sequence[Recording]) -> list[Recording]:
@@ -35,6 +44,36 @@ def matched(model: Model, recordings: Sequence[Recording]) -> list[Recording]:
             stacklevel=3,
         )
     return [_chosen(recording, wanted) for recording in recordings]
+
+
+def check_levels(model: Model, recordings: Sequence[Recording]) -> None:
+    """Raise SysidError where a recording that matches the model drives it too hard.
+
+    Too hard is more than the model file's `largest` of a channel, and far beyond the levels whose amplitudes a model
+    knows: beyond the highest the contraction goes on with the slope it has there, which is 4 % short of a quadratic law
+    at a quarter more, and worse further out.
+    """
+    for recording in recordings:
+        if not recording.driven:
+            continue
+        strongest = np.abs(recording.drive()[1]).max(axis=0)
+        for channel, own, level in zip(
+            model.description.channels, recording.channels, strongest, strict=True
+        ):
+            if channel.largest is not None and level > channel.largest:
+                raise SysidError(
+                    f"{recording.name} drives '{own.name}' with {own.shown(level)}, and model '{model.name}' allows "
+                    f"{own.shown(channel.largest)}: is the column in {own.unit}? Otherwise raise `largest` in the "
+                    "model file"
+                )
+            known = model.table_of(own.name).levels(model.parameters)
+            if len(known) and level > _FAR_BEYOND * known[-1]:
+                levels = ", ".join(f"{each:g}" for each in known)
+                raise SysidError(
+                    f"{recording.name} drives '{own.name}' with {own.shown(level)}, far beyond the levels that model "
+                    f"'{model.name}' knows ({levels} {own.unit}): fit it on a run at about that level, or leave this "
+                    "one out"
+                )
 
 
 def _chosen(recording: Recording, wanted: tuple[DriveChannel, ...]) -> Recording:

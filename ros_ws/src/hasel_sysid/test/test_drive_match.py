@@ -76,5 +76,28 @@ def test_a_level_far_beyond_the_fitted_ones_is_refused(made_recording):
     model = load_model("swimmer").with_levels([3500.0, 4500.0])
     inside = [experiment(made_recording(voltage=4000.0)), experiment(made_recording(voltage=5500.0))]
     assert for_model(model, inside) == inside
-    with pytest.raises(SysidError, match=r"driven with 9000 V, far beyond the levels .*\(3500, 4500 V\)"):
+    with pytest.raises(
+        SysidError, match=r"drives 'upper' with 9000 V, far beyond the levels .*\(3500, 4500 V\)"
+    ):
         for_model(model, [experiment(made_recording(voltage=9000.0))])
+
+
+def test_more_than_the_model_file_allows_is_refused(made_recording):
+    """The limit of a channel is the model file's: 45 kV is most likely a wrong unit."""
+    with pytest.raises(
+        SysidError, match="with 45000 V, and model 'swimmer' allows 10000 V: is the column in V"
+    ):
+        for_model(load_model("swimmer"), [experiment(made_recording(voltage=45000.0))])
+
+
+def test_levels_are_those_of_the_channels_own_quantity(made_recording):
+    """A pressure is measured against the pressures that the model knows, and said in its unit."""
+    channel = (DriveChannel("upper", "pressure", "Pa"),)
+    recording = made_recording(voltage=25000.0)
+    run = replace(recording, drive_signal=recording.voltage[:, :1], channels=channel)
+    model = load_model("arm").with_levels([10000.0, 20000.0])
+    assert for_model(model, [experiment(run)])[0].recording is run
+    with pytest.raises(
+        SysidError, match=r"with 25000 Pa, far beyond the levels that model 'arm' knows \(10000 Pa\)"
+    ):
+        for_model(load_model("arm").with_levels([10000.0]), [experiment(run)])

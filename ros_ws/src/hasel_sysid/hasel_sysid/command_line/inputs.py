@@ -12,7 +12,8 @@ from hasel_sim.model import Model, load_model
 from hasel_sysid.command_line.options import DEFAULT_MODEL
 from hasel_sysid.command_line.shown import announce
 from hasel_sysid.data_gate import Finding
-from hasel_sysid.dataset import Experiment, check_levels, for_model, load_experiments, prepared
+from hasel_sysid.dataset import Experiment, for_model, load_experiments, prepared
+from hasel_sysid.drive_match import check_levels
 
 if TYPE_CHECKING:
     from hasel_sysid.noise import NoiseModel
@@ -41,7 +42,7 @@ def load_inputs(options: argparse.Namespace) -> Inputs:
     experiments, unseen = every[: len(experiments)], every[len(experiments) :]
     said = announce(every)
     model = prepared(model, experiments)
-    check_levels(model, unseen)
+    check_levels(model, [each.recording for each in unseen])
     return Inputs(experiments, unseen, label, model, said, noise)
 
 

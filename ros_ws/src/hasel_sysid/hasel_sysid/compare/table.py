@@ -27,7 +27,8 @@ def run_table(comparisons: Sequence[Comparison]) -> Table:
         else:
             cells = [f"{c.runs[index].mean_absolute_error:.5f}" for c in comparisons]
         label = f"{run.name} (unseen)" if run.unseen else run.name
-        table.add_row(label, run.series.level_text, f"{run.series.frequency:.2g}", *cells)
+        frequency = f"{run.series.frequency:.2g}" if run.series.frequency else "-"
+        table.add_row(label, run.series.level_text, frequency, *cells)
     table.add_section()
     totals = (
         ("all fitted runs", [c.mean_absolute_error for c in comparisons]),

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.stats import norm
 
 from hasel_sysid.diagnosis.explained import NEAR_NOISE
+from hasel_sysid.drive_match import drive_unit
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import Evaluation
 from hasel_sysid.projection import orthonormal
@@ -99,13 +100,14 @@ def regimes(evaluation: Evaluation) -> Iterator[tuple[str, np.ndarray]]:
 
 
 def _labels(evaluation: Evaluation) -> dict[str, list[str]]:
+    unit = drive_unit(evaluation.model)
     labels: dict[str, list[str]] = {"run": [], "": [], "frequency": [], "side": [], "part of the cycle": []}
     for simulation, used in zip(evaluation.simulations, evaluation.frames, strict=True):
         run = simulation.run
         count, time = int(used.sum()), run.time[used]
         voltage = None if run.schedule is None else run.schedule.at(time)
         cycle = None if voltage is None or count < 2 else drive_cycle(time, voltage)
-        level = "" if run.schedule is None else f"{np.abs(run.schedule.signal).max(initial=0.0):.4g} V"
+        level = "" if run.schedule is None else f"{np.abs(run.schedule.signal).max(initial=0.0):.5g} {unit}"
         side = [""] * count
         if voltage is not None:
             side = [{1: "upper", -1: "lower", 0: ""}[s] for s in driven_side(voltage)]

@@ -1,4 +1,4 @@
-"""Voltage and frequency of every run, by which laws are judged and runs left out."""
+"""Level of the drive and frequency of every run, by which laws are judged and runs left out."""
 
 from collections.abc import Sequence
 
@@ -9,9 +9,9 @@ from hasel_sysid.where_it_fails.drive_cycle import drive_cycle
 
 
 def conditions(simulations: Sequence[Simulation]) -> dict[str, np.ndarray]:
-    """Largest voltage [V] and frequency of the drive [Hz] of every run, [runs]; NaN where there is none."""
+    """Largest level and frequency of the drive [Hz] of every run, [runs]; NaN where there is none."""
     return {
-        "voltage": np.array([_peak(s) for s in simulations]),
+        "level": np.array([_peak(s) for s in simulations]),
         "frequency": np.array([_frequency(s) for s in simulations]),
     }
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hasel_sysid.diagnosis.conditions import conditions
+from hasel_sysid.drive_match import drive_unit
 from hasel_sysid.fit import FitResult
 from hasel_sysid.fit.uncertainty import parameter_covariance
 from hasel_sysid.noise import NoiseModel
@@ -22,8 +23,8 @@ _ONE_CONDITION = 1.05
 class Trend:
     """What a parameter would have to be at both ends of a range of runs, were it free to change in between.
 
-    condition: voltage [V] or frequency [Hz]; ends: of the range; values: at the ends, in the parameter's own unit;
-    standard_error: of their difference.
+    condition: level of the drive or frequency; ends: of the range; values: at the ends, in the parameter's own unit;
+    standard_error: of their difference; unit: of the condition.
     """
 
     parameter: str
@@ -31,6 +32,7 @@ class Trend:
     ends: tuple[float, float]
     values: tuple[float, float]
     standard_error: float
+    unit: str
 
     @property
     def contradicts(self) -> bool:
@@ -39,7 +41,7 @@ class Trend:
         return difference > max(_CERTAIN * self.standard_error, _MATTERS * abs(np.mean(self.values)))
 
     def __str__(self) -> str:
-        unit = {"voltage": "V", "frequency": "Hz"}[self.condition]
+        unit = self.unit
         (low, high), (first, last) = self.ends, self.values
         return (
             f"{self.parameter} would have to be {first:.3g} at {low:.4g} {unit} and {last:.3g} at {high:.4g} {unit}: "
@@ -48,7 +50,7 @@ class Trend:
 
 
 def trends(fit: FitResult, noise: NoiseModel, effects: Sequence[str]) -> list[Trend]:
-    """Trends of the effects' fitted sizes with voltage and with frequency; time constants and the like are left out.
+    """Trends of the effects' fitted sizes with level and frequency of the drive; time constants are left out.
 
     Linear in the logarithm of the condition, to first order in the change; conditions that do not vary are left out.
     """
@@ -63,11 +65,14 @@ def trends(fit: FitResult, noise: NoiseModel, effects: Sequence[str]) -> list[Tr
     found = []
     for condition, values in conditions(fit.evaluation.simulations).items():
         if np.isfinite(values).all() and values.max() > _ONE_CONDITION * values.min():
-            found += [_trend(fit.evaluation, noise, name, condition, values) for name in names]
+            unit = "Hz" if condition == "frequency" else drive_unit(fit.model)
+            found += [_trend(fit.evaluation, noise, name, condition, values, unit) for name in names]
     return found
 
 
-def _trend(evaluation: Evaluation, noise: NoiseModel, name: str, condition: str, values: np.ndarray) -> Trend:
+def _trend(
+    evaluation: Evaluation, noise: NoiseModel, name: str, condition: str, values: np.ndarray, unit: str
+) -> Trend:
     """values: the condition of every run."""
     of_run = np.log(values / np.exp(np.log(values).mean()))
     own = evaluation.jacobian[:, evaluation.names.index(name)]
@@ -84,4 +89,5 @@ def _trend(evaluation: Evaluation, noise: NoiseModel, name: str, condition: str,
         (float(values.min()), float(values.max())),
         (float(middle + change[-1] * low), float(middle + change[-1] * high)),
         float((high - low) * np.sqrt(covariance[-1, -1])),
+        unit,
     )

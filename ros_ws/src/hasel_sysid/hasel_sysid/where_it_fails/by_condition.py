@@ -37,4 +37,6 @@ def error_by_level(runs: Sequence[RunSeries]) -> tuple[ConditionError, ...]:
 def error_by_frequency(runs: Sequence[RunSeries]) -> tuple[ConditionError, ...]:
     """Mean |Δ sin θ| for every frequency [Hz], rounded to two digits; 0 where the drive does not repeat."""
     found = [float(f"{run.frequency:.2g}") for run in runs]
-    return _by(runs, [(frequency, f"{frequency:g} Hz") for frequency in found])
+    return _by(
+        runs, [(frequency, f"{frequency:g} Hz" if frequency else "does not repeat") for frequency in found]
+    )

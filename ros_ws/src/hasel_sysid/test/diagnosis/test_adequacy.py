@@ -30,6 +30,7 @@ def _evaluation(seed, missed=lambda run: 0.0):
         jacobian=np.sin(np.arange(len(residual)))[:, None],
         runs=runs,
         simulations=simulations,
+        model=SimpleNamespace(description=SimpleNamespace(channels=[SimpleNamespace(unit="V")])),
         frames=[np.ones(len(TIME), dtype=bool)] * 9,
         mean_absolute_error=float(np.abs(residual).mean()),
     )

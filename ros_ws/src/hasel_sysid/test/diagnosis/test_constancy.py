@@ -42,7 +42,10 @@ def fitted(growth, by=VOLTAGE, runs=RUNS):
     change, *_ = np.linalg.lstsq(jacobian, measured - VALUE * own, rcond=None)
     parameters = [SimpleNamespace(name="size", scan=()), SimpleNamespace(name="time", scan=(0.1, 1.0))]
     return SimpleNamespace(
-        model=SimpleNamespace(effects=[SimpleNamespace(id="drag", parameters=parameters)]),
+        model=SimpleNamespace(
+            effects=[SimpleNamespace(id="drag", parameters=parameters)],
+            description=SimpleNamespace(channels=[SimpleNamespace(unit="V")]),
+        ),
         undetermined=(),
         evaluation=SimpleNamespace(
             names=("slope", "drag.size"),

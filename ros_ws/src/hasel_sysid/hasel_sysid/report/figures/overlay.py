@@ -67,5 +67,7 @@ def overlay_figure(runs: Sequence[RunOverlay]) -> go.Figure:
 
 
 def _title(run: RunOverlay) -> str:
-    name = f"{run.drive}, {run.frequency:.2g} Hz" if run.drive else run.name
+    name = (
+        ", ".join(filter(None, [run.drive, f"{run.frequency:.2g} Hz" if run.frequency else ""])) or run.name
+    )
     return f"{name} · unseen" if run.unseen else name
