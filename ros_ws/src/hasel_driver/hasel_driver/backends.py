@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from hasel_driver import protocol
 from hasel_driver.errors import LimitError
 from hasel_driver.hasel_supply import HaselSupply
 from hasel_driver.limits import Limits
@@ -18,9 +19,10 @@ def make_supply(parameters: Mapping[str, Any]) -> Supply:
         slew_v_per_ms=parameters["slew_rate"],
         trip_current_a=parameters["trip_current"],
         heartbeat_s=parameters["heartbeat_timeout"],
+        dead_time_s=parameters["dead_time"],
     )
     if parameters["backend"] == "hasel":
-        return HaselSupply(SerialPort(parameters["port"]), limits)
+        return HaselSupply(SerialPort(parameters["port"], protocol.BAUD), limits)
     if not parameters["second_port"]:
         raise LimitError(
             "The backend shvps drives one board for each muscle: set `second_port` to the lower one's."

@@ -14,6 +14,8 @@ from hasel_driver.serial_port import SerialPort
 BOOT_TIMEOUT_S = 2.5  # an Arduino's boot loader takes up to 2 s after the port is opened
 RESET_S = 0.3  # a reset at opening has begun by then: telemetry after it comes from a running board
 ANSWER_TIMEOUT_S = 1.0
+GROUND_TIMEOUT_S = 0.5  # for a muscle that was charged when the port was opened
+KEEPS_FAULT = {"INTERLOCK", "DISCREPANCY", "UNPROVEN"}
 
 
 class BoardHandshake:
@@ -24,7 +26,9 @@ class BoardHandshake:
         self._sequence = 0
 
     def perform(self, limits: Limits) -> tuple[str, Fault | None]:
-        """The board's name, and the fault it had kept; afterwards it is in STANDBY with `limits` applied.
+        """The board's name, and the fault it had kept; afterwards it is disarmed, with `limits` applied.
+
+        It is in STANDBY, or still in FAULT where it may not forget one: an open interlock, a charged output.
 
         Raises:
             PortError: no board, another program on it, or a limit it does not accept.
@@ -40,7 +44,7 @@ class BoardHandshake:
         self._transact("DISARM")
         fault = self._inherited_fault()
         if fault is not None:
-            self._transact("CLEAR")
+            self._clear()
         self._apply(limits)
         return name, fault
 
@@ -54,6 +58,17 @@ class BoardHandshake:
                 if booted or running:
                     return
 
+    def _clear(self) -> None:
+        deadline_s = self._clock() + GROUND_TIMEOUT_S
+        while True:
+            reply = self._ask("CLEAR")
+            if reply.accepted or reply.words[0] == "STATE" or reply.words[0] in KEEPS_FAULT - {"UNPROVEN"}:
+                return
+            if reply.words[0] not in KEEPS_FAULT:
+                raise self._refused(reply, "CLEAR")
+            if self._clock() > deadline_s:
+                return
+
     def _inherited_fault(self) -> Fault | None:
         report = self._await(lambda message: isinstance(message, protocol.Telemetry), "telemetry")
         return Fault(board_fault(report.fault_code)) if report.mode is Mode.FAULT else None
@@ -64,6 +79,7 @@ class BoardHandshake:
             ("SLEW", limits.slew_v_per_ms),
             ("TRIP", limits.trip_current_a * 1e6),
             ("HEARTBEAT", limits.heartbeat_s * 1e3),
+            ("DEADTIME", limits.dead_time_s * 1e3),
         ):
             applied = self._transact("SET", quantity, round(value))
             if applied != (quantity, str(round(value))):
@@ -73,21 +89,23 @@ class BoardHandshake:
                 )
 
     def _transact(self, *words: object) -> tuple[str, ...]:
-        self._sequence += 1
-        self._port.write(protocol.encode_command(self._sequence, *words))
-        text = " ".join(str(word) for word in words)
-        reply = self._await(
-            lambda message: isinstance(message, protocol.Reply) and message.sequence == self._sequence,
-            f"answer to {text}",
-        )
-        if not reply.accepted and reply.words[0] == "INTERLOCK":
-            raise PortError("The interlock is open: close the enclosure and release the stop button.")
+        reply = self._ask(*words)
         if not reply.accepted:
-            raise PortError(
-                f"The board on {self._port.path} answered {' '.join(reply.words)} to {text}:"
-                " reset it and try again."
-            )
+            raise self._refused(reply, " ".join(str(word) for word in words))
         return reply.words
+
+    def _ask(self, *words: object) -> protocol.Reply:
+        self._sequence = (self._sequence + 1) % protocol.SEQUENCE_MODULUS
+        self._port.write(protocol.encode_command(self._sequence, *words))
+        return self._await(
+            lambda message: isinstance(message, protocol.Reply) and message.sequence == self._sequence,
+            f"answer to {' '.join(str(word) for word in words)}",
+        )
+
+    def _refused(self, reply: protocol.Reply, text: str) -> PortError:
+        return PortError(
+            f"The board on {self._port.path} answered {' '.join(reply.words)} to {text}: reset it and try again."
+        )
 
     def _await(self, wanted: Callable[[protocol.Line], bool], what: str) -> protocol.Line:
         deadline_s = self._clock() + ANSWER_TIMEOUT_S
@@ -97,7 +115,8 @@ class BoardHandshake:
                     return message
         raise PortError(
             f"The device on {self._port.path} sent no {what} within {ANSWER_TIMEOUT_S} s: check that it is"
-            " the supply, that it is powered, and that it runs the sketch in firmware/."
+            f" the supply, that it is powered, and that it runs the sketch in firmware/ ({protocol.BAUD} baud,"
+            f" protocol {protocol.PROTOCOL_VERSION})."
         )
 
     def _messages(self) -> list[protocol.Line]:

@@ -2,31 +2,40 @@
 
 import signal
 import sys
+import threading
 import time
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_interfaces.msg import SupplyState
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.duration import Duration
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.signals import SignalHandlerOptions
 
 from hasel_driver.backends import make_supply
 from hasel_driver.driver_services import DriverServices
-from hasel_driver.errors import DriverError, RefusedError
+from hasel_driver.errors import DriverError, PortInUseError, RefusedError
 from hasel_driver.experiment_server import ExperimentServer
 from hasel_driver.faults import Fault, FaultCode
-from hasel_driver.limits import Voltages
+from hasel_driver.limits import Limits, Voltages
 from hasel_driver.messages import to_diagnostics, to_supply_state
 from hasel_driver.middleware import avoid_shared_memory
 from hasel_driver.node_parameters import declare, values
+from hasel_driver.realtime import request_realtime
 from hasel_driver.spinning import quiet_at_shutdown, spin
 from hasel_driver.status import Status
 from hasel_driver.supervisor import Supervisor
+from hasel_driver.supply_history import SupplyHistory
 from hasel_driver.supply_thread import SupplyThread
-from hasel_driver.urgent_inputs import ALIVE_PERIOD_S, UrgentInputs
+from hasel_driver.urgent_inputs import ALIVE_PERIOD_S, STEADY, UrgentInputs
 
 THREAD_SWITCH_S = 0.0005  # Python's 5 ms would let the executor hold up the supply's thread
+RETRY_PERIOD_S = 2.0  # between attempts to open a port that could not be opened at the start
+DISCOVERY_S = 1.0  # for which a new publisher may be known and not yet connected
+LAST_STATE_S = 0.2  # for which the end waits until the last state has been heard
+ENDING_SIGNALS = {signal.SIGINT, signal.SIGTERM}
 
 
 class DriverNode(LifecycleNode):
@@ -34,21 +43,35 @@ class DriverNode(LifecycleNode):
 
     def __init__(self, **options) -> None:
         super().__init__("hasel_driver", **options)
-        declare(self, lambda: self._thread is not None)
         self._thread: SupplyThread | None = None
         self._lifecycle_active = False
-        self._stop_asserted = False
+        self._retrying = False
+        self._last_problem = ""
         self._configured_s = 0.0
+        self._unheard_s: float | None = None
+        self._last_limits: Limits | None = None
+        self.end_reason: str | None = None  # why the process must end
+        declare(self, lambda: self._thread is not None, self._lower_maximum)
         slow = ReentrantCallbackGroup()
         self._state = self.create_publisher(SupplyState, "/hasel/state", 50)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
-        self._trigger_services = DriverServices(
-            self, slow, lambda: self._thread, self._check_arming, self._check_clearing
+        self.history = SupplyHistory(values(self)["history_file"], self.get_logger().warning)
+        self._inputs = UrgentInputs(
+            self._on_command, self._on_stop_topic, self._on_inputs_alive, values(self)["realtime_priority"]
         )
-        self.create_timer(ALIVE_PERIOD_S, self._on_heartbeat, callback_group=MutuallyExclusiveCallbackGroup())
-        self.create_timer(1.0, self._on_diagnostics, callback_group=slow)
+        self._trigger_services = DriverServices(
+            self,
+            slow,
+            lambda: self._thread,
+            self._check_arming,
+            self._check_clearing,
+            self._inputs.holders.release,
+        )
+        alone = MutuallyExclusiveCallbackGroup
+        self.create_timer(ALIVE_PERIOD_S, self._on_heartbeat, callback_group=alone(), clock=STEADY)
+        self.create_timer(1.0, self._on_diagnostics, callback_group=slow, clock=STEADY)
+        self.create_timer(RETRY_PERIOD_S, self._retry, callback_group=alone(), clock=STEADY)
         self.experiments = ExperimentServer(self, lambda: self._thread, slow)
-        self._inputs = UrgentInputs(self._on_command, self._on_stop_topic, self._on_inputs_alive)
 
     # Lifecycle
 
@@ -59,17 +82,49 @@ class DriverNode(LifecycleNode):
             supply = make_supply(chosen)
             supervisor = Supervisor(supply, time.monotonic)
             supervisor.connect()
-        except DriverError as error:
-            self.get_logger().error(str(error))
+        except PortInUseError as error:
+            self.end_reason = f"{error} This node ends, so that its services do not answer for the other's."
+            rclpy.try_shutdown()
             return TransitionCallbackReturn.FAILURE
-        self._thread = SupplyThread(supervisor, supply, self._publish, self.experiments.step)
+        except DriverError as error:
+            if str(error) != self._last_problem:  # once, not with every attempt
+                self.get_logger().error(str(error))
+            self._last_problem = str(error)
+            return TransitionCallbackReturn.FAILURE
+        self._last_problem = ""
+        self._thread = SupplyThread(
+            supervisor,
+            supply,
+            self._publish,
+            self.experiments.step,
+            lambda: self._begin_realtime(chosen["realtime_priority"]),
+        )
         self._thread.start()
-        if self._stop_asserted:
+        if self._inputs.holders:
             self.fail(Fault(FaultCode.EMERGENCY_STOP, "by topic, before the port was opened"))
         self._configured_s = time.monotonic()
         self.experiments.watch_topics(chosen["recorded_topics"])
         self.get_logger().info(f"{supervisor.name} on {chosen['port']}, disarmed.")
         return TransitionCallbackReturn.SUCCESS
+
+    def _begin_realtime(self, priority: int) -> None:
+        problem = request_realtime(priority)
+        if problem is None:
+            self.get_logger().info(f"Commands are sent with real-time priority {priority}.")
+        else:
+            self.get_logger().info(f"Commands are sent without real-time priority ({problem}).")
+
+    def begin(self) -> None:
+        """Configure and activate, as far as it goes; what failed is tried again until it succeeds."""
+        if self.trigger_configure() == TransitionCallbackReturn.SUCCESS:
+            self._retrying = False
+            self.trigger_activate()
+        else:
+            self._retrying = True
+
+    def _retry(self) -> None:
+        if self._retrying and self._thread is None and self.end_reason is None:
+            self.begin()
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Allow arming."""
@@ -88,6 +143,7 @@ class DriverNode(LifecycleNode):
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Disarm and close the port."""
+        self._retrying = False
         self.close()
         return TransitionCallbackReturn.SUCCESS
 
@@ -102,15 +158,19 @@ class DriverNode(LifecycleNode):
         return TransitionCallbackReturn.SUCCESS
 
     def close(self) -> None:
-        """Disarm and close the port, from whatever state."""
-        self._lifecycle_active = False
+        """Disarm, publish what became of it, and close the port, from whatever state."""
+        self._lifecycle_active = self._retrying = False
         thread, self._thread = self._thread, None
         if thread is not None:
+            self._last_limits = thread.supervisor.limits
             thread.stop()
+            with quiet_at_shutdown():
+                self._state.wait_for_all_acked(Duration(seconds=LAST_STATE_S))
 
     def leave(self) -> None:
         """Stop listening."""
         self._inputs.close()
+        self.history.close()
 
     # Topics
 
@@ -119,10 +179,9 @@ class DriverNode(LifecycleNode):
         if thread is not None and self._lifecycle_active:
             thread.call(lambda: thread.supervisor.command(voltage_v, age_s))
 
-    def _on_stop_topic(self, asserted: bool) -> None:
-        self._stop_asserted = asserted
+    def _on_stop_topic(self, asserted: bool, who: str) -> None:
         if asserted:
-            self.fail(Fault(FaultCode.EMERGENCY_STOP, "by topic"))
+            self.fail(Fault(FaultCode.EMERGENCY_STOP, f"by topic, from {who}"))
 
     def _on_inputs_alive(self) -> None:
         thread = self._thread
@@ -130,10 +189,19 @@ class DriverNode(LifecycleNode):
             thread.host_is_alive("inputs")
 
     def _publish(self, status: Status) -> None:
-        message = to_supply_state(status)
+        inputs, thread = self._inputs, self._thread
         with quiet_at_shutdown():
+            holders = inputs.holders.names(inputs.stop_topic.present()) if inputs.holders else []
+            limits = thread.supervisor.limits if thread is not None else self._last_limits
+            message = to_supply_state(status, limits, holders)
             self._state.publish(message)
-        self.experiments.record_state(message)
+            self.experiments.record_state(message)
+        self.history.take(status)
+
+    def _lower_maximum(self, voltage_v: float) -> None:
+        thread = self._thread
+        if thread is not None:
+            thread.call(lambda: thread.supervisor.lower_maximum(voltage_v)).result(timeout=5.0)
 
     def _on_heartbeat(self) -> None:
         thread = self._thread
@@ -145,10 +213,23 @@ class DriverNode(LifecycleNode):
         masters = self.count_publishers("/hasel/command")
         if masters > 1 and thread.supervisor.armed:
             self.fail(Fault(FaultCode.TWO_MASTERS, f"{masters} publishers of /hasel/command"))
+        self._watch_stop_publishers(thread)
+
+    def _watch_stop_publishers(self, thread: SupplyThread) -> None:
+        unheard, now_s = self._inputs.stop_topic.unheard(), time.monotonic()
+        if unheard is None:
+            self._unheard_s = None
+        elif self._unheard_s is None:
+            self._unheard_s = now_s
+        elif now_s - self._unheard_s > DISCOVERY_S and thread.supervisor.armed:
+            self.fail(Fault(FaultCode.STOP_NOT_HEARD, unheard))
 
     def _on_diagnostics(self) -> None:
         thread = self._thread
-        status, details = None, {"emergency_stop_topic": self._stop_asserted}
+        inputs = self._inputs
+        holders = inputs.holders.names(inputs.stop_topic.present())
+        status, details = None, {"emergency_stop_held_by": ", ".join(holders) or "nobody"}
+        details |= self.history.summary()
         if thread is not None:
             supervisor = thread.supervisor
             status = supervisor.status()
@@ -156,6 +237,7 @@ class DriverNode(LifecycleNode):
                 "device": supervisor.name,
                 "maximum_voltage_v": supervisor.maximum_voltage_v,
                 "rejected_commands": supervisor.rejected_commands,
+                "interlock_closed": status.interlock_closed,
                 "grounds_itself_without_host": supervisor.capabilities.deadman,
                 "thread_alive": thread.is_alive(),
             }
@@ -167,8 +249,10 @@ class DriverNode(LifecycleNode):
         thread = self._thread
         if not self._lifecycle_active or thread is None:
             raise RefusedError("The node is not active: activate it (lifecycle) first.")
-        if self._stop_asserted:
-            raise RefusedError("The emergency stop topic says true: publish false, then clear the fault.")
+        self._check_clearing()
+        unheard = self._inputs.stop_topic.unheard()
+        if unheard is not None:
+            raise RefusedError(f"An emergency stop might not be heard: {unheard}. Correct that, then arm.")
         waited_s = time.monotonic() - self._configured_s
         discovery_s = self.get_parameter("discovery_time").value
         if waited_s < discovery_s:
@@ -185,8 +269,12 @@ class DriverNode(LifecycleNode):
             )
 
     def _check_clearing(self) -> None:
-        if self._stop_asserted:
-            raise RefusedError("The emergency stop topic still says true: publish false first.")
+        inputs = self._inputs
+        if inputs.holders:
+            raise RefusedError(
+                f"The emergency stop is held by {', '.join(inputs.holders.names(inputs.stop_topic.present()))}:"
+                " publish false there first, or call the service release_emergency_stop."
+            )
 
     # Faults
 
@@ -205,33 +293,42 @@ class DriverNode(LifecycleNode):
             self.fail(Fault(FaultCode.ILLEGAL_TRANSITION))
 
 
-def autostart(node: DriverNode) -> None:
-    """Configure and activate, as far as it goes."""
-    if node.trigger_configure() == TransitionCallbackReturn.SUCCESS:
-        node.trigger_activate()
+def end_at_signal(node: DriverNode) -> None:
+    """Wait for Ctrl-C or a service manager's stop; then ground, tell, and end, whatever the other threads do."""
+    signal.sigwait(ENDING_SIGNALS)
+    node.close()
+    rclpy.try_shutdown()
 
 
-def main() -> None:
+def main() -> int:
     """Spin until shut down; the supply is disarmed on the way out."""
     sys.setswitchinterval(THREAD_SWITCH_S)
     avoid_shared_memory()
-    rclpy.init()
-    node = DriverNode()
+    signal.pthread_sigmask(signal.SIG_BLOCK, ENDING_SIGNALS)  # in all threads, which inherit it
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        node = DriverNode()
+    except DriverError as error:
+        print(f"hasel_driver: {error}", file=sys.stderr)
+        rclpy.try_shutdown()
+        return 1
+    threading.Thread(target=end_at_signal, args=(node,), name="signals", daemon=True).start()
     executor = MultiThreadedExecutor(num_threads=4)
     executor.add_node(node)
     try:
         with quiet_at_shutdown():
             if node.get_parameter("autostart").value:
-                autostart(node)
+                node.begin()
             spin(executor, node.report_illegal_transition)
-    except KeyboardInterrupt:
-        pass
     finally:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in a launch file comes twice
         node.close()
         node.leave()
         rclpy.try_shutdown()
+    if node.end_reason is not None:
+        print(f"hasel_driver: {node.end_reason}", file=sys.stderr)
+        return 1
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -1,4 +1,4 @@
-"""The services arm, disarm, emergency_stop and clear_fault: each answers success only with proof."""
+"""The services that arm, stop and clear: each answers success only with proof."""
 
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -15,6 +15,7 @@ from hasel_driver.mode import Mode
 from hasel_driver.supply_thread import SupplyThread
 
 PROOF_TIMEOUT_S = 0.4
+SERVICES = ("arm", "disarm", "emergency_stop", "release_emergency_stop", "clear_fault")
 
 
 class DriverServices:
@@ -27,10 +28,12 @@ class DriverServices:
         thread: Callable[[], SupplyThread | None],
         check_arming: Callable[[], None],
         check_clearing: Callable[[], None],
+        release_stop: Callable[[], list[str]],
     ) -> None:
         self._node, self._thread = node, thread
         self._check_arming, self._check_clearing = check_arming, check_clearing
-        for name in ("arm", "disarm", "emergency_stop", "clear_fault"):
+        self._release_stop = release_stop
+        for name in SERVICES:
             handler = partial(self._serve, getattr(self, name))
             node.create_service(Trigger, f"/hasel/{name}", handler, callback_group=group)
 
@@ -85,6 +88,13 @@ class DriverServices:
         _result(thread.call(supervisor.clear_fault))
         return "Cleared: STANDBY, disarmed."
 
+    def release_emergency_stop(self) -> str:
+        """Take back what the topic's publishers hold; the fault stays until it is cleared."""
+        names = self._release_stop()
+        if not names:
+            return "Nobody held the emergency stop."
+        return f"Released what {', '.join(names)} held; now clear the fault."
+
     def _prove_grounded(self, thread: SupplyThread, done: str) -> str:
         supervisor = thread.supervisor
 
@@ -93,9 +103,11 @@ class DriverServices:
             return status.grounded is True and not status.mode.may_be_live
 
         if _result(thread.expect(off, PROOF_TIMEOUT_S)):
-            return f"{done}: the supply reports its output grounded. Stored charge needs its bleeder's time."
+            return f"{done}: the supply reports its output grounded, by contacts and measured voltage. Stored charge needs its bleeder's time."
         if not supervisor.capabilities.proves_grounded and supervisor.connected:
             return f"{done}: the supply was switched off, but this kind cannot prove its output grounded."
+        unproven = Fault(FaultCode.GROUND_NOT_PROVEN, f"{done.lower()} {PROOF_TIMEOUT_S} s ago")
+        _result(thread.call(lambda: supervisor.fail(unproven)))
         raise RefusedError(f"{done}, but NOT proven: {supervisor.status()}. Treat the output as live.")
 
     def _require_thread(self) -> SupplyThread:

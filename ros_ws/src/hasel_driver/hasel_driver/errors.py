@@ -17,5 +17,9 @@ class PortError(DriverError):
     """A serial port that cannot be opened, or a device on it that is not the expected one."""
 
 
+class PortInUseError(PortError):
+    """A serial port that another program has open."""
+
+
 class RefusedError(DriverError):
     """A request that the present state does not allow."""

@@ -15,6 +15,7 @@ class FaultCode(IntEnum):
     SEQUENCE = 5
     GARBAGE = 6
     OVERVOLTAGE = 7
+    NOT_GROUNDED = 8
     EMERGENCY_STOP = 100
     LINK_LOST = 101
     NO_TELEMETRY = 102
@@ -27,17 +28,21 @@ class FaultCode(IntEnum):
     HOST_STALLED = 109
     ILLEGAL_TRANSITION = 110
     UNEXPECTED_STATE = 111
+    GROUND_NOT_PROVEN = 112
+    ABOVE_MAXIMUM = 113
+    STOP_NOT_HEARD = 114
 
 
 EXPLANATIONS: dict[FaultCode, str] = {
     FaultCode.NONE: "no fault",
     FaultCode.HEARTBEAT: "the board heard no valid command within its heartbeat timeout",
-    FaultCode.OVERCURRENT: "the current exceeded the trip level",
+    FaultCode.OVERCURRENT: "the current exceeded the trip level, or its monitor's range",
     FaultCode.STOP: "the board received a stop",
     FaultCode.INTERLOCK: "the interlock is open",
     FaultCode.SEQUENCE: "the board missed a command, or a second master speaks on the port",
     FaultCode.GARBAGE: "the board received a garbled line",
-    FaultCode.OVERVOLTAGE: "the measured voltage exceeded the maximum",
+    FaultCode.OVERVOLTAGE: "the measured voltage exceeded the maximum, or its monitor's range",
+    FaultCode.NOT_GROUNDED: "the ground contact should be closed, but the board measures voltage",
     FaultCode.EMERGENCY_STOP: "emergency stop",
     FaultCode.LINK_LOST: "the serial port is gone",
     FaultCode.NO_TELEMETRY: "the board's telemetry ceased",
@@ -50,6 +55,9 @@ EXPLANATIONS: dict[FaultCode, str] = {
     FaultCode.HOST_STALLED: "the driver node stopped responding",
     FaultCode.ILLEGAL_TRANSITION: "an illegal lifecycle transition was requested while armed",
     FaultCode.UNEXPECTED_STATE: "the board is in a state that nobody asked for",
+    FaultCode.GROUND_NOT_PROVEN: "the output should be grounded, and is not proven to be",
+    FaultCode.ABOVE_MAXIMUM: "the driver read more than the maximum voltage",
+    FaultCode.STOP_NOT_HEARD: "an emergency stop's publisher cannot be heard",
 }
 
 

@@ -10,7 +10,7 @@ from hasel_driver.board_handshake import BoardHandshake, board_fault
 from hasel_driver.device_clock import DeviceClock
 from hasel_driver.errors import PortError, ProtocolError
 from hasel_driver.faults import Fault, FaultCode, SupplyFaultError
-from hasel_driver.limits import Limits, Voltages
+from hasel_driver.limits import DISCHARGED_V, Limits, Voltages
 from hasel_driver.line_buffer import LineBuffer
 from hasel_driver.mode import Mode
 from hasel_driver.serial_port import SerialPort
@@ -19,6 +19,12 @@ from hasel_driver.waveform import Waveform
 
 REPLY_TIMEOUT_S = 0.2
 HEARTBEAT_PERIOD_S = 0.05
+CLOCK_MODULUS_US = 2**32
+REFUSALS = {
+    "INTERLOCK": "its interlock is open",
+    "DISCREPANCY": "one channel of its interlock opened without the other: open both, and close them",
+    "UNPROVEN": "its output is not proven grounded",
+}
 MOST_UNANSWERED = 2  # two commands fit into the board's receive buffer
 
 
@@ -45,6 +51,9 @@ class HaselSupply(Supply):
         self._sequence = 0
         self._sent_s = 0.0
         self._wanted: Voltages | None = None  # voltage waiting for room on the line
+        self._reset_found = False
+        self._device_us: int | None = None  # the board's clock in its last report
+        self._maxima_v = {round(self.limits.maximum_voltage_v)}  # that the board may report
 
     def open(self) -> Connection:
         self._forget_link()
@@ -100,6 +109,14 @@ class HaselSupply(Supply):
         else:
             self._wanted = voltage_v
 
+    def ground(self) -> None:
+        self._send("GROUND")
+
+    def lower_maximum(self, voltage_v: float) -> None:
+        super().lower_maximum(voltage_v)
+        self._maxima_v.add(round(voltage_v))  # the former one may still be on the line
+        self._send("SET", "MAXIMUM", round(voltage_v))
+
     def start(self, waveform: Waveform) -> None:
         numbers = (waveform.voltage_v, waveform.frequency_hz * 1e3, waveform.periods, waveform.duty * 1e3)
         integers = [round(number) for number in numbers]
@@ -132,6 +149,7 @@ class HaselSupply(Supply):
         if isinstance(message, protocol.Reply):
             self._take_reply(message)
         elif message.words[0] == "BOOT":
+            self._reset_found = True
             raise SupplyFaultError(FaultCode.DEVICE_RESET, " ".join(message.words[1:]))
         return None
 
@@ -147,24 +165,56 @@ class HaselSupply(Supply):
                 FaultCode.TWO_MASTERS, f"the board answered {text}, which was not asked here"
             )
         if reply.accepted:
+            if reply.words[0] == "MAXIMUM":
+                self._maxima_v = {round(self.limits.maximum_voltage_v)}
             return
         if pending.words[0] == "ARM":
-            open_interlock = reply.words[0] == "INTERLOCK"
-            self.refusal = "its interlock is open" if open_interlock else f"the board answered {text}"
+            self.refusal = REFUSALS.get(reply.words[0], f"the board answered {text}")
         elif reply.words[0] != "STATE":  # a voltage may cross a fault on the line; telemetry tells that fault
             raise SupplyFaultError(FaultCode.COMMAND_REFUSED, text)
 
     def _read(self, report: protocol.Telemetry, now_s: float) -> Reading:
-        fault = Fault(board_fault(report.fault_code)) if report.mode is Mode.FAULT else None
+        self._check_for_reset(report)
+        fault = self._fault(report) if report.mode is Mode.FAULT else None
+        discharged = all(abs(volts) < DISCHARGED_V for volts in report.measured)
         return Reading(
             time_s=self._device_clock.host_time(report.time_us, now_s),
             mode=report.mode,
-            grounded=report.grounded,
+            grounded=report.grounded and discharged,
             fault=fault,
             commanded_v=(float(report.voltage[0]), float(report.voltage[1])),
             measured_v=(float(report.measured[0]), float(report.measured[1])),
             current_a=(report.current[0] * 1e-6, report.current[1] * 1e-6),
+            interlock_closed=report.interlock,
         )
+
+    def _check_for_reset(self, report: protocol.Telemetry) -> None:
+        last_us, self._device_us = self._device_us, report.time_us
+        if last_us is not None and (report.time_us - last_us) % CLOCK_MODULUS_US > CLOCK_MODULUS_US // 2:
+            self._reset_found = True
+            raise SupplyFaultError(FaultCode.DEVICE_RESET, "its clock went back, though it did not announce a reset")
+        if report.maximum not in self._maxima_v and not self._reset_found:
+            self._reset_found = True  # once: its further reports still tell the truth about its output
+            expected = " or ".join(f"{volts} V" for volts in sorted(self._maxima_v))
+            raise SupplyFaultError(
+                FaultCode.DEVICE_RESET, f"its maximum is {report.maximum} V, {expected} was expected"
+            )
+
+    def _fault(self, report: protocol.Telemetry) -> Fault:
+        code, limits = board_fault(report.fault_code), self.limits
+        if code is FaultCode.OVERCURRENT:
+            slew, trip_ua = limits.slew_v_per_ms, limits.trip_current_a * 1e6
+            return Fault(
+                code,
+                f"charging at slew_rate {slew:g} V/ms takes {slew:g} µA for each nF, so {trip_ua / slew:.2g} nF"
+                f" reach the {trip_ua:g} µA of trip_current; lower slew_rate for more, else look for a breakdown",
+            )
+        if code is FaultCode.INTERLOCK:
+            words = ("closed" if closed else "open" for closed in report.interlock)
+            return Fault(code, "its two channels are now " + " and ".join(words))
+        if code is FaultCode.NOT_GROUNDED:
+            return Fault(code, f"{report.measured[0]} and {report.measured[1]} V")
+        return Fault(code)
 
 
 def _answers(reply: protocol.Reply, command: tuple[str, ...]) -> bool:

@@ -5,7 +5,9 @@ from dataclasses import dataclass
 
 from hasel_driver.errors import LimitError
 
-HARDWARE_MAXIMUM_V = 10_000.0
+HARDWARE_MAXIMUM_V = 9_800.0  # the monitors end at 10 kV: above this they could not tell too much from enough
+MOST_TRIP_A = 980e-6  # of 1 mA, for the same reason
+DISCHARGED_V = 200.0  # below it a muscle counts as discharged
 LONGEST_HEARTBEAT_S = 2.0
 
 Voltages = tuple[float, float]  # V, order upper, lower
@@ -16,9 +18,10 @@ class Limits:
     """Limits given to the board when the port is opened."""
 
     maximum_voltage_v: float = 6000.0
-    slew_v_per_ms: float = 400.0
+    slew_v_per_ms: float = 250.0
     trip_current_a: float = 450e-6
     heartbeat_s: float = 0.3
+    dead_time_s: float = 0.005
 
 
 def clip(requested: Voltages, maximum_v: float, bipolar: bool = True) -> Voltages:

@@ -1,11 +1,14 @@
 """ROS messages from the driver's own data."""
 
+import math
 import time
+from collections.abc import Sequence
 
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from hasel_interfaces.msg import SupplyState
 
+from hasel_driver.limits import Limits
 from hasel_driver.mode import Mode
 from hasel_driver.status import Status
 
@@ -22,7 +25,7 @@ def to_time(monotonic_s: float) -> Time:
     return Time(sec=nanoseconds // 1_000_000_000, nanosec=nanoseconds % 1_000_000_000)
 
 
-def to_supply_state(status: Status) -> SupplyState:
+def to_supply_state(status: Status, limits: Limits | None = None, holders: Sequence[str] = ()) -> SupplyState:
     """`/hasel/state`; in FAULT its text also tells whether the output is proven grounded."""
     message = SupplyState()
     message.header.stamp = to_time(status.time_s)
@@ -31,10 +34,23 @@ def to_supply_state(status: Status) -> SupplyState:
     message.current = list(status.current_a)
     message.mode = int(status.mode)
     message.fault_code = int(status.fault.code) if status.fault else 0
+    message.grounded = status.grounded is True
+    message.interlock = _interlock(status.interlock_closed)
+    message.emergency_stop_holders = list(holders)
+    message.maximum_voltage = limits.maximum_voltage_v if limits else math.nan
+    message.slew_rate = limits.slew_v_per_ms * 1e3 if limits else math.nan
+    message.trip_current = limits.trip_current_a if limits else math.nan
+    message.heartbeat_timeout = limits.heartbeat_s if limits else math.nan
     if status.mode is Mode.FAULT:
         sentence = str(status.fault) if status.fault else "The supply is not connected, or does not report"
         message.fault_text = f"{sentence[:1].upper()}{sentence[1:]}. {OUTPUT_WORDS[status.output]}"
     return message
+
+
+def _interlock(closed: tuple[bool, bool] | None) -> list[int]:
+    if closed is None:
+        return [SupplyState.INTERLOCK_UNKNOWN] * 2
+    return [SupplyState.INTERLOCK_CLOSED if each else SupplyState.INTERLOCK_OPEN for each in closed]
 
 
 def to_diagnostics(status: Status | None, stamp: Time, details: dict[str, object]) -> DiagnosticArray:

@@ -1,44 +1,75 @@
 """Declares the table of parameters in a node, and guards it."""
 
+import difflib
 from collections.abc import Callable
 
-from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 
-from hasel_driver.errors import LimitError
-from hasel_driver.parameters import PARAMETERS
+from hasel_driver.errors import DriverError, LimitError
+from hasel_driver.parameters import LOWERABLE, PARAMETERS, Parameter
+
+TABLE = {parameter.name: parameter for parameter in PARAMETERS}
 
 
-def declare(node: Node, in_use: Callable[[], bool]) -> None:
-    """Declare every parameter; while `in_use` none can be changed: the board was set up with them."""
+def declare(node: Node, in_use: Callable[[], bool], lower: Callable[[float], None]) -> None:
+    """Declare every parameter; while `in_use` none can be changed, but for the limit handed to `lower`.
+
+    Raises:
+        LimitError: a value given at the start is out of range, or a name is misspelt.
+    """
+    _check_names(node)
     for parameter in PARAMETERS:
-        description = (
-            f"{parameter.description} [{parameter.unit}]" if parameter.unit else parameter.description
-        )
-        descriptor = ParameterDescriptor(description=description)
-        if parameter.low is not None:
-            interval = FloatingPointRange(from_value=parameter.low, to_value=parameter.high)
-            descriptor.floating_point_range = [interval]
-        descriptor.additional_constraints = ", ".join(parameter.choices)
-        node.declare_parameter(parameter.name, parameter.default, descriptor)
-    table = {parameter.name: parameter for parameter in PARAMETERS}
+        node.declare_parameter(parameter.name, parameter.default, _descriptor(parameter))
+        parameter.check(node.get_parameter(parameter.name).value)
 
     def check(changes) -> SetParametersResult:
-        for change in changes:
-            if change.name not in table:
-                continue
-            try:
-                table[change.name].check(change.value)
-            except LimitError as error:
-                return SetParametersResult(successful=False, reason=str(error))
-            if in_use():
-                reason = f"{change.name} is in use: deactivate and clean up the node, then change it."
-                return SetParametersResult(successful=False, reason=reason)
+        try:
+            for change in changes:
+                if change.name in TABLE:
+                    _check_change(TABLE[change.name], change.value, in_use(), lower)
+        except DriverError as error:
+            return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 
     node.add_on_set_parameters_callback(check)
 
 
 def values(node: Node) -> dict:
-    """The present value of every parameter."""
-    return {parameter.name: node.get_parameter(parameter.name).value for parameter in PARAMETERS}
+    """The present value of every parameter; whole numbers as floats where floats are meant."""
+    return {
+        parameter.name: parameter.convert(node.get_parameter(parameter.name).value) for parameter in PARAMETERS
+    }
+
+
+def _check_change(
+    parameter: Parameter, value: object, in_use: bool, lower: Callable[[float], None]
+) -> None:
+    parameter.check(value)
+    if not in_use:
+        return
+    if parameter.name != LOWERABLE:
+        raise LimitError(f"{parameter.name} is in use: deactivate and clean up the node, then change it.")
+    lower(float(value))
+
+
+def _descriptor(parameter: Parameter) -> ParameterDescriptor:
+    unit = f" [{parameter.unit}]" if parameter.unit else ""
+    # Typed by our own check: `maximum_voltage:=200` is a whole number to ROS, and would not be a float.
+    descriptor = ParameterDescriptor(description=parameter.description + unit, dynamic_typing=True)
+    if isinstance(parameter.low, float):
+        descriptor.floating_point_range = [
+            FloatingPointRange(from_value=parameter.low, to_value=parameter.high)
+        ]
+    elif parameter.low is not None:
+        descriptor.integer_range = [IntegerRange(from_value=parameter.low, to_value=parameter.high)]
+    descriptor.additional_constraints = ", ".join(parameter.choices)
+    return descriptor
+
+
+def _check_names(node: Node) -> None:
+    """A misspelt parameter would be ignored without a word, and its default used."""
+    for name in node._parameter_overrides:
+        nearest = difflib.get_close_matches(name, TABLE, n=1, cutoff=0.8)
+        if name not in TABLE and nearest:
+            raise LimitError(f"There is no parameter {name!r}: did you mean {nearest[0]!r}?")

@@ -1,8 +1,11 @@
 """The node's parameters: names, defaults, units, ranges; declared in the node and listed in the README."""
 
+import difflib
 from dataclasses import dataclass
 
 from hasel_driver.errors import LimitError
+
+LOWERABLE = "maximum_voltage"  # the one that may be changed, downwards, while it is in use
 
 
 @dataclass(frozen=True)
@@ -10,7 +13,7 @@ class Parameter:
     """One parameter; numbers have a range."""
 
     name: str
-    default: str | float | bool | list[str]
+    default: str | float | int | bool | list[str]
     unit: str
     description: str
     low: float | None = None
@@ -18,25 +21,52 @@ class Parameter:
     choices: tuple[str, ...] = ()
 
     def check(self, value: object) -> None:
-        """Raises LimitError for a value outside range or choices."""
+        """Raises LimitError for a value of another kind, or outside range or choices."""
+        kind = self._kind(value)
+        if kind != self._kind(self.default) and (kind, self._kind(self.default)) != ("whole number", "number"):
+            raise LimitError(f"{self.name} is {value!r}, a {self._kind(self.default)} was expected.")
         if self.low is not None and not self.low <= float(value) <= self.high:
             raise LimitError(
                 f"{self.name} is {value} {self.unit}, {self.low:g} to {self.high:g} was expected."
             )
         if self.choices and value not in self.choices:
-            raise LimitError(f"{self.name} is {value!r}, one of {', '.join(self.choices)} was expected.")
+            nearest = difflib.get_close_matches(str(value).lower(), self.choices, n=1, cutoff=0.4)
+            hint = f" Did you mean {nearest[0]}?" if nearest else ""
+            raise LimitError(f"{self.name} is {value!r}, one of {', '.join(self.choices)} was expected.{hint}")
+
+    def convert(self, value: object) -> object:
+        """A whole number as a float where a float is meant."""
+        return float(value) if isinstance(self.default, float) else value
+
+    @staticmethod
+    def _kind(value: object) -> str:
+        if isinstance(value, bool):
+            return "truth value"
+        if isinstance(value, (int, float)):
+            return "whole number" if isinstance(value, int) else "number"
+        return "text" if isinstance(value, str) else "list of texts"
 
 
 PARAMETERS: tuple[Parameter, ...] = (
     Parameter("port", "/dev/ttyACM0", "", "serial port of the supply (with shvps: of the upper muscle's)"),
     Parameter("backend", "hasel", "", "protocol of the supply", choices=("hasel", "shvps")),
     Parameter("second_port", "", "", "serial port of the lower muscle's supply (shvps only)"),
-    Parameter("maximum_voltage", 6000.0, "V", "commands are clipped to ± this", 0.0, 10_000.0),
-    Parameter("slew_rate", 400.0, "V/ms", "steepest change of the set point", 1.0, 2000.0),
     Parameter(
-        "trip_current", 450e-6, "A", "converter current at which the board latches a fault", 1e-6, 1e-3
+        "maximum_voltage", 6000.0, "V", "commands are clipped to ± this; may be lowered at any time", 0.0, 9800.0
+    ),
+    Parameter("slew_rate", 250.0, "V/ms", "steepest change of the set point", 1.0, 2000.0),
+    Parameter(
+        "trip_current", 450e-6, "A", "converter current at which the board latches a fault", 1e-6, 9.8e-4
     ),
     Parameter("heartbeat_timeout", 0.3, "s", "silence after which the board grounds its output", 0.1, 0.45),
+    Parameter(
+        "dead_time",
+        0.005,
+        "s",
+        "between opening and closing relays: at least their release time and bounce by the data sheet",
+        0.002,
+        0.05,
+    ),
     Parameter("discovery_time", 1.0, "s", "arming waits this long for a latched emergency stop", 0.0, 60.0),
     Parameter(
         "accept_no_deadman", False, "", "allow arming a supply that stays live when its host dies (shvps)"
@@ -45,10 +75,19 @@ PARAMETERS: tuple[Parameter, ...] = (
         "recording_directory", "recordings", "", "where RunExperiment writes when its goal names no file"
     ),
     Parameter(
+        "history_file",
+        "recordings/supply_history.jsonl",
+        "",
+        "where faults, breakdowns and leakage are noted for good; empty: nowhere",
+    ),
+    Parameter(
         "recorded_topics",
         ["/hasel/bending/measured", "/hasel/markers/measured", "/hasel/bending/simulated"],
         "",
         "recorded with /hasel/state; required in the recording when published as the experiment begins",
+    ),
+    Parameter(
+        "realtime_priority", 40, "", "of the threads that send commands, where the system allows it; 0: none", 0, 90
     ),
     Parameter("autostart", True, "", "configure and activate at start (never arms)"),
 )

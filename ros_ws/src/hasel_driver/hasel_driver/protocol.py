@@ -7,17 +7,18 @@ from dataclasses import dataclass
 from hasel_driver.errors import ProtocolError
 from hasel_driver.mode import Mode
 
-PROTOCOL_VERSION = 1
+PROTOCOL_VERSION = 2
+BAUD = 500_000
 MAXIMUM_LINE_LENGTH = 96
 MOST_WORDS = 10  # of a command
 SEQUENCE_MODULUS = 256
-IDENTITY = ("hasel-supply", "1.0", "protocol", str(PROTOCOL_VERSION))
+IDENTITY = ("hasel-supply", "2.0", "protocol", str(PROTOCOL_VERSION))
 
 _COMMAND = re.compile(r">(\d{3}) (.*\S.*)")
 _REPLY = re.compile(r"<(\d{3}|---) (OK|ERR) (.*\S.*)")
 _TELEMETRY = re.compile(
     r"#t=(\d{1,10}) s=([A-Z]+) g=([01]) f=(\d{1,3})"
-    r" v=(-?\d{1,5}),(-?\d{1,5}) m=(-?\d{1,5}),(-?\d{1,5}) i=(\d{1,5}),(\d{1,5})"
+    r" v=(-?\d{1,5}),(-?\d{1,5}) m=(-?\d{1,5}),(-?\d{1,5}) i=(\d{1,5}),(\d{1,5}) k=([01])([01]) x=(\d{1,5})"
 )
 
 
@@ -51,11 +52,13 @@ class Telemetry:
 
     time_us: int
     mode: Mode
-    grounded: bool
+    grounded: bool  # by contacts and measured voltages
     fault_code: int
     voltage: tuple[int, int]  # V, asked for
     measured: tuple[int, int]  # V
     current: tuple[int, int]  # µA
+    interlock: tuple[bool, bool] = (True, True)  # closed, by channel
+    maximum: int = 0  # V, in force
 
 
 Line = Reply | Event | Telemetry
@@ -130,6 +133,8 @@ def _parse_telemetry(text: str) -> Telemetry:
         voltage=(numbers[1], numbers[2]),
         measured=(numbers[3], numbers[4]),
         current=(numbers[5], numbers[6]),
+        interlock=(bool(numbers[7]), bool(numbers[8])),
+        maximum=numbers[9],
     )
 
 
@@ -139,4 +144,5 @@ def encode_telemetry(report: Telemetry) -> bytes:
         f"#t={report.time_us % 2**32} s={report.mode.name} g={int(report.grounded)} f={report.fault_code}"
         f" v={report.voltage[0]},{report.voltage[1]} m={report.measured[0]},{report.measured[1]}"
         f" i={report.current[0]},{report.current[1]}"
+        f" k={int(report.interlock[0])}{int(report.interlock[1])} x={report.maximum}"
     )

@@ -6,7 +6,7 @@ import select
 
 import serial
 
-from hasel_driver.errors import PortError
+from hasel_driver.errors import PortError, PortInUseError
 from hasel_driver.faults import FaultCode, SupplyFaultError
 
 
@@ -27,9 +27,12 @@ class SerialPort:
         try:
             self._serial = serial.Serial(self.path, self._baud, timeout=0, write_timeout=0, exclusive=True)
         except (OSError, ValueError) as error:
-            reason = "another program has it open" if "lock" in str(error) else str(error)
+            if "lock" in str(error):
+                raise PortInUseError(
+                    f"The serial port {self.path} cannot be opened: another program has it open; end that first."
+                ) from error
             raise PortError(
-                f"The serial port {self.path} cannot be opened ({reason}): check the cable, the parameter"
+                f"The serial port {self.path} cannot be opened ({error}): check the cable, the parameter"
                 " `port`, that the user is in the group dialout, and that no other program uses it."
             ) from error
 

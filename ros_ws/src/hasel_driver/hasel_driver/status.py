@@ -21,6 +21,7 @@ class Status:
     commanded_v: Voltages
     measured_v: Voltages
     current_a: Voltages
+    interlock_closed: tuple[bool, bool] | None = None
 
     @property
     def output(self) -> str:

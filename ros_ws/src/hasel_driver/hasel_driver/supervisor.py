@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from hasel_driver.errors import LimitError, PortError, RefusedError
 from hasel_driver.faults import Fault, FaultCode, SupplyFaultError
-from hasel_driver.limits import Voltages, clip
+from hasel_driver.limits import Limits, Voltages, clip
 from hasel_driver.mode import Mode
 from hasel_driver.status import UNKNOWN, Status
 from hasel_driver.supply import Capabilities, Connection, Reading, Supply
@@ -21,6 +21,8 @@ TRANSITION_S = 0.3  # time the board has to follow a request
 STOP_REPEAT_S = 0.05
 FIRST_READING_S = 0.5
 SETTLING_S = 0.05  # after which a report tells what a voltage asked for has done
+GROUND_PROOF_S = 0.3  # a supply that should be grounded, and is not, is a fault after that
+ABOVE_MAXIMUM_S = 0.2  # so long may more than the maximum be read: after it was lowered, muscles discharge first
 REOPEN_S = 0.03  # lets the other end notice that the port was closed
 
 
@@ -38,12 +40,19 @@ class Supervisor:
         self._stop_sent_s = -math.inf
         self._command_expires_s: float | None = None
         self._experiment_running = False
+        self._ungrounded_s: float | None = None  # since when there is no proof of a ground that should be
+        self._above_s: float | None = None  # since when more than the maximum is read
         self._driven_s = -math.inf  # when a voltage was last asked for; infinite while a waveform runs
 
     @property
     def maximum_voltage_v(self) -> float:
         """Limit to which commands are clipped [V]."""
         return self._supply.limits.maximum_voltage_v
+
+    @property
+    def limits(self) -> Limits:
+        """Those that the supply works within."""
+        return self._supply.limits
 
     @property
     def connected(self) -> bool:
@@ -83,15 +92,23 @@ class Supervisor:
         reading = self._fresh_reading(now_s)
         if reading is None:
             return Status(now_s, Mode.FAULT, self.fault, None, UNKNOWN, UNKNOWN, UNKNOWN)
-        mode = Mode.FAULT if self.fault else reading.mode
+        grounded = self._grounded(reading)
+        mode = Mode.ACTIVE if grounded is False and reading.mode is not Mode.FAULT else reading.mode
+        mode = Mode.FAULT if self.fault else mode
         values = (reading.commanded_v, reading.measured_v, reading.current_a)
-        return Status(reading.time_s, mode, self.fault, self._grounded(reading), *values)
+        return Status(reading.time_s, mode, self.fault, grounded, *values, reading.interlock_closed)
 
     def arm(self) -> None:
         """Ask the supply to arm. Raises RefusedError unless STANDBY is proven."""
         status = self.status()
-        if status.mode is not Mode.STANDBY:
+        unproven = self.capabilities.proves_grounded and status.grounded is False
+        if status.mode is not Mode.STANDBY and not (unproven and status.mode is Mode.ACTIVE):
             raise RefusedError(f"Arming needs the state STANDBY, it is {status}: see to that first.")
+        if unproven:
+            raise RefusedError(
+                f"Arming needs an output proven grounded, it is {status}, {_volts(status.measured_v)} measured:"
+                " treat it as live, find out why, and use the ground stick."
+            )
         self._command_expires_s = None
         self._armed_wanted = True
         self._requested_s = self._clock()
@@ -129,6 +146,8 @@ class Supervisor:
         time.sleep(REOPEN_S)
         self._open()
         self.fault = self._reading.fault
+        if self.fault is None and self._grounded(self._reading) is False:
+            self.fault = Fault(FaultCode.GROUND_NOT_PROVEN, f"{_volts(self._reading.measured_v)} measured")
         if self.fault is not None:
             raise RefusedError(f"The fault came back at once: {self.fault}.")
 
@@ -149,6 +168,16 @@ class Supervisor:
             return
         self._command_expires_s = self._clock() + COMMAND_TIMEOUT_S - max(age_s, 0.0)
         self._drive(applied)
+
+    def lower_maximum(self, voltage_v: float) -> None:
+        """From now on a lower limit [V], in any state; raises RefusedError for a higher one."""
+        if not voltage_v <= self.maximum_voltage_v:
+            raise RefusedError(
+                f"The limit is {self.maximum_voltage_v:g} V and can only be lowered while the port is open,"
+                f" not set to {voltage_v:g} V: deactivate and clean up the node to raise it."
+            )
+        self._above_s = None
+        self._guard(lambda: self._supply.lower_maximum(voltage_v))
 
     def begin_experiment(self) -> None:
         """From here on commands from outside are a second master. Raises RefusedError unless armed at 0 V."""
@@ -174,10 +203,10 @@ class Supervisor:
             self._drive(applied)
 
     def end_experiment(self) -> None:
-        """0 V now, still armed."""
+        """0 V now, without waiting for the slew limit; still armed."""
         self._end_drive()
         if self._armed_wanted:
-            self._guard(lambda: self._supply.set_voltage((0.0, 0.0)))
+            self._guard(self._supply.ground)
 
     def service(self) -> bool:
         """Read, check, and send what is due; True when a new reading came."""
@@ -200,6 +229,7 @@ class Supervisor:
             self._supply.close()
             raise
         self.name = connection.name
+        self._ungrounded_s = self._above_s = None
         self._armed_wanted = False
         self._requested_s = self._clock()
         return connection
@@ -253,11 +283,36 @@ class Supervisor:
             self.fail(Fault(FaultCode.NO_TELEMETRY, f"none for {STALE_S} s"))
         if self._command_expires_s is not None and now_s > self._command_expires_s:
             self._command_expires_s = None
-            self._guard(lambda: self._supply.set_voltage((0.0, 0.0)))
+            self._guard(self._supply.ground)
         fresh = self._fresh_reading(now_s)
+        if fresh is not None and self.fault is None:
+            self._watch_ground(fresh, now_s)
+            self._watch_maximum(fresh, now_s)
         proven = fresh is not None and not fresh.mode.may_be_live
         if self.fault is not None and not proven and now_s - self._stop_sent_s > STOP_REPEAT_S:
             self._send_stop()
+
+    def _watch_ground(self, reading: Reading, now_s: float) -> None:
+        should_be = reading.mode is Mode.STANDBY or not any(reading.commanded_v)
+        if reading.grounded is not False or not should_be:
+            self._ungrounded_s = None
+            return
+        self._ungrounded_s = now_s if self._ungrounded_s is None else self._ungrounded_s
+        limits = self._supply.limits
+        ramp_s = limits.maximum_voltage_v / limits.slew_v_per_ms * 1e-3 if reading.mode.may_be_live else 0.0
+        if now_s - self._ungrounded_s > GROUND_PROOF_S + ramp_s:
+            self.fail(Fault(FaultCode.GROUND_NOT_PROVEN, f"{_volts(reading.measured_v)} measured"))
+
+    def _watch_maximum(self, reading: Reading, now_s: float) -> None:
+        maximum_v = self.maximum_voltage_v
+        if not max(map(abs, reading.measured_v)) > max(1.05 * maximum_v, maximum_v + 100.0):
+            self._above_s = None
+            return
+        self._above_s = now_s if self._above_s is None else self._above_s
+        if now_s - self._above_s > ABOVE_MAXIMUM_S:
+            self.fail(
+                Fault(FaultCode.ABOVE_MAXIMUM, f"{_volts(reading.measured_v)}, {maximum_v:g} V is allowed")
+            )
 
     def _may_keep_alive(self) -> bool:
         """An armed board gets heartbeats only while nothing is wrong, so that its own timeout can work."""
@@ -282,3 +337,7 @@ class Supervisor:
             action()
         except SupplyFaultError as problem:
             self.fail(problem.fault)
+
+
+def _volts(voltage_v: Voltages) -> str:
+    return f"{voltage_v[0]:.0f} and {voltage_v[1]:.0f} V"

@@ -1,7 +1,7 @@
 """What every high-voltage supply must do for the driver, whatever its protocol."""
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hasel_driver.faults import Fault
 from hasel_driver.limits import Limits, Voltages
@@ -33,11 +33,12 @@ class Reading:
 
     time_s: float  # host's monotonic clock, when it was measured
     mode: Mode
-    grounded: bool | None  # None: it cannot tell
+    grounded: bool | None  # proven by contacts and measured voltages; None: it cannot tell
     fault: Fault | None
     commanded_v: Voltages
     measured_v: Voltages
     current_a: Voltages
+    interlock_closed: tuple[bool, bool] | None = None  # by channel; None: it cannot tell
 
 
 class Supply(ABC):
@@ -83,6 +84,14 @@ class Supply(ABC):
     @abstractmethod
     def set_voltage(self, voltage_v: Voltages) -> None:
         """Ask for a voltage within the limits; the newest replaces one not yet sent."""
+
+    def ground(self) -> None:
+        """Ask for 0 V at once, without waiting for the slew limit where the board can; still armed."""
+        self.set_voltage((0.0, 0.0))
+
+    def lower_maximum(self, voltage_v: float) -> None:
+        """Ask for a lower limit [V], in any mode."""
+        self.limits = replace(self.limits, maximum_voltage_v=voltage_v)
 
     def start(self, waveform: Waveform) -> None:
         """Run `waveform` on the board, where `capabilities.waveforms`."""

@@ -20,6 +20,7 @@ from hasel_driver.supply import Supply
 LOOP_PERIOD_S = 0.01
 STATUS_PERIOD_S = 0.1  # when no readings come
 HOST_STALL_S = 0.3
+LAST_WORD_S = 0.3  # within which the supply should prove its output grounded at the end
 ENDED = "The supply's thread has ended: clean up and configure the node."
 
 
@@ -31,7 +32,9 @@ class _Expectation:
 
 
 class SupplyThread(threading.Thread):
-    """`on_status` is called in this thread for each reading, or every 100 ms; `on_step` once per loop."""
+    """All are called in this thread: `on_begin` first, `on_status` for each reading, or every 100 ms, `on_step` once
+    per loop.
+    """
 
     def __init__(
         self,
@@ -39,11 +42,12 @@ class SupplyThread(threading.Thread):
         supply: Supply,
         on_status: Callable[[Status], None],
         on_step: Callable[[], None] = lambda: None,
+        on_begin: Callable[[], None] = lambda: None,
     ) -> None:
         super().__init__(name="supply", daemon=True)
         self.supervisor = supervisor
         self._supply = supply
-        self._on_status, self._on_step = on_status, on_step
+        self._on_status, self._on_step, self._on_begin = on_status, on_step, on_begin
         self._requests: queue.SimpleQueue[tuple[Callable[[], Any], Future]] = queue.SimpleQueue()
         self._expectations: list[_Expectation] = []
         self._wake_reader, self._wake_writer = os.pipe()
@@ -52,6 +56,7 @@ class SupplyThread(threading.Thread):
         self._host_alive_s: dict[str, float] = {}
         self._stopping = False
         self._ended = threading.Event()
+        self._closing = threading.Lock()
         self._status_s = 0.0
 
     def call(self, request: Callable[[], Any]) -> Future:
@@ -76,28 +81,43 @@ class SupplyThread(threading.Thread):
         self._host_alive_s[part] = time.monotonic()
 
     def stop(self) -> None:
-        """Disarm, close the port and end."""
+        """Disarm, tell what became of it, close the port and end."""
+        with contextlib.suppress(RefusedError, TimeoutError):
+            self.call(self.supervisor.disarm).result(timeout=LAST_WORD_S)
+            if not self.expect(self._at_rest, LAST_WORD_S).result(timeout=2 * LAST_WORD_S):
+                unproven = Fault(FaultCode.GROUND_NOT_PROVEN, "the driver ends")
+                self.call(lambda: self.supervisor.fail(unproven)).result(timeout=LAST_WORD_S)
+            self.call(lambda: self._on_status(self.supervisor.status())).result(timeout=LAST_WORD_S)
         self._stopping = True
         self._wake()
         self.join(timeout=5.0)
 
+    def _at_rest(self) -> bool:
+        status = self.supervisor.status()
+        proven = status.grounded or not self.supervisor.capabilities.proves_grounded
+        return not self.supervisor.connected or (proven and not status.mode.may_be_live)
+
     def run(self) -> None:
         """The loop; however it ends, the supply is disarmed and its heartbeat ends."""
+        self._on_begin()
         try:
             while not self._stopping:
                 self._wait()
                 self._step()
         finally:
             self.supervisor.disconnect()
-            os.close(self._wake_reader)
-            self._ended.set()
+            with self._closing:  # nobody writes to a descriptor that is no longer ours
+                self._ended.set()
+                os.close(self._wake_reader)
+                os.close(self._wake_writer)
             self._refuse_requests()
             for expectation in self._expectations:
                 expectation.future.set_exception(RefusedError(ENDED))
 
     def _wake(self) -> None:
-        with contextlib.suppress(BlockingIOError, BrokenPipeError):  # awake already, or ended
-            os.write(self._wake_writer, b"w")
+        with contextlib.suppress(BlockingIOError), self._closing:  # awake already
+            if not self._ended.is_set():
+                os.write(self._wake_writer, b"w")
 
     def _refuse_requests(self) -> None:
         with contextlib.suppress(queue.Empty):

@@ -2,10 +2,9 @@
 
 from dataclasses import dataclass
 
+from hasel_driver.limits import DISCHARGED_V
 from hasel_driver.virtual_muscle import Contact
 
-DEAD_TIME_MS = 2
-DISCHARGED_V = 200.0
 
 
 @dataclass
@@ -28,15 +27,15 @@ class VirtualBridge:
         if self.contact.sign:
             self._move(Contact.OPEN)
 
-    def step(self, wanted_v: float, slew_v: float, measured_v: float) -> None:
+    def step(self, wanted_v: float, slew_v: float, measured_v: float, dead_time_ms: int) -> None:
         """One millisecond towards `wanted_v` [V], the set point moving by at most `slew_v` [V]."""
         self._dwell_ms += 1
         polarity = Contact.POSITIVE if wanted_v > 0 else Contact.NEGATIVE if wanted_v < 0 else Contact.GROUND
         if self.contact is Contact.OPEN:
-            self._leave_open(polarity)
+            self._leave_open(polarity, dead_time_ms)
         elif self.contact is Contact.GROUND:
             discharged = abs(measured_v) < DISCHARGED_V
-            if polarity is not Contact.GROUND and discharged and self._dwell_ms > DEAD_TIME_MS:
+            if polarity is not Contact.GROUND and discharged and self._dwell_ms > dead_time_ms:
                 self._move(Contact.OPEN)
         elif self.contact is polarity:
             change = abs(wanted_v) - self.set_point_v
@@ -46,8 +45,8 @@ class VirtualBridge:
         else:
             self.release()
 
-    def _leave_open(self, polarity: Contact) -> None:
-        if self._dwell_ms <= DEAD_TIME_MS:
+    def _leave_open(self, polarity: Contact, dead_time_ms: int) -> None:
+        if self._dwell_ms <= dead_time_ms:
             return
         # A source that was just opened is followed by ground, never by the other source.
         self._move(Contact.GROUND if self._opened_from.sign else polarity)

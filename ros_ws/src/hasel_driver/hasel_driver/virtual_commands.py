@@ -1,5 +1,6 @@
 """Commands of the virtual board: what each does, or why it is refused (`firmware/PROTOCOL.md`)."""
 
+import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -7,6 +8,7 @@ from hasel_driver import protocol
 from hasel_driver.errors import LimitError
 from hasel_driver.faults import FaultCode
 from hasel_driver.mode import Mode
+from hasel_driver.virtual_calibration import CALIBRATION_RANGES, Calibration
 from hasel_driver.waveform import Waveform
 
 if TYPE_CHECKING:
@@ -14,12 +16,16 @@ if TYPE_CHECKING:
 
 # quantity: (least, most, at boot)
 SETTINGS: dict[str, tuple[int, int, int]] = {
-    "MAXIMUM": (0, 10_000, 10_000),
-    "SLEW": (1, 2_000, 400),
-    "TRIP": (1, 1_000, 450),
+    "MAXIMUM": (0, 9_800, 0),
+    "SLEW": (1, 2_000, 250),
+    "TRIP": (1, 980, 450),
     "HEARTBEAT": (100, 2_000, 500),
+    "DEADTIME": (2, 50, 5),
     "TELEMETRY": (10, 1_000, 10),
 }
+
+
+CHANNELS = ("upper", "lower")
 
 
 class RefusalError(Exception):
@@ -35,6 +41,7 @@ def execute(board: "VirtualBoard", words: tuple[str, ...]) -> str:
         "STOP": lambda: board.fail(FaultCode.STOP),
         "CLEAR": lambda: _clear(board),
         "START": lambda: _start(board),
+        "GROUND": lambda: _ground(board),
     }
     if words[0] in simple:
         if len(words) > 1:
@@ -45,8 +52,15 @@ def execute(board: "VirtualBoard", words: tuple[str, ...]) -> str:
         raise RefusalError("UNKNOWN")
     if words[0] == "SET":
         _set(board, words[1], words[2:])
+        if words[1] == "CALIBRATION":
+            words = words[:3]
+    elif words[1] == "CALIBRATION":
+        if len(words) != 3 or words[2] not in CHANNELS:
+            raise RefusalError("SYNTAX")
     elif len(words) > 2:
         raise RefusalError("SYNTAX")
+    if words[1] == "CALIBRATION":
+        return f"CALIBRATION {words[2]} {board.calibrations[CHANNELS.index(words[2])].words()}"
     return f"{words[1]} {_value(board, words[1])}"
 
 
@@ -73,12 +87,37 @@ def _set(board: "VirtualBoard", quantity: str, arguments: tuple[str, ...]) -> No
     elif quantity == "WAVEFORM":
         _require(board.mode is not Mode.ACTIVE)
         board.waveform = _parse_waveform(board, arguments)
+    elif quantity == "CALIBRATION":
+        _set_calibration(board, arguments)
     elif quantity in SETTINGS:
-        _require(board.mode is Mode.STANDBY or quantity == "TELEMETRY")
-        least, most, _ = SETTINGS[quantity]
-        board.settings[quantity] = _clip(_integers(arguments, 1)[0], least, most)
+        _set_setting(board, quantity, arguments)
     else:
         raise RefusalError("UNKNOWN")
+
+
+def _set_calibration(board: "VirtualBoard", arguments: tuple[str, ...]) -> None:
+    if len(arguments) != 5 or arguments[0] not in CHANNELS:
+        raise RefusalError("SYNTAX")
+    values = _integers(arguments[1:], 4)
+    _require(board.mode is Mode.STANDBY)
+    clipped = [_clip(value, *bounds) for value, bounds in zip(values, CALIBRATION_RANGES.values(), strict=True)]
+    board.calibrations[CHANNELS.index(arguments[0])] = Calibration(*clipped)
+
+
+def _set_setting(board: "VirtualBoard", quantity: str, arguments: tuple[str, ...]) -> None:
+    if board.mode.may_be_live and quantity not in ("MAXIMUM", "TELEMETRY"):
+        raise RefusalError("STATE")
+    least, most, _ = SETTINGS[quantity]
+    try:
+        value = _clip(_integers(arguments, 1)[0], least, most)
+    except RefusalError:
+        _require(not board.mode.may_be_live or quantity == "TELEMETRY")
+        raise
+    lowers = quantity == "MAXIMUM" and value <= board.settings["MAXIMUM"]
+    _require(lowers or quantity == "TELEMETRY" or not board.mode.may_be_live)
+    board.settings[quantity] = value
+    if lowers:
+        board.lower_maximum()
 
 
 def _parse_waveform(board: "VirtualBoard", arguments: tuple[str, ...]) -> Waveform:
@@ -104,11 +143,24 @@ def _require(allowed: bool) -> None:
         raise RefusalError("STATE")
 
 
+def _require_safe(board: "VirtualBoard") -> None:
+    if not all(board.interlock_closed):
+        raise RefusalError("INTERLOCK")
+    if board.discrepancy:
+        raise RefusalError("DISCREPANCY")
+    if not board.grounded:
+        raise RefusalError("UNPROVEN")
+
+
 def _arm(board: "VirtualBoard") -> None:
     _require(board.mode is Mode.STANDBY)
-    if not board.interlock_closed:
-        raise RefusalError("INTERLOCK")
+    _require_safe(board)
     board.mode = Mode.ARMED
+
+
+def _ground(board: "VirtualBoard") -> None:
+    _require(board.mode.may_be_live)
+    board.ground(Mode.ARMED)
 
 
 def _disarm(board: "VirtualBoard") -> None:
@@ -117,8 +169,7 @@ def _disarm(board: "VirtualBoard") -> None:
 
 def _clear(board: "VirtualBoard") -> None:
     _require(board.mode is Mode.FAULT)
-    if not board.interlock_closed:
-        raise RefusalError("INTERLOCK")
+    _require_safe(board)
     board.mode, board.fault = Mode.STANDBY, FaultCode.NONE
 
 
@@ -132,9 +183,6 @@ def _clip(value: int, least: int, most: int) -> int:
 
 
 def _integers(words: tuple[str, ...], count: int) -> list[int]:
-    if len(words) != count or any(len(word.lstrip("-")) > 6 for word in words):
+    if len(words) != count or not all(re.fullmatch(r"-?[0-9]{1,6}", word) for word in words):
         raise RefusalError("SYNTAX")
-    try:
-        return [int(word) for word in words]
-    except ValueError as error:
-        raise RefusalError("SYNTAX") from error
+    return [int(word) for word in words]

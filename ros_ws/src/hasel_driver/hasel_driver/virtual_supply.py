@@ -16,8 +16,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from hasel_driver.pseudo_terminal import PseudoTerminal
-from hasel_driver.virtual_board import VirtualBoard
-from hasel_driver.virtual_muscle import VirtualMuscle
+from hasel_driver.virtual_board import Hardware, VirtualBoard
+from hasel_driver.virtual_muscle import Contact, VirtualMuscle
 
 LIVE_V = 50.0  # extra-low-voltage bound used in the tests' question "is the output dead?"
 LATE_MS, MOST_CATCH_UP_MS = 50, 100
@@ -31,7 +31,14 @@ INPUTS = {
     "noise": "flip one bit of what the host sends next",
     "reset": "reset the board",
     "overcurrent": "short the upper muscle by 2 MΩ until `recover`",
-    "interlock": "open the interlock until `recover`",
+    "interlock": "open both channels of the interlock until `recover`",
+    "interlock_a": "open its first channel only",
+    "interlock_b": "open its second channel only",
+    "weld": "weld the upper muscle's positive contact, so that its ground contact cannot close",
+    "unground": "keep the upper muscle's ground contact from closing",
+    "tickless": "switch the board's timer interrupt off, its line goes on",
+    "mute_reset": "reset the board, and lose its banner",
+    "miscalibrate": "the upper converter gives 3 % less than asked, its monitor says 4 % more than there is",
     "unplug": "pull the cable",
     "replug": "put it back, under a new path (printed, and linked)",
     "recover": "undo the above but reset and unplug",
@@ -60,7 +67,8 @@ class VirtualSupply:
         if name == "recover":
             self._faults.clear()
             self.board.muscles[0].short_ohm = float("inf")
-            self.board.interlock_closed = True
+            self.board.interlock_closed = [True, True]
+            self.board.hardware = Hardware()
         elif name == "help":
             self._tell("\n".join(f"{key:12} {meaning}" for key, meaning in INPUTS.items()))
         elif name not in INPUTS:
@@ -103,10 +111,14 @@ class VirtualSupply:
     def _watch_output(self) -> None:
         voltages = [abs(muscle.voltage_v) for muscle in self.board.muscles]
         self._peaks = [max(pair) for pair in zip(self._peaks, voltages, strict=True)]
-        live = max(voltages) > LIVE_V or not self.board.grounded
+        live = max(voltages) > LIVE_V or not all(self._ground_contacts())
         if live != self._live:
             self._live = live
             self._tell(f"{'live' if live else 'dead'} {time.monotonic():.4f}")
+
+    def _ground_contacts(self) -> list[bool]:
+        asked = enumerate(bridge.contact for bridge in self.board.bridges)
+        return [self.board.hardware.contact(channel, contact) is Contact.GROUND for channel, contact in asked]
 
     def _transmit(self) -> None:
         data, self.board.transmitted = bytes(self.board.transmitted), bytearray()
@@ -126,7 +138,31 @@ class VirtualSupply:
         self.board.muscles[0].short_ohm = 2e6
 
     def _inject_interlock(self) -> None:
-        self.board.interlock_closed = False
+        self.board.interlock_closed = [False, False]
+
+    def _inject_interlock_a(self) -> None:
+        self.board.interlock_closed[0] = False
+
+    def _inject_interlock_b(self) -> None:
+        self.board.interlock_closed[1] = False
+
+    def _inject_weld(self) -> None:
+        self.board.hardware.welded = True
+
+    def _inject_unground(self) -> None:
+        self.board.hardware.ground_broken = True
+
+    def _inject_tickless(self) -> None:
+        self.board.tick_dead = True
+
+    def _inject_mute_reset(self) -> None:
+        sent = len(self.board.transmitted)
+        self.board.reset("external")
+        del self.board.transmitted[sent:]
+
+    def _inject_miscalibrate(self) -> None:
+        self.board.hardware.set_point_gain[0] = 0.97
+        self.board.hardware.monitor_gain[0] = 1.04
 
     def _inject_unplug(self) -> None:
         self.port.unplug()
@@ -141,7 +177,7 @@ class VirtualSupply:
 
     def _inject_output(self) -> None:
         upper, lower = (muscle.voltage_v for muscle in self.board.muscles)
-        contacts = [int(bridge.grounded) for bridge in self.board.bridges]
+        contacts = [int(closed) for closed in self._ground_contacts()]
         self._tell(
             f"output {upper:.0f} {lower:.0f} {contacts[0]} {contacts[1]}"
             f" {self._peaks[0]:.0f} {self._peaks[1]:.0f}"

@@ -102,8 +102,8 @@ def converse():
     """Opens a conversation with a board that has just booted."""
     begun = []
 
-    def begin(rig: Rig) -> Conversation:
-        begun.append(Conversation(rig.port))
+    def begin(rig: Rig, **options) -> Conversation:
+        begun.append(Conversation(rig.port, **options))
         return begun[-1]
 
     yield begin

@@ -38,7 +38,7 @@ def test_boots_grounded_and_says_so(board):
 def test_settings_answer_with_the_value_applied(board, name):
     """SET clips to the documented range, GET repeats the value; the heartbeat can be neither off nor above 2 s."""
     least, most, initial = SETTINGS[name]
-    assert board.ask("GET", name) == (True, f"{name} {initial}")
+    assert board.ask("GET", name) == (True, f"{name} {6000 if name == 'MAXIMUM' else initial}")
     for asked, applied in ((least - 1, least), (most + 1, most), (least + 3, least + 3), (-99999, least)):
         assert board.ask("SET", name, asked) == (True, f"{name} {applied}")
         assert board.ask("GET", name) == (True, f"{name} {applied}")
@@ -167,19 +167,21 @@ def test_slew_is_limited(board):
     assert (last_v - first_v) / (last_ms - first_ms) == pytest.approx(20, rel=0.1)
 
 
-def test_reversal_breaks_before_it_makes(firmware_rig, converse):
-    """Over many reversals the firmware's pins never close two contacts, and keep 2 ms between them."""
+@pytest.mark.parametrize("dead_time_ms", [2, 6])
+def test_reversal_breaks_before_it_makes(firmware_rig, converse, dead_time_ms):
+    """Over many reversals the firmware's pins never close two contacts, and keep the dead time between them."""
     board = converse(firmware_rig)
+    board.ask("SET", "DEADTIME", dead_time_ms)
     board.ask("ARM")
     for index in range(40):
         sign = 1 if index % 2 else -1
         board.ask("SET", "VOLTAGE", sign * 1500, -sign * 1000)
-        time.sleep(0.025)
+        time.sleep(0.025 + 0.004 * dead_time_ms)
     board.ask("STOP")
     firmware_rig.await_live(False)
     overlaps, shortest_gap_us = firmware_rig.ask("contacts")
     assert overlaps == 0
-    assert 1900 < shortest_gap_us < 5000
+    assert 950 * dead_time_ms < shortest_gap_us < 1000 * dead_time_ms + 3000
 
 
 @pytest.mark.parametrize(

@@ -25,6 +25,8 @@ TELEMETRY = st.builds(
     voltage=st.tuples(VOLTS, VOLTS),
     measured=st.tuples(VOLTS, VOLTS),
     current=st.tuples(st.integers(0, 1000), st.integers(0, 1000)),
+    interlock=st.tuples(st.booleans(), st.booleans()),
+    maximum=st.integers(0, 9800),
 )
 
 
@@ -42,7 +44,7 @@ def test_every_example_of_the_document_parses():
         17, True, ("VOLTAGE", "6500", "-2000")
     )
     assert protocol.parse_device_line(examples[2].encode()) == protocol.Telemetry(
-        123456789, Mode.ACTIVE, False, 0, (6500, -2000), (6497, -1998), (12, 8)
+        123456789, Mode.ACTIVE, False, 0, (6500, -2000), (6497, -1998), (12, 8), (True, True), 6000
     )
 
 

@@ -34,7 +34,8 @@ class ObedientSupply(Supply):
     def __init__(self) -> None:
         super().__init__(Limits(maximum_voltage_v=5000.0))
         self.mode, self.voltage_v, self.fault = Mode.STANDBY, ZERO, None
-        self.deaf = self.silent = self.broken = False
+        self.deaf = self.silent = self.broken = self.ungrounded = False
+        self.measured_v = None
         self.heartbeats: list[bool] = []
 
     def open(self) -> Connection:
@@ -53,8 +54,8 @@ class ObedientSupply(Supply):
         self.heartbeats.append(heartbeat)
         if self.silent:
             return []
-        grounded = self.voltage_v == ZERO
-        values = (self.voltage_v, self.voltage_v, ZERO)
+        grounded = self.voltage_v == ZERO and not self.ungrounded
+        values = (self.voltage_v, self.measured_v or self.voltage_v, ZERO)
         return [Reading(now_s, self.mode, grounded, self.fault, *values)]
 
     def _become(self, mode: Mode, voltage_v=ZERO) -> None:
@@ -273,3 +274,25 @@ def test_no_sequence_of_calls_leaves_voltage_where_it_must_not_be(actions):
             assert supply.voltage_v == ZERO
         assert armed or supply.voltage_v == ZERO
         assert max(map(abs, supply.voltage_v)) <= 5000.0
+
+
+def test_a_ground_that_is_not_proven_is_a_fault(case):
+    """STANDBY without proof is FAULT after 300 ms; until then arming is refused."""
+    case.supply.ungrounded = True
+    case.pass_time(0.02)
+    with pytest.raises(RefusedError, match="proven grounded"):
+        case.supervisor.arm()
+    case.pass_time(0.5)
+    assert case.supervisor.fault.code is FaultCode.GROUND_NOT_PROVEN
+
+
+def test_a_measured_voltage_above_the_maximum_is_a_fault(case):
+    """The host does not rely on the board alone."""
+    case.arm()
+    case.supply.measured_v = (5400.0, 0.0)
+    case.supervisor.command((5000.0, 0.0))
+    case.pass_time(0.15)
+    assert case.supervisor.fault is None
+    case.supervisor.command((5000.0, 0.0))
+    case.pass_time(0.15)
+    assert case.supervisor.fault.code is FaultCode.ABOVE_MAXIMUM

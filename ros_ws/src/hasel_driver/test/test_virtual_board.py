@@ -43,6 +43,8 @@ STEPS = st.lists(
 def test_is_live_only_while_armed_and_heard(steps):
     """No conversation leaves voltage on in STANDBY or FAULT, above MAXIMUM, or longer than the heartbeat."""
     board, sequence, silent_ms, armed = VirtualBoard(), 0, 0, False
+    board.settings["MAXIMUM"] = 9000
+    above_ms = 0
     for kind, value in steps:
         if kind == "command":
             sequence += 1
@@ -64,7 +66,8 @@ def test_is_live_only_while_armed_and_heard(steps):
             board.tick()
             silent_ms += 1
             voltages = [abs(muscle.voltage_v) for muscle in board.muscles]
-            assert max(voltages) <= board.settings["MAXIMUM"] + 1
+            above_ms = above_ms + 1 if max(voltages) > board.settings["MAXIMUM"] + 1 else 0
+            assert above_ms < 30  # a limit that was lowered: discharged by way of ground
             assert armed or max(voltages) < 50 or not board.mode.may_be_live
             if silent_ms > 520:
                 assert max(voltages) < 50
@@ -84,6 +87,8 @@ def test_a_reset_forgets_everything_but_the_charge():
         board.tick()
     assert board.muscles[0].voltage_v > 2990
     board.reset("watchdog")
-    assert (board.mode, board.grounded, board.settings["MAXIMUM"]) == (Mode.STANDBY, True, 10_000)
+    contacts = [bridge.grounded for bridge in board.bridges]
+    assert (board.mode, contacts, board.settings["MAXIMUM"]) == (Mode.STANDBY, [True, True], 0)
+    assert not board.grounded
     assert board.muscles[0].voltage_v > 2990
     assert b"reset=watchdog" in board.transmitted

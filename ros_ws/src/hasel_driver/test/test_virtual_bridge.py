@@ -2,11 +2,13 @@
 
 import itertools
 
-from hasel_driver.virtual_bridge import DEAD_TIME_MS, DISCHARGED_V, VirtualBridge
+from hasel_driver.limits import DISCHARGED_V
+from hasel_driver.virtual_bridge import VirtualBridge
 from hasel_driver.virtual_muscle import Contact, VirtualMuscle
 from hypothesis import given
 from hypothesis import strategies as st
 
+DEAD_TIME_MS = 3
 WISHES = st.lists(
     st.tuples(st.integers(-6000, 6000), st.integers(1, 40), st.booleans()), min_size=1, max_size=20
 )
@@ -14,7 +16,7 @@ WISHES = st.lists(
 
 @given(WISHES, st.integers(1, 2000))
 def test_contacts_never_overlap(wishes, slew_v):
-    """Between any two closed contacts lie two milliseconds of open ones, and a source follows only on ground."""
+    """Between any two closed contacts lies the dead time of open ones, and a source follows only on ground."""
     bridge, muscle, history = VirtualBridge(), VirtualMuscle(), [Contact.GROUND] * 3
     for wanted_v, duration_ms, release in wishes:
         if release:
@@ -22,7 +24,7 @@ def test_contacts_never_overlap(wishes, slew_v):
         for _ in range(duration_ms):
             before_v = bridge.set_point_v
             measured_v = muscle.voltage_v
-            bridge.step(wanted_v, slew_v, measured_v)
+            bridge.step(wanted_v, slew_v, measured_v, DEAD_TIME_MS)
             muscle.step(1e-3, bridge.contact, bridge.set_point_v)
             assert bridge.set_point_v - before_v <= slew_v
             if bridge.contact is not history[-1] and history[-1] is Contact.GROUND:
@@ -40,5 +42,5 @@ def test_reaches_what_is_wanted(wanted_v, slew_v):
     """The set point arrives exactly, in the time that the slew limit needs."""
     bridge = VirtualBridge()
     for _ in range(2 * DEAD_TIME_MS + 3 + -(-wanted_v // slew_v)):
-        bridge.step(-wanted_v, slew_v, 0.0)
+        bridge.step(-wanted_v, slew_v, 0.0, DEAD_TIME_MS)
     assert (bridge.contact, bridge.set_point_v) == (Contact.NEGATIVE, wanted_v)

@@ -51,6 +51,13 @@ def _state(voltage: list[float]) -> dict[str, Any]:
         "mode": ACTIVE,
         "fault_code": 0,
         "fault_text": "",
+        "grounded": False,
+        "interlock": [0, 0],
+        "emergency_stop_holders": [],
+        "maximum_voltage": math.nan,
+        "slew_rate": math.nan,
+        "trip_current": math.nan,
+        "heartbeat_timeout": math.nan,
     }
 
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Arduino.h>
+#include <util/atomic.h>
 
 constexpr uint8_t CHANNELS = 2;
 
@@ -11,7 +12,7 @@ constexpr uint8_t PIN_POSITIVE[CHANNELS] = {2, 3};     // closes the positive co
 constexpr uint8_t PIN_NEGATIVE[CHANNELS] = {4, 5};     // closes the negative contact
 constexpr uint8_t PIN_GROUND_OPEN[CHANNELS] = {6, 7};  // opens the normally closed ground contact
 constexpr uint8_t PIN_SET_POINT[CHANNELS] = {9, 10};   // PWM of timer 1, 0 to 5 V for 0 to 10 kV
-constexpr uint8_t PIN_INTERLOCK = 12;                  // low while stop button and enclosure are closed
+constexpr uint8_t PIN_INTERLOCK[2] = {12, 11};         // two channels, each low while stop button and enclosure are closed
 constexpr uint8_t PIN_LIVE_LIGHT = 13;                 // lit while high voltage may be on
 
 // Analogue inputs A0 to A3: voltage monitors (0 to 10 kV for 0 to 5 V), then current monitors (0 to 1 mA).
@@ -19,10 +20,23 @@ constexpr uint8_t ANALOGUE_INPUTS = 2 * CHANNELS;
 constexpr uint16_t FULL_SCALE_V = 10000;
 constexpr uint16_t FULL_SCALE_UA = 1000;
 constexpr uint16_t ADC_MOST = 1023;
+// Below the full scales, so that a monitor can still tell what is too much.
+constexpr uint16_t MOST_MAXIMUM_V = 9800;
+constexpr uint16_t MOST_TRIP_UA = 980;
 
-constexpr uint8_t DEAD_TIME_MS = 2;
 constexpr uint16_t DISCHARGED_V = 200;
 constexpr uint8_t CONFIRMATION_MS = 3;
+constexpr uint8_t GROUND_PROOF_MS = 100;      // a closed ground contact must have discharged its muscle by then
+constexpr uint16_t DISCREPANCY_MS = 500;      // the interlock's channels may differ that long
+
+static_assert(SERIAL_RX_BUFFER_SIZE >= 128, "two commands must fit: build with the Makefile, or with that buffer size");
+
+// As digitalWrite, without its tables: interrupts are off for 2 us, which the serial port at 500 kbaud allows.
+inline void write_pin(uint8_t pin, bool high) {
+  volatile uint8_t& port = pin < 8 ? PORTD : PORTB;
+  const uint8_t mask = _BV(pin & 7);
+  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { port = high ? port | mask : port & ~mask; }
+}
 
 // Raw reading of the converter for a quantity of the given full scale.
 constexpr uint16_t raw(uint32_t value, uint16_t full_scale) {

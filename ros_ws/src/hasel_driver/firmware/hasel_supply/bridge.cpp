@@ -15,20 +15,20 @@ void Bridge::begin(uint8_t channel) {
 
 void Bridge::release() {
   set_point(0);
-  if (contact_ == POSITIVE || contact_ == NEGATIVE) move(OPEN);
+  if (sourcing()) move(OPEN);
 }
 
-void Bridge::step(int16_t wanted_v, uint16_t slew_v, bool discharged) {
+void Bridge::step(int16_t wanted_v, uint16_t slew_v, bool discharged, uint8_t dead_time_ms) {
   if (dwell_ms_ < 255) ++dwell_ms_;
   const Contact polarity = wanted_v > 0 ? POSITIVE : wanted_v < 0 ? NEGATIVE : GROUND;
   const uint16_t wanted = abs(wanted_v);
   switch (contact_) {
     case OPEN:
       // A source that was just opened is followed by ground, never by the other source.
-      if (dwell_ms_ > DEAD_TIME_MS) move(opened_from_ == GROUND ? polarity : GROUND);
+      if (dwell_ms_ > dead_time_ms) move(opened_from_ == GROUND ? polarity : GROUND);
       break;
     case GROUND:
-      if (polarity != GROUND && discharged && dwell_ms_ > DEAD_TIME_MS) move(OPEN);
+      if (polarity != GROUND && discharged && dwell_ms_ > dead_time_ms) move(OPEN);
       break;
     default:
       if (contact_ == polarity) {
@@ -47,11 +47,11 @@ void Bridge::step(int16_t wanted_v, uint16_t slew_v, bool discharged) {
 
 void Bridge::move(Contact contact) {
   // Breaking comes first in this order of writes; between break and make lies the dead time in OPEN.
-  if (contact != POSITIVE) digitalWrite(PIN_POSITIVE[channel_], LOW);
-  if (contact != NEGATIVE) digitalWrite(PIN_NEGATIVE[channel_], LOW);
-  digitalWrite(PIN_GROUND_OPEN[channel_], contact == GROUND ? LOW : HIGH);
-  if (contact == POSITIVE) digitalWrite(PIN_POSITIVE[channel_], HIGH);
-  if (contact == NEGATIVE) digitalWrite(PIN_NEGATIVE[channel_], HIGH);
+  if (contact != POSITIVE) write_pin(PIN_POSITIVE[channel_], false);
+  if (contact != NEGATIVE) write_pin(PIN_NEGATIVE[channel_], false);
+  write_pin(PIN_GROUND_OPEN[channel_], contact != GROUND);
+  if (contact == POSITIVE) write_pin(PIN_POSITIVE[channel_], true);
+  if (contact == NEGATIVE) write_pin(PIN_NEGATIVE[channel_], true);
   if (contact == POSITIVE) sign_ = 1;
   if (contact == NEGATIVE) sign_ = -1;
   opened_from_ = contact_;
@@ -63,14 +63,17 @@ void Bridge::set_point(uint16_t volts) {
   set_point_v_ = volts;
   // A compare value of 0 still gives a narrow pulse: take the pin from the timer instead.
   const uint8_t output = channel_ == 0 ? _BV(COM1A1) : _BV(COM1B1);
-  if (volts == 0) {
-    TCCR1A &= ~output;
-  } else {
-    TCCR1A |= output;
-  }
-  if (channel_ == 0) {
-    OCR1A = volts;
-  } else {
-    OCR1B = volts;
+  const uint16_t count = volts == 0 ? 0 : min(calibration_.set_point(volts), (uint16_t)(FULL_SCALE_V - 1));
+  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {  // both a 16-bit register and bits of a shared one
+    if (count == 0) {
+      TCCR1A &= ~output;
+    } else {
+      TCCR1A |= output;
+    }
+    if (channel_ == 0) {
+      OCR1A = count;
+    } else {
+      OCR1B = count;
+    }
   }
 }

@@ -21,9 +21,7 @@ bool find(const char* word, const char* const* names, uint8_t count, Enumeration
   return false;
 }
 
-bool interlock_open() {
-  return digitalRead(PIN_INTERLOCK) == HIGH;
-}
+const char* const CHANNEL_NAMES[] = {"upper", "lower"};
 
 }  // namespace
 
@@ -73,19 +71,24 @@ const char* Commands::execute() {
   if (is(0, "SET")) return count_ < 2 ? "UNKNOWN" : set();
   if (is(0, "GET")) {
     if (!answerable()) return "UNKNOWN";
+    uint8_t channel;
+    if (is(1, "CALIBRATION")) {
+      return count_ == 3 && find(words_[2], CHANNEL_NAMES, CHANNELS, channel) ? nullptr : "SYNTAX";
+    }
     return count_ == 2 ? nullptr : "SYNTAX";
   }
   return simple();
 }
 
 const char* Commands::simple() {
-  static const char* const known[] = {"PING", "ARM", "DISARM", "STOP", "CLEAR", "START"};
+  static const char* const known[] = {"PING", "ARM", "DISARM", "STOP", "CLEAR", "START", "GROUND"};
   uint8_t command;
-  if (!find(words_[0], known, 6, command)) return "UNKNOWN";
+  if (!find(words_[0], known, 7, command)) return "UNKNOWN";
   if (count_ > 1) return "SYNTAX";
   switch (command) {
     case 1:
-      if (supply_.mode() == STANDBY && interlock_open()) return "INTERLOCK";
+      if (supply_.mode() != STANDBY) return "STATE";
+      if (const char* reason = unsafe()) return reason;
       return supply_.arm() ? nullptr : "STATE";
     case 2:
       supply_.disarm();
@@ -94,18 +97,30 @@ const char* Commands::simple() {
       supply_.fail(STOP);
       return nullptr;
     case 4:
-      if (supply_.mode() == FAULT && interlock_open()) return "INTERLOCK";
+      if (supply_.mode() != FAULT) return "STATE";
+      if (const char* reason = unsafe()) return reason;
       return supply_.clear() ? nullptr : "STATE";
     case 5:
       return supply_.start(waveform_) ? nullptr : "STATE";
+    case 6:
+      return supply_.release() ? nullptr : "STATE";
     default:
       return nullptr;
   }
 }
 
+// Why the board must neither arm nor forget a fault; nullptr: nothing.
+const char* Commands::unsafe() {
+  if (supply_.interlock_open()) return "INTERLOCK";
+  if (supply_.discrepancy()) return "DISCREPANCY";
+  if (!supply_.grounded()) return "UNPROVEN";
+  return nullptr;
+}
+
 const char* Commands::set() {
   if (is(1, "VOLTAGE")) return set_voltage();
   if (is(1, "WAVEFORM")) return set_waveform();
+  if (is(1, "CALIBRATION")) return set_calibration();
   return set_setting();
 }
 
@@ -147,18 +162,41 @@ const char* Commands::set_setting() {
   uint16_t least, most;
   uint16_t* const target = setting(settings, least, most);
   if (!target) return "UNKNOWN";
-  if (supply_.mode() != STANDBY) return "STATE";
+  const bool lower = target == &settings.maximum_v && readable && value <= settings.maximum_v;
+  if (supply_.may_be_live() && !lower) return "STATE";
   if (!readable) return "SYNTAX";
   *target = clip(value, least, most);
-  supply_.set(settings);
+  if (lower) {
+    supply_.lower_maximum(settings.maximum_v);
+    waveform_.voltage_v = min(waveform_.voltage_v, (int16_t)settings.maximum_v);
+  } else {
+    supply_.set(settings);
+  }
+  return nullptr;
+}
+
+const char* Commands::set_calibration() {
+  uint8_t channel;
+  int32_t set_gain, set_offset, read_gain, read_offset;
+  const bool readable = count_ == 7 && find(words_[2], CHANNEL_NAMES, CHANNELS, channel) && number(3, set_gain) &&
+                        number(4, set_offset) && number(5, read_gain) && number(6, read_offset);
+  if (!readable) return "SYNTAX";
+  if (supply_.mode() != STANDBY) return "STATE";
+  Calibration calibration;
+  calibration.set_gain = clip(set_gain, 9000, 11000);
+  calibration.set_offset_v = clip(set_offset, -300, 300);
+  calibration.read_gain = clip(read_gain, 9000, 11000);
+  calibration.read_offset_v = clip(read_offset, -150, 150);  // less than what counts as discharged
+  supply_.set_calibration(channel, calibration);
   return nullptr;
 }
 
 uint16_t* Commands::setting(Settings& settings, uint16_t& least, uint16_t& most) const {
-  if (is(1, "MAXIMUM")) return least = 0, most = FULL_SCALE_V, &settings.maximum_v;
+  if (is(1, "MAXIMUM")) return least = 0, most = MOST_MAXIMUM_V, &settings.maximum_v;
   if (is(1, "SLEW")) return least = 1, most = 2000, &settings.slew_v_per_ms;
-  if (is(1, "TRIP")) return least = 1, most = FULL_SCALE_UA, &settings.trip_ua;
+  if (is(1, "TRIP")) return least = 1, most = MOST_TRIP_UA, &settings.trip_ua;
   if (is(1, "HEARTBEAT")) return least = 100, most = 2000, &settings.heartbeat_ms;
+  if (is(1, "DEADTIME")) return least = 2, most = 50, &settings.dead_time_ms;
   return nullptr;
 }
 
@@ -166,7 +204,7 @@ bool Commands::answerable() const {
   Settings settings;
   uint16_t least, most;
   return is(1, "IDENTITY") || is(1, "VOLTAGE") || is(1, "WAVEFORM") || is(1, "TELEMETRY") ||
-         setting(settings, least, most);
+         is(1, "CALIBRATION") || setting(settings, least, most);
 }
 
 void Commands::answer(const char* refusal) {
@@ -190,6 +228,12 @@ void Commands::add_value() {
     writer_.add_number(supply_.voltage_v(0)).add(' ').add_number(supply_.voltage_v(1));
   } else if (is(1, "TELEMETRY")) {
     writer_.add_unsigned(telemetry_ms_);
+  } else if (is(1, "CALIBRATION")) {
+    uint8_t channel = 0;
+    find(words_[2], CHANNEL_NAMES, CHANNELS, channel);
+    const Calibration& calibration = supply_.calibration(channel);
+    writer_.add(words_[2]).add(' ').add_number(calibration.set_gain).add(' ').add_number(calibration.set_offset_v);
+    writer_.add(' ').add_number(calibration.read_gain).add(' ').add_number(calibration.read_offset_v);
   } else if (is(1, "WAVEFORM")) {
     writer_.add(SHAPE_NAMES[waveform_.shape]).add(' ').add_number(waveform_.voltage_v);
     writer_.add(' ').add_unsigned(waveform_.frequency_mhz).add(' ').add_unsigned(waveform_.periods);

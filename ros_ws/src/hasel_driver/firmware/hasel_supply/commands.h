@@ -17,6 +17,8 @@ class Commands {
   const char* set_voltage();
   const char* set_waveform();
   const char* set_setting();
+  const char* set_calibration();
+  const char* unsafe();
   const char* simple();
   bool split(char* text);
   bool number(uint8_t word, int32_t& value) const;

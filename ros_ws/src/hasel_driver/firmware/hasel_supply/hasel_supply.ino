@@ -1,7 +1,7 @@
 // High-voltage supply for two HASEL muscles: see PROTOCOL.md for the serial protocol, board.h for the pins.
 //
-// Safety does not depend on loop(): the timer interrupt watches heartbeat, interlock and trips every
-// millisecond, and the hardware watchdog resets the chip, hence grounds the output, if loop() hangs.
+// The timer interrupt watches heartbeat, interlock, trips and ground every millisecond. The hardware watchdog resets
+// the chip, hence grounds the output, unless both go on: loop() feeds it, and only after a tick that has run.
 
 #include <avr/sleep.h>
 #include <avr/wdt.h>
@@ -19,10 +19,17 @@ static Commands commands(supply, writer);
 static volatile bool ticked = false;
 static uint8_t reset_flags __attribute__((section(".noinit")));
 
+// Optiboot clears MCUSR, and hands it on in r2.
+static uint8_t boot_loader_flags __attribute__((section(".noinit")));
+void keep_boot_loader_flags() __attribute__((naked, used, section(".init0")));
+void keep_boot_loader_flags() {
+  asm volatile("sts %0, r2\n" : "=m"(boot_loader_flags));
+}
+
 // The watchdog stays on through a reset: stop it before anything slow.
 void stop_watchdog() __attribute__((naked, used, section(".init3")));
 void stop_watchdog() {
-  reset_flags = MCUSR;
+  reset_flags = MCUSR ? MCUSR : boot_loader_flags;
   MCUSR = 0;
   wdt_disable();
 }
@@ -89,12 +96,14 @@ static void send_telemetry() {
   writer.add(" g=").add_unsigned(report.grounded).add(" f=").add_unsigned(report.fault);
   writer.add(" v=").add_number(report.asked_v[0]).add(',').add_number(report.asked_v[1]);
   writer.add(" m=").add_number(report.measured_v[0]).add(',').add_number(report.measured_v[1]);
-  writer.add(" i=").add_unsigned(report.current_ua[0]).add(',').add_unsigned(report.current_ua[1]).send();
+  writer.add(" i=").add_unsigned(report.current_ua[0]).add(',').add_unsigned(report.current_ua[1]);
+  writer.add(" k=").add_unsigned(report.interlock_closed[0]).add_unsigned(report.interlock_closed[1]);
+  writer.add(" x=").add_unsigned(supply.settings().maximum_v).send();
 }
 
 void setup() {
   supply.begin();
-  Serial.begin(115200);
+  Serial.begin(500000);
   writer.begin('!').add("BOOT ").add(IDENTITY).add(" reset=").add(reset_cause()).send();
   start_timers();
   wdt_enable(WDTO_250MS);
@@ -102,13 +111,16 @@ void setup() {
 }
 
 void loop() {
-  wdt_reset();
-  while (Serial.available()) commands.take(reader.take(Serial.read()), reader.text());
+  if (ticked) {
+    ticked = false;
+    wdt_reset();
+  }
+  // Only what is there now: an endless stream must not keep the watchdog from being fed.
+  for (int count = Serial.available(); count > 0; --count) {
+    commands.take(reader.take(Serial.read()), reader.text());
+  }
   send_events();
   send_telemetry();
   writer.pump();
-  ticked = false;
-  do {
-    sleep_mode();
-  } while (!ticked && !Serial.available());
+  while (!ticked && !Serial.available()) sleep_mode();
 }

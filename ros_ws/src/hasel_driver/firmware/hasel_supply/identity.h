@@ -1,4 +1,4 @@
 // What this firmware calls itself.
 #pragma once
 
-constexpr char IDENTITY[] = "hasel-supply 1.0 protocol 1";
+constexpr char IDENTITY[] = "hasel-supply 2.0 protocol 2";

@@ -37,7 +37,7 @@ class LineWriter {
  private:
   char line_[MAXIMUM_LINE_LENGTH + 1];
   uint8_t length_ = 0;
-  char queue_[384];
+  char queue_[256];
   uint16_t head_ = 0;
   uint16_t count_ = 0;
 };

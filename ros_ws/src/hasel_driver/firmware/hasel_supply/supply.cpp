@@ -4,24 +4,60 @@
 
 const char* const MODE_NAMES[] = {"STANDBY", "ARMED", "ACTIVE", "FAULT"};
 const char* const FAULT_NAMES[] = {"NONE",      "HEARTBEAT", "OVERCURRENT", "STOP",
-                                   "INTERLOCK", "SEQUENCE",  "GARBAGE",     "OVERVOLTAGE"};
+                                   "INTERLOCK", "SEQUENCE",  "GARBAGE",     "OVERVOLTAGE", "NOT_GROUNDED"};
 
 void Supply::begin() {
-  digitalWrite(PIN_CONVERTERS_ON, LOW);
+  write_pin(PIN_CONVERTERS_ON, false);
   pinMode(PIN_CONVERTERS_ON, OUTPUT);
   pinMode(PIN_LIVE_LIGHT, OUTPUT);
-  pinMode(PIN_INTERLOCK, INPUT_PULLUP);
-  for (uint8_t channel = 0; channel < CHANNELS; ++channel) bridges_[channel].begin(channel);
+  for (uint8_t pin : PIN_INTERLOCK) pinMode(pin, INPUT_PULLUP);
+  load_calibrations(calibrations_);
+  for (uint8_t channel = 0; channel < CHANNELS; ++channel) {
+    bridges_[channel].begin(channel);
+    bridges_[channel].calibrate(calibrations_[channel]);
+  }
   set(Settings());
 }
 
 void Supply::set(const Settings& settings) {
+  const uint16_t trip_raw = raw(settings.trip_ua, FULL_SCALE_UA);
+  const uint16_t most_v = max(settings.maximum_v * 105UL / 100, settings.maximum_v + 100UL);
+  uint16_t overvoltage_raw[CHANNELS], discharged_raw[CHANNELS];
+  for (uint8_t channel = 0; channel < CHANNELS; ++channel) {
+    const Calibration& calibration = calibrations_[channel];
+    // A monitor at the end of its range cannot tell how much there is: that too is more than allowed.
+    overvoltage_raw[channel] = min(raw(calibration.monitored(most_v), FULL_SCALE_V), (uint16_t)(ADC_MOST - 1));
+    discharged_raw[channel] = raw(calibration.monitored(DISCHARGED_V), FULL_SCALE_V);
+  }
   ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
     settings_ = settings;
-    trip_raw_ = raw(settings.trip_ua, FULL_SCALE_UA);
-    const uint32_t most_v = max(settings.maximum_v * 105UL / 100, settings.maximum_v + 100UL);
-    overvoltage_raw_ = most_v < FULL_SCALE_V ? raw(most_v, FULL_SCALE_V) : ADC_MOST;
+    trip_raw_ = min(trip_raw, (uint16_t)(ADC_MOST - 1));
+    for (uint8_t channel = 0; channel < CHANNELS; ++channel) {
+      overvoltage_raw_[channel] = overvoltage_raw[channel];
+      discharged_raw_[channel] = discharged_raw[channel];
+    }
   }
+}
+
+void Supply::lower_maximum(uint16_t maximum_v) {
+  Settings settings = settings_;
+  settings.maximum_v = maximum_v;
+  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+    for (uint8_t channel = 0; channel < CHANNELS; ++channel) {
+      // The converter cannot sink: let go, discharge to ground, and come back with less.
+      if (bridges_[channel].set_point_v() > maximum_v) bridges_[channel].release();
+      voltage_v_[channel] = constrain(voltage_v_[channel], -(int16_t)maximum_v, (int16_t)maximum_v);
+    }
+    settings_.maximum_v = maximum_v;
+  }
+  set(settings);
+}
+
+void Supply::set_calibration(uint8_t channel, const Calibration& calibration) {
+  calibrations_[channel] = calibration;
+  bridges_[channel].calibrate(calibration);
+  store_calibrations(calibrations_);
+  set(settings_);
 }
 
 bool Supply::arm() {
@@ -66,11 +102,26 @@ bool Supply::set_voltage(const int16_t voltage_v[CHANNELS]) {
 
 bool Supply::start(const Waveform& waveform) {
   bool done = false;
+  WaveformGenerator generator;
+  generator.start(waveform);  // its divisions take too long with interrupts off
   ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
     if (mode_ == ARMED) {
-      generator_.start(waveform);
+      generator_ = generator;
       waveform_running_ = true;
       mode_ = ACTIVE;
+      done = true;
+    }
+  }
+  return done;
+}
+
+bool Supply::release() {
+  bool done = false;
+  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+    if (may_be_live()) {
+      waveform_running_ = false;
+      ground_contacts();
+      mode_ = ARMED;
       done = true;
     }
   }
@@ -81,21 +132,43 @@ void Supply::heard() {
   ATOMIC_BLOCK(ATOMIC_RESTORESTATE) { silent_ms_ = 0; }
 }
 
+bool Supply::interlock_open() const {
+  return digitalRead(PIN_INTERLOCK[0]) == HIGH || digitalRead(PIN_INTERLOCK[1]) == HIGH;
+}
+
+void Supply::snapshot(uint16_t analogue[ANALOGUE_INPUTS]) const {
+  ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
+    for (uint8_t input = 0; input < ANALOGUE_INPUTS; ++input) analogue[input] = analogue_[input];
+  }
+}
+
+bool Supply::discharged(const uint16_t analogue[ANALOGUE_INPUTS]) const {
+  return analogue[0] < discharged_raw_[0] && analogue[1] < discharged_raw_[1];
+}
+
+bool Supply::grounded() {
+  return report().grounded;
+}
+
 Report Supply::report() {
   Report report;
   uint16_t analogue[ANALOGUE_INPUTS];
+  bool contacts;
   ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
     report.mode = mode_;
     report.fault = fault_;
-    report.grounded = bridges_[0].grounded() && bridges_[1].grounded();
+    contacts = bridges_[0].grounded() && bridges_[1].grounded();
     for (uint8_t channel = 0; channel < CHANNELS; ++channel) report.asked_v[channel] = voltage_v_[channel];
-    for (uint8_t input = 0; input < ANALOGUE_INPUTS; ++input) analogue[input] = analogue_[input];
+    snapshot(analogue);
   }
-  if (report.mode == ARMED && !report.grounded) report.mode = ACTIVE;
+  report.grounded = contacts && discharged(analogue);
+  if (report.mode == ARMED && !contacts) report.mode = ACTIVE;
   for (uint8_t channel = 0; channel < CHANNELS; ++channel) {
-    const int16_t volts = (uint32_t)analogue[channel] * FULL_SCALE_V / ADC_MOST;
+    const uint16_t monitor_v = (uint32_t)analogue[channel] * FULL_SCALE_V / ADC_MOST;
+    const int16_t volts = calibrations_[channel].measured(monitor_v);
     report.measured_v[channel] = bridges_[channel].sign() < 0 ? -volts : volts;
     report.current_ua[channel] = (uint32_t)analogue[CHANNELS + channel] * FULL_SCALE_UA / ADC_MOST;
+    report.interlock_closed[channel] = digitalRead(PIN_INTERLOCK[channel]) == LOW;
   }
   return report;
 }
@@ -119,29 +192,56 @@ bool Supply::take_waveform_done() {
 }
 
 void Supply::tick() {
+  uint16_t analogue[ANALOGUE_INPUTS];
+  snapshot(analogue);  // the converter's interrupt writes two bytes one after the other
   if (silent_ms_ < 0xFFFF) ++silent_ms_;
-  if (may_be_live()) watch();
+  watch_interlock();
+  watch_ground(analogue);
+  if (may_be_live()) watch(analogue);
   if (may_be_live() && waveform_running_) apply_waveform();
   const bool live = may_be_live();
   bool grounded = true;
   for (uint8_t channel = 0; channel < CHANNELS; ++channel) {
-    const bool discharged = analogue_[channel] < raw(DISCHARGED_V, FULL_SCALE_V);
-    bridges_[channel].step(live ? voltage_v_[channel] : 0, settings_.slew_v_per_ms, discharged);
+    const bool discharged = analogue[channel] < discharged_raw_[channel];
+    bridges_[channel].step(live ? voltage_v_[channel] : 0, settings_.slew_v_per_ms, discharged, settings_.dead_time_ms);
     grounded = grounded && bridges_[channel].grounded();
   }
-  digitalWrite(PIN_CONVERTERS_ON, live && !grounded ? HIGH : LOW);
-  digitalWrite(PIN_LIVE_LIGHT, live || !grounded ? HIGH : LOW);
+  write_pin(PIN_CONVERTERS_ON, live && !grounded);
+  write_pin(PIN_LIVE_LIGHT, live || !grounded || !this->discharged(analogue));
 }
 
-void Supply::watch() {
-  if (digitalRead(PIN_INTERLOCK) == HIGH) {
+void Supply::watch_interlock() {
+  const bool first = digitalRead(PIN_INTERLOCK[0]) == HIGH, second = digitalRead(PIN_INTERLOCK[1]) == HIGH;
+  if (first && second) discrepancy_ = false;
+  discrepancy_ms_ = first == second ? 0 : discrepancy_ms_ + 1;
+  if (discrepancy_ms_ > DISCREPANCY_MS) {
+    discrepancy_ms_ = DISCREPANCY_MS;
+    discrepancy_ = true;
+  }
+}
+
+void Supply::watch_ground(const uint16_t analogue[ANALOGUE_INPUTS]) {
+  for (uint8_t channel = 0; channel < CHANNELS; ++channel) {
+    const bool charged = bridges_[channel].grounded() && analogue[channel] >= discharged_raw_[channel];
+    not_grounded_ms_[channel] = charged ? not_grounded_ms_[channel] + 1 : 0;
+    if (not_grounded_ms_[channel] < GROUND_PROOF_MS) continue;
+    not_grounded_ms_[channel] = GROUND_PROOF_MS;
+    latch(NOT_GROUNDED);
+  }
+}
+
+void Supply::watch(const uint16_t analogue[ANALOGUE_INPUTS]) {
+  if (interlock_open()) {
     latch(INTERLOCK);
   } else if (silent_ms_ > settings_.heartbeat_ms) {
     latch(HEARTBEAT);
   }
-  const bool over_current = analogue_[2] > trip_raw_ || analogue_[3] > trip_raw_;
+  const bool over_current = analogue[2] > trip_raw_ || analogue[3] > trip_raw_;
   if (confirmed(over_current, over_current_ms_)) latch(OVERCURRENT);
-  const bool over_voltage = analogue_[0] > overvoltage_raw_ || analogue_[1] > overvoltage_raw_;
+  bool over_voltage = false;
+  for (uint8_t channel = 0; channel < CHANNELS; ++channel) {
+    over_voltage |= bridges_[channel].sourcing() && analogue[channel] > overvoltage_raw_[channel];
+  }
   if (confirmed(over_voltage, over_voltage_ms_)) latch(OVERVOLTAGE);
 }
 
@@ -151,7 +251,10 @@ bool Supply::confirmed(bool exceeded, uint8_t& count) {
 }
 
 void Supply::apply_waveform() {
-  if (!generator_.next(voltage_v_)) {
+  const bool running = generator_.next(voltage_v_);
+  const int16_t most = settings_.maximum_v;
+  for (int16_t& voltage : voltage_v_) voltage = constrain(voltage, -most, most);
+  if (!running) {
     waveform_running_ = false;
     waveform_done_ = true;
     mode_ = ARMED;
@@ -169,7 +272,11 @@ void Supply::latch(FaultCode code) {
 void Supply::ground(Mode mode) {
   mode_ = mode;
   waveform_running_ = false;
-  digitalWrite(PIN_CONVERTERS_ON, LOW);
+  write_pin(PIN_CONVERTERS_ON, false);
+  ground_contacts();
+}
+
+void Supply::ground_contacts() {
   for (uint8_t channel = 0; channel < CHANNELS; ++channel) {
     voltage_v_[channel] = 0;
     bridges_[channel].release();

@@ -6,6 +6,7 @@ enum contact { GROUND, OPEN, POSITIVE, NEGATIVE };
 struct muscle {
   double voltage_v;
   double current_a;
+  double capacitance_f;
   double short_ohm;  // injected fault; HUGE_VAL without
 };
 

@@ -22,8 +22,8 @@
 #include "sim_elf.h"
 #include "trace.h"
 
-enum { CHANNELS = 2, FREQUENCY_HZ = 16000000, TICK_CYCLES = 16000, BYTE_CYCLES = 1389 };
-enum { DDRB = 0x24, PORTB, DDRD = 0x2A, PORTD, TCCR1A = 0x80, OCR1A = 0x88, OCR1B = 0x8A };
+enum { CHANNELS = 2, FREQUENCY_HZ = 16000000, TICK_CYCLES = 16000, BYTE_CYCLES = 320 };
+enum { DDRB = 0x24, PORTB, DDRD = 0x2A, PORTD, TIMSK2 = 0x70, TCCR1A = 0x80, OCR1A = 0x88, OCR1B = 0x8A };
 static const double LIVE_V = 50.0;
 static const uint32_t HANG_ADDRESS = 0x7F00;
 static const uint64_t LATE_CYCLES = FREQUENCY_HZ / 20, MOST_LAG_CYCLES = FREQUENCY_HZ / 10;
@@ -34,7 +34,9 @@ static struct port port;
 static struct muscle muscles[CHANNELS];
 static double peaks_v[CHANNELS];
 static uint16_t compare_values[CHANNELS];
-static bool live, silent, deaf, noise, truncate_next, interlock_open, uart_full, host_present, tracing;
+static bool interlock_open[2], contact_welded, ground_broken, boot_lost;
+static double set_point_gain = 1.0, monitor_gain = 1.0;  // of the upper muscle's converter and monitor
+static bool live, silent, deaf, noise, truncate_next, uart_full, host_present, tracing;
 static char received[4096];
 static size_t received_count;
 static char transmitted[4096];
@@ -57,6 +59,8 @@ static bool high(uint8_t pin) {
 static enum contact contact_of(int channel) {
   const bool positive = high(2 + channel), negative = high(4 + channel), ground = !high(6 + channel);
   if (positive + negative + ground > 1) ++overlaps;
+  if (channel == 0 && contact_welded) return POSITIVE;  // and keeps the ground contact from closing
+  if (channel == 0 && ground_broken && ground) return OPEN;
   return ground ? GROUND : positive ? POSITIVE : negative ? NEGATIVE : OPEN;
 }
 
@@ -86,7 +90,7 @@ static void compare_written(struct avr_irq_t* irq, uint32_t low_byte, void* para
 
 static double set_point_v(int channel) {
   const uint8_t connected = channel == 0 ? 0x80 : 0x20;
-  return high(8) && avr->data[TCCR1A] & connected ? compare_values[channel] : 0.0;
+  return high(8) && avr->data[TCCR1A] & connected ? compare_values[channel] * (channel == 0 ? set_point_gain : 1.0) : 0.0;
 }
 
 static void raise_analogue(int input, double full_scale_share) {
@@ -95,9 +99,13 @@ static void raise_analogue(int input, double full_scale_share) {
 }
 
 static void set_interlock(void) {
-  avr_ioport_external_t pull = {.name = 'B', .mask = 1 << 4, .value = interlock_open << 4};
+  static const int bits[2] = {4, 3};  // pins 12 and 11
+  const int value = interlock_open[0] << bits[0] | interlock_open[1] << bits[1];
+  avr_ioport_external_t pull = {.name = 'B', .mask = 1 << bits[0] | 1 << bits[1], .value = value};
   avr_ioctl(avr, AVR_IOCTL_IOPORT_SET_EXTERNAL('B'), &pull);
-  avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('B'), 4), interlock_open);
+  for (int i = 0; i < 2; ++i) {
+    avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('B'), bits[i]), interlock_open[i]);
+  }
 }
 
 static void tick(void) {
@@ -111,7 +119,7 @@ static void tick(void) {
     const double volts = fabs(muscles[channel].voltage_v);
     peaks_v[channel] = fmax(peaks_v[channel], volts);
     is_live |= volts > LIVE_V || contacts[channel] != GROUND;
-    raise_analogue(channel, volts / 10000.0);
+    raise_analogue(channel, volts / 10000.0 * (channel == 0 ? monitor_gain : 1.0));
     raise_analogue(CHANNELS + channel, muscles[channel].current_a / 1e-3);
   }
   if (is_live != live) {
@@ -123,7 +131,11 @@ static void tick(void) {
 
 static void uart_sent(struct avr_irq_t* irq, uint32_t value, void* parameter) {
   (void)irq, (void)parameter;
-  if (transmitted_count < sizeof(transmitted)) transmitted[transmitted_count++] = value;
+  static bool within_line, skipping;
+  if (!within_line && boot_lost && value == '!') skipping = true;
+  within_line = value != '\n';
+  if (!skipping && transmitted_count < sizeof(transmitted)) transmitted[transmitted_count++] = value;
+  if (skipping && value == '\n') skipping = boot_lost = false;
 }
 
 static void uart_flow(struct avr_irq_t* irq, uint32_t value, void* parameter) {
@@ -169,7 +181,9 @@ static void exchange(void) {
 }
 
 static void recover(void) {
-  silent = deaf = noise = truncate_next = interlock_open = false;
+  silent = deaf = noise = truncate_next = contact_welded = ground_broken = boot_lost = false;
+  interlock_open[0] = interlock_open[1] = false;
+  set_point_gain = monitor_gain = 1.0;
   set_interlock();
   muscles[0].short_ohm = muscles[1].short_ohm = HUGE_VAL;
 }
@@ -198,10 +212,17 @@ static bool obey(const char* word) {
   else if (!strcmp(word, "deaf")) deaf = true;
   else if (!strcmp(word, "noise")) noise = true;
   else if (!strcmp(word, "truncate")) truncate_next = true;
-  else if (!strcmp(word, "interlock")) interlock_open = true, set_interlock();
+  else if (!strcmp(word, "interlock")) interlock_open[0] = interlock_open[1] = true, set_interlock();
+  else if (!strcmp(word, "interlock_a")) interlock_open[0] = true, set_interlock();
+  else if (!strcmp(word, "interlock_b")) interlock_open[1] = true, set_interlock();
+  else if (!strcmp(word, "weld")) contact_welded = true;
+  else if (!strcmp(word, "unground")) ground_broken = true;
+  else if (!strcmp(word, "tickless")) avr->data[TIMSK2] = 0;
+  else if (!strcmp(word, "miscalibrate")) set_point_gain = 0.97, monitor_gain = 1.04;
   else if (!strcmp(word, "overcurrent")) muscles[0].short_ohm = 2e6;
   else if (!strcmp(word, "recover")) recover();
   else if (!strcmp(word, "reset")) reset();
+  else if (!strcmp(word, "mute_reset")) boot_lost = true, reset();
   else if (!strcmp(word, "stuck")) hang();
   else if (!strcmp(word, "garbage")) send_garbage();
   else if (!strcmp(word, "unplug")) port_unplug(&port);
@@ -278,10 +299,11 @@ static void start(const char* path) {
 }
 
 int main(int count, char** arguments) {
-  if (count != 2) {
-    fprintf(stderr, "usage: simulate hasel_supply.elf\n");
+  if (count != 2 && count != 3) {
+    fprintf(stderr, "usage: simulate hasel_supply.elf [capacitance of each muscle, nF]\n");
     return 1;
   }
+  muscles[0].capacitance_f = muscles[1].capacitance_f = (count == 3 ? atof(arguments[2]) : 0.5) * 1e-9;
   start(arguments[1]);
   recover();
   port_plug(&port);

@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from hasel_driver import protocol
 from hasel_driver.hasel_supply import HaselSupply
 from hasel_driver.limits import Limits, Voltages
 from hasel_driver.mode import Mode
@@ -21,7 +22,7 @@ class Bench:
         self.rig = rig
         self.statuses: list[Status] = []
         self.host_alive = True
-        self.port = SerialPort(rig.port)
+        self.port = SerialPort(rig.port, protocol.BAUD)
         supply = HaselSupply(self.port, limits or Limits())
         self.supervisor = Supervisor(supply, time.monotonic)
         self.supervisor.connect()

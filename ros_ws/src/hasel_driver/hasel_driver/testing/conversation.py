@@ -9,10 +9,10 @@ from hasel_driver.serial_port import SerialPort
 
 
 class Conversation:
-    """Opens the port and waits for the board's banner."""
+    """Opens the port, waits for the board's banner, and sets MAXIMUM [V], which is 0 at boot."""
 
-    def __init__(self, path: str) -> None:
-        self._port = SerialPort(path)
+    def __init__(self, path: str, maximum_v: int | None = 6000) -> None:
+        self._port = SerialPort(path, protocol.BAUD)
         self._port.open()
         self._lines = LineBuffer()
         self._sequence = 255
@@ -20,6 +20,9 @@ class Conversation:
         self.reports: list[protocol.Telemetry] = []
         self._replies: list[protocol.Reply] = []
         self.until(lambda: any(event.words[0] == "BOOT" for event in self.events))
+        if maximum_v is not None:
+            self.ask("SET", "MAXIMUM", maximum_v)
+            self._sequence = 255
 
     def send(self, data: bytes) -> None:
         """Raw bytes."""

@@ -10,7 +10,7 @@ from hasel_driver.testing.punctuality import Punctuality
 ATTEMPTS = 3
 LATE_WITHIN_S = 20.0  # before a failure: what was late earlier did not cause it
 MANY = 10
-SUPPLIES = {"rig", "virtual_rig", "firmware_rig", "shared_rig"}
+SUPPLIES = {"rig", "virtual_rig", "firmware_rig", "shared_rig", "loaded_rig"}
 PUNCTUALITY = Punctuality()
 GROUNDING_TIMES_S: dict[str, list[float]] = {}
 REPEATED: list[str] = []

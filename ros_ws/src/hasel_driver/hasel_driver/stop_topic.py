@@ -1,0 +1,63 @@
+"""Hears `/hasel/emergency_stop` from every publisher, whatever its quality of service."""
+
+from collections.abc import Callable
+
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+from hasel_driver.identified_subscription import IDENTIFIER_BYTES, IdentifiedSubscription
+from hasel_driver.stop_holders import StopHolders
+
+TOPIC, TYPE = "/hasel/emergency_stop", "std_msgs/msg/Bool"
+DEPTH = 100
+# A subscription is not matched by a publisher that offers less than it asks for, and is not given more than it asks
+# for: the last of these hears everybody, the others hear whoever offers more better.
+QUALITIES = tuple(
+    QoSProfile(depth=DEPTH, reliability=reliability, durability=durability)
+    for reliability, durability in (
+        (ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL),
+        (ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE),
+        (ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE),
+    )
+)
+
+
+class StopTopic:
+    """Calls `on_change(asserted, who)` for each message, once."""
+
+    def __init__(self, node: Node, holders: StopHolders, on_change: Callable[[bool, str], None]) -> None:
+        self._node, self._holders, self._on_change = node, holders, on_change
+        group = MutuallyExclusiveCallbackGroup()
+        self._subscriptions = [
+            IdentifiedSubscription(node, TOPIC, self._take, quality, group) for quality in QUALITIES
+        ]
+
+    def present(self) -> dict[bytes, str]:
+        """Names of the publishers that exist, by identifier."""
+        return {
+            bytes(info.endpoint_gid[:IDENTIFIER_BYTES]): f"{info.node_namespace.rstrip('/')}/{info.node_name}"
+            for info in self._node.get_publishers_info_by_topic(TOPIC)
+        }
+
+    def unheard(self) -> str | None:
+        """Why a publisher that exists cannot be heard; None if all can."""
+        publishers = self._node.get_publishers_info_by_topic(TOPIC)
+        for info in publishers:
+            if info.topic_type != TYPE:
+                return f"{info.node_name} publishes {info.topic_type} on {TOPIC}, {TYPE} is expected"
+        heard = self._subscriptions[-1].publishers
+        if heard < len(publishers):
+            names = ", ".join(info.node_name for info in publishers)
+            return f"of {len(publishers)} publishers of {TOPIC} ({names}) only {heard} are connected"
+        return None
+
+    def destroy(self) -> None:
+        """Stop listening."""
+        for subscription in self._subscriptions:
+            subscription.destroy()
+
+    def _take(self, publisher: bytes, sequence: int, asserted: bool) -> None:
+        name = self.present().get(publisher, "an unknown node")
+        if self._holders.take(publisher, sequence, name, asserted):
+            self._on_change(asserted, name)
