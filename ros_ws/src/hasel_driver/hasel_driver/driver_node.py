@@ -1,5 +1,6 @@
 """`ros2 run hasel_driver driver_node`: lifecycle node on top of the supply's thread."""
 
+import os
 import signal
 import sys
 import threading
@@ -35,7 +36,6 @@ THREAD_SWITCH_S = 0.0005  # Python's 5 ms would let the executor hold up the sup
 RETRY_PERIOD_S = 2.0  # between attempts to open a port that could not be opened at the start
 DISCOVERY_S = 1.0  # for which a new publisher may be known and not yet connected
 LAST_STATE_S = 0.2  # for which the end waits until the last state has been heard
-ENDING_SIGNALS = {signal.SIGINT, signal.SIGTERM}
 
 
 class DriverNode(LifecycleNode):
@@ -293,9 +293,19 @@ class DriverNode(LifecycleNode):
             self.fail(Fault(FaultCode.ILLEGAL_TRANSITION))
 
 
-def end_at_signal(node: DriverNode) -> None:
-    """Wait for Ctrl-C or a service manager's stop; then ground, tell, and end, whatever the other threads do."""
-    signal.sigwait(ENDING_SIGNALS)
+def catch_signals() -> int:
+    """From here on Ctrl-C and a service manager's stop do nothing but write to the descriptor returned."""
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: None)
+    return reader
+
+
+def end_at_signal(node: DriverNode, signals: int) -> None:
+    """Wait for a signal; then ground, tell, and end, whatever the other threads do."""
+    os.read(signals, 1)
     node.close()
     rclpy.try_shutdown()
 
@@ -304,7 +314,7 @@ def main() -> int:
     """Spin until shut down; the supply is disarmed on the way out."""
     sys.setswitchinterval(THREAD_SWITCH_S)
     avoid_shared_memory()
-    signal.pthread_sigmask(signal.SIG_BLOCK, ENDING_SIGNALS)  # in all threads, which inherit it
+    signals = catch_signals()
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     try:
         node = DriverNode()
@@ -312,7 +322,7 @@ def main() -> int:
         print(f"hasel_driver: {error}", file=sys.stderr)
         rclpy.try_shutdown()
         return 1
-    threading.Thread(target=end_at_signal, args=(node,), name="signals", daemon=True).start()
+    threading.Thread(target=end_at_signal, args=(node, signals), name="signals", daemon=True).start()
     executor = MultiThreadedExecutor(num_threads=4)
     executor.add_node(node)
     try:

@@ -8,6 +8,7 @@ from hasel_driver.limits import Voltages
 from hasel_driver.mode import Mode
 from hasel_driver.supervisor import Supervisor
 from hasel_driver.waveform import Waveform
+from hasel_driver.waveform_file import FileWaveform
 
 LONGEST_REST_S = 600.0
 
@@ -16,7 +17,7 @@ LONGEST_REST_S = 600.0
 class ExperimentPlan:
     """What to run; `rest_s` [s] at 0 V before and after."""
 
-    waveform: Waveform
+    waveform: Waveform | FileWaveform
     rest_s: float = 0.0
 
     def __post_init__(self) -> None:
@@ -55,6 +56,10 @@ class Experiment:
         self._drive_ended_s: float | None = None
 
     @property
+    def _on_board(self) -> bool:
+        return self._supervisor.capabilities.waveforms and isinstance(self.plan.waveform, Waveform)
+
+    @property
     def finished(self) -> bool:
         """Whether the run is over, for good or ill."""
         return self.ended_s is not None
@@ -70,9 +75,9 @@ class Experiment:
         self._supervisor.begin_experiment()
         self.began_s = self._clock()
 
-    def cancel(self) -> None:
+    def cancel(self, reason: str = "it was cancelled") -> None:
         """0 V at once."""
-        self._finish("it was cancelled")
+        self._finish(reason)
 
     def step(self) -> None:
         """Do what is due now."""
@@ -92,13 +97,13 @@ class Experiment:
     def _begin_drive_when_rested(self) -> None:
         if self.elapsed_s >= self.plan.rest_s:
             self._drive_began_s = self._clock()
-            if self._supervisor.capabilities.waveforms:
+            if self._on_board:
                 self._supervisor.start(self.plan.waveform)
 
     def _drive(self, mode: Mode) -> None:
         driven_s = self._clock() - self._drive_began_s
         duration_s = self.plan.waveform.duration_s
-        if not self._supervisor.capabilities.waveforms:
+        if not self._on_board:
             self._supervisor.hold(self.plan.waveform.voltage(driven_s))
             over = driven_s >= duration_s
         else:

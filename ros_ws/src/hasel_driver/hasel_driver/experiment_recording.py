@@ -13,7 +13,8 @@ from hasel_recording.mcap_recorder import McapRecorder
 from hasel_recording.topics import STATE, TOPIC_TYPES
 
 from hasel_driver.experiment import ExperimentPlan
-from hasel_driver.waveform import MUSCLES
+from hasel_driver.waveform import MUSCLES, Waveform
+from hasel_driver.waveform_file import FileWaveform
 
 MOST_STATE_GAP_S = 0.2
 MOST_TOPIC_GAP_S = 1.0
@@ -22,7 +23,7 @@ SAMPLE_S = 0.02  # longest usual distance of two states
 
 @dataclass
 class ExperimentRecording:
-    """Writes messages while the run lasts; `missing` reads the closed file back."""
+    """Writes messages while the run lasts; `missing` reads the closed file back. `path` is a reserved, empty file."""
 
     path: Path
     plan: ExperimentPlan
@@ -34,21 +35,8 @@ class ExperimentRecording:
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def __post_init__(self) -> None:
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        waveform = self.plan.waveform
-        self._recorder = McapRecorder(
-            self.path,
-            {
-                "waveform": waveform.shape,
-                "voltage_v": f"{waveform.voltage_v:g}",
-                "frequency_hz": f"{waveform.frequency_hz:g}",
-                "periods": waveform.periods,
-                "duty": f"{waveform.duty:g}",
-                "polarity": waveform.polarity,
-                "muscles": waveform.muscles,
-                "rest_time_s": f"{self.plan.rest_s:g}",
-            },
-        )
+        metadata = {**self.plan.waveform.metadata(), "rest_time_s": f"{self.plan.rest_s:g}"}
+        self._recorder = McapRecorder(self.path, metadata)
 
     def write(self, topic: str, message: Any) -> None:
         """Append a message at its header's stamp; one not later than the last of its topic is dropped.
@@ -77,7 +65,7 @@ class ExperimentRecording:
         lacking = [_coverage(content, STATE, duration_s, MOST_STATE_GAP_S)]
         lacking += [_coverage(content, topic, duration_s, MOST_TOPIC_GAP_S) for topic in self.required_topics]
         if not any(lacking):
-            lacking += _drive_lacking(content, self.plan)
+            lacking += _drive_lacking(content, self.plan.waveform)
         return [text for text in lacking if text]
 
 
@@ -94,10 +82,30 @@ def _coverage(content: McapFile, topic: str, duration_s: float, most_gap_s: floa
     return None
 
 
-def _drive_lacking(content: McapFile, plan: ExperimentPlan) -> list[str]:
+def _drive_lacking(content: McapFile, waveform: Waveform | FileWaveform) -> list[str]:
     states = content.decoded(STATE, TOPIC_TYPES[STATE])
-    voltage = np.abs([state.commanded_voltage for state in states])  # [n, 2]
-    waveform = plan.waveform
+    voltage_v = np.array([state.commanded_voltage for state in states])  # [n, 2]
+    if isinstance(waveform, FileWaveform):
+        return _file_lacking(voltage_v, waveform)
+    return _waveform_lacking(np.abs(voltage_v), waveform)
+
+
+def _file_lacking(voltage_v: np.ndarray, waveform: FileWaveform) -> list[str]:
+    """Extremes that were held long enough for the states to show them."""
+    held = np.diff(waveform.time_s) >= 2 * SAMPLE_S
+    lacking = []
+    for muscle, series, rows in zip(("upper", "lower"), voltage_v.T, waveform.voltages_v[:-1].T, strict=True):
+        for extreme in (np.max, np.min):
+            expected_v, reached_v = (
+                float(extreme(rows[held], initial=0.0)),
+                float(extreme(series, initial=0.0)),
+            )
+            if not math.isclose(reached_v, expected_v, abs_tol=1.0) and held.all():
+                lacking.append(f"the {muscle} muscle reached {reached_v:.0f} V of {expected_v:.0f} V")
+    return lacking
+
+
+def _waveform_lacking(voltage_v: np.ndarray, waveform: Waveform) -> list[str]:
     window_s = 0.5 * waveform.duty / waveform.frequency_hz
     if window_s < 2 * SAMPLE_S or waveform.voltage_v < 1.0:
         return []  # too short for the states to show
@@ -105,12 +113,13 @@ def _drive_lacking(content: McapFile, plan: ExperimentPlan) -> list[str]:
     if waveform.shape != "box":
         tolerance_v += waveform.voltage_v * 2 * SAMPLE_S / window_s
     lacking = []
-    for muscle, delay, series in zip(("upper", "lower"), MUSCLES[waveform.muscles], voltage.T, strict=True):
+    for muscle, delay, series in zip(("upper", "lower"), MUSCLES[waveform.muscles], voltage_v.T, strict=True):
         expected_v = 0.0 if delay is None else waveform.voltage_v
         peak_v = float(series.max())
         if not math.isclose(peak_v, expected_v, abs_tol=tolerance_v if expected_v else 1.0):
             lacking.append(f"the {muscle} muscle reached {peak_v:.0f} V of {expected_v:.0f} V")
-        drives = int(np.count_nonzero(np.diff((series > 0).astype(int)) == 1))
+        # Without a rest the first drive may have begun before the first state: what came before it was 0 V.
+        drives = int(np.count_nonzero(np.diff((series > 0).astype(int), prepend=0) == 1))
         if expected_v and drives != waveform.periods:
             lacking.append(f"the {muscle} muscle was driven {drives} times of {waveform.periods}")
     return lacking

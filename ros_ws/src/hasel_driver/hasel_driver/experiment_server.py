@@ -5,7 +5,6 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from datetime import datetime
 from pathlib import Path
 
 from hasel_interfaces.action import RunExperiment
@@ -16,12 +15,15 @@ from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 
+from hasel_driver.client_watch import ClientWatch
 from hasel_driver.errors import DriverError, RefusedError
 from hasel_driver.experiment import Experiment, ExperimentPlan
 from hasel_driver.experiment_recording import ExperimentRecording
+from hasel_driver.recording_path import chosen_path, reserve, reserve_unique
 from hasel_driver.spinning import quiet_at_shutdown
 from hasel_driver.supply_thread import SupplyThread
 from hasel_driver.waveform import Waveform
+from hasel_driver.waveform_file import read_waveform
 
 FEEDBACK_PERIOD_S = 0.1
 
@@ -90,13 +92,11 @@ class ExperimentServer:
         try:
             with self._alone():
                 plan = _plan(goal_handle.request)
-                path = self._path(goal_handle.request)
-                problems = self._run(plan, path, goal_handle)
-                result.recording = str(path)
+                problems = self._run(plan, goal_handle, result)
         except (DriverError, RecordingError, OSError) as error:
             problems = [str(error)]
         result.success = not problems
-        result.message = "; ".join(problems) or f"Recorded {plan.duration_s:.2f} s in {path}."
+        result.message = "; ".join(problems) or f"Recorded {plan.duration_s:.2f} s in {result.recording}."
         if problems:
             self._node.get_logger().error(f"The experiment failed: {result.message}")
         with quiet_at_shutdown():
@@ -116,7 +116,7 @@ class ExperimentServer:
             if recording is not None:
                 recording.close()
 
-    def _run(self, plan: ExperimentPlan, path: Path, goal_handle) -> list[str]:
+    def _run(self, plan: ExperimentPlan, goal_handle, result: RunExperiment.Result) -> list[str]:
         """What went wrong, in words; nothing if the run and its recording are complete."""
         thread = self._thread()
         if thread is None:
@@ -125,14 +125,19 @@ class ExperimentServer:
         experiment = Experiment(plan, thread.supervisor, time.monotonic)
         thread.call(experiment.begin).result(timeout=5.0)
         try:
+            path = self._reserve(goal_handle.request, plan)
             recording = self._recording = ExperimentRecording(path, plan, topics)
-        except (OSError, RecordingError):
+        except (OSError, RecordingError, DriverError):
             thread.call(experiment.cancel)
             raise
+        result.recording = str(path)
         self._experiment = experiment
+        client = ClientWatch(self._node)
         while not experiment.finished:
             if goal_handle.is_cancel_requested or recording.problem:
                 thread.call(experiment.cancel)
+            elif client.gone():
+                thread.call(lambda: experiment.cancel("its client has gone"))
             if not thread.is_alive():
                 raise RefusedError("The supply's thread has ended; the board grounds itself.")
             with quiet_at_shutdown():
@@ -145,13 +150,12 @@ class ExperimentServer:
             return [experiment.failure]
         return [f"the recording lacks: {text}" for text in recording.missing(experiment.elapsed_s)]
 
-    def _path(self, goal: RunExperiment.Goal) -> Path:
+    def _reserve(self, goal: RunExperiment.Goal, plan: ExperimentPlan) -> Path:
         if goal.output:
-            path = Path(goal.output).expanduser()
-            return path if path.suffix == ".mcap" else path.with_name(path.name + ".mcap")
+            return reserve(chosen_path(goal.output))
         folder = Path(self._node.get_parameter("recording_directory").value).expanduser()
-        moment = datetime.now().strftime("%Y-%m-%d_%H-%M-%S")
-        return folder / f"{moment}_{goal.voltage:.0f}V_{goal.frequency:g}Hz.mcap"
+        rate = "file" if goal.waveform_file else f"{goal.frequency:g}Hz"
+        return reserve_unique(folder, f"{plan.waveform.voltage_v:.0f}V_{rate}")
 
 
 def _message_class(type_name: str) -> type:
@@ -169,14 +173,16 @@ def _conclude(goal_handle, success: bool) -> None:
 
 
 def _plan(goal: RunExperiment.Goal) -> ExperimentPlan:
+    if goal.waveform_file:
+        return ExperimentPlan(read_waveform(Path(goal.waveform_file).expanduser()), goal.rest_time)
     waveform = Waveform(
-        shape=goal.waveform or "box",
+        shape=goal.waveform,
         voltage_v=goal.voltage,
         frequency_hz=goal.frequency,
         periods=goal.periods,
-        duty=goal.duty or 1.0,
-        polarity=goal.polarity or "positive",
-        muscles=goal.muscles or "both",
+        duty=goal.duty,
+        polarity=goal.polarity,
+        muscles=goal.muscles,
     )
     return ExperimentPlan(waveform, goal.rest_time)
 

@@ -192,7 +192,9 @@ class HaselSupply(Supply):
         last_us, self._device_us = self._device_us, report.time_us
         if last_us is not None and (report.time_us - last_us) % CLOCK_MODULUS_US > CLOCK_MODULUS_US // 2:
             self._reset_found = True
-            raise SupplyFaultError(FaultCode.DEVICE_RESET, "its clock went back, though it did not announce a reset")
+            raise SupplyFaultError(
+                FaultCode.DEVICE_RESET, "its clock went back, though it did not announce a reset"
+            )
         if report.maximum not in self._maxima_v and not self._reset_found:
             self._reset_found = True  # once: its further reports still tell the truth about its output
             expected = " or ".join(f"{volts} V" for volts in sorted(self._maxima_v))

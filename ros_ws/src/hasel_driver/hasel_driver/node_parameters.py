@@ -38,13 +38,12 @@ def declare(node: Node, in_use: Callable[[], bool], lower: Callable[[float], Non
 def values(node: Node) -> dict:
     """The present value of every parameter; whole numbers as floats where floats are meant."""
     return {
-        parameter.name: parameter.convert(node.get_parameter(parameter.name).value) for parameter in PARAMETERS
+        parameter.name: parameter.convert(node.get_parameter(parameter.name).value)
+        for parameter in PARAMETERS
     }
 
 
-def _check_change(
-    parameter: Parameter, value: object, in_use: bool, lower: Callable[[float], None]
-) -> None:
+def _check_change(parameter: Parameter, value: object, in_use: bool, lower: Callable[[float], None]) -> None:
     parameter.check(value)
     if not in_use:
         return

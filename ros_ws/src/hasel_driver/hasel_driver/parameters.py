@@ -23,7 +23,10 @@ class Parameter:
     def check(self, value: object) -> None:
         """Raises LimitError for a value of another kind, or outside range or choices."""
         kind = self._kind(value)
-        if kind != self._kind(self.default) and (kind, self._kind(self.default)) != ("whole number", "number"):
+        if kind != self._kind(self.default) and (kind, self._kind(self.default)) != (
+            "whole number",
+            "number",
+        ):
             raise LimitError(f"{self.name} is {value!r}, a {self._kind(self.default)} was expected.")
         if self.low is not None and not self.low <= float(value) <= self.high:
             raise LimitError(
@@ -32,7 +35,9 @@ class Parameter:
         if self.choices and value not in self.choices:
             nearest = difflib.get_close_matches(str(value).lower(), self.choices, n=1, cutoff=0.4)
             hint = f" Did you mean {nearest[0]}?" if nearest else ""
-            raise LimitError(f"{self.name} is {value!r}, one of {', '.join(self.choices)} was expected.{hint}")
+            raise LimitError(
+                f"{self.name} is {value!r}, one of {', '.join(self.choices)} was expected.{hint}"
+            )
 
     def convert(self, value: object) -> object:
         """A whole number as a float where a float is meant."""
@@ -52,7 +57,12 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter("backend", "hasel", "", "protocol of the supply", choices=("hasel", "shvps")),
     Parameter("second_port", "", "", "serial port of the lower muscle's supply (shvps only)"),
     Parameter(
-        "maximum_voltage", 6000.0, "V", "commands are clipped to ± this; may be lowered at any time", 0.0, 9800.0
+        "maximum_voltage",
+        6000.0,
+        "V",
+        "commands are clipped to ± this; may be lowered at any time",
+        0.0,
+        9800.0,
     ),
     Parameter("slew_rate", 250.0, "V/ms", "steepest change of the set point", 1.0, 2000.0),
     Parameter(
@@ -76,7 +86,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     ),
     Parameter(
         "history_file",
-        "recordings/supply_history.jsonl",
+        "~/.ros/hasel_supply_history.jsonl",
         "",
         "where faults, breakdowns and leakage are noted for good; empty: nowhere",
     ),
@@ -87,7 +97,12 @@ PARAMETERS: tuple[Parameter, ...] = (
         "recorded with /hasel/state; required in the recording when published as the experiment begins",
     ),
     Parameter(
-        "realtime_priority", 40, "", "of the threads that send commands, where the system allows it; 0: none", 0, 90
+        "realtime_priority",
+        40,
+        "",
+        "of the threads that send commands, where the system allows it; 0: none",
+        0,
+        90,
     ),
     Parameter("autostart", True, "", "configure and activate at start (never arms)"),
 )

@@ -22,7 +22,9 @@ STOP_REPEAT_S = 0.05
 FIRST_READING_S = 0.5
 SETTLING_S = 0.05  # after which a report tells what a voltage asked for has done
 GROUND_PROOF_S = 0.3  # a supply that should be grounded, and is not, is a fault after that
-ABOVE_MAXIMUM_S = 0.2  # so long may more than the maximum be read: after it was lowered, muscles discharge first
+ABOVE_MAXIMUM_S = (
+    0.2  # so long may more than the maximum be read: after it was lowered, muscles discharge first
+)
 REOPEN_S = 0.03  # lets the other end notice that the port was closed
 
 

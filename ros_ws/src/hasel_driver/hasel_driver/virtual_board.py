@@ -27,7 +27,9 @@ MONITOR_STEPS = 1023
 class Hardware:
     """What the board does not know of its relays, converters and monitors; upper muscle first."""
 
-    welded: bool = False  # the upper muscle's positive contact stays closed, and keeps the ground contact open
+    welded: bool = (
+        False  # the upper muscle's positive contact stays closed, and keeps the ground contact open
+    )
     ground_broken: bool = False  # the upper muscle's ground contact does not close
     set_point_gain: list[float] = field(default_factory=lambda: [1.0, 1.0])
     monitor_gain: list[float] = field(default_factory=lambda: [1.0, 1.0])
@@ -85,7 +87,9 @@ class VirtualBoard:
     def measured_v(self) -> tuple[float, float]:
         """What the monitors say, corrected [V]; their sign is that of the polarity contacts."""
         upper, lower = (
-            math.copysign(calibration.measured_v(self.hardware.monitor_v(channel, muscle.voltage_v)), muscle.voltage_v)
+            math.copysign(
+                calibration.measured_v(self.hardware.monitor_v(channel, muscle.voltage_v)), muscle.voltage_v
+            )
             for channel, (calibration, muscle) in enumerate(zip(self.calibrations, self.muscles, strict=True))
         )
         return upper, lower

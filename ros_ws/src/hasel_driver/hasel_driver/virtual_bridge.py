@@ -6,7 +6,6 @@ from hasel_driver.limits import DISCHARGED_V
 from hasel_driver.virtual_muscle import Contact
 
 
-
 @dataclass
 class VirtualBridge:
     """Moves contacts and set point towards a wanted voltage, one millisecond at a time."""

@@ -100,7 +100,9 @@ def _set_calibration(board: "VirtualBoard", arguments: tuple[str, ...]) -> None:
         raise RefusalError("SYNTAX")
     values = _integers(arguments[1:], 4)
     _require(board.mode is Mode.STANDBY)
-    clipped = [_clip(value, *bounds) for value, bounds in zip(values, CALIBRATION_RANGES.values(), strict=True)]
+    clipped = [
+        _clip(value, *bounds) for value, bounds in zip(values, CALIBRATION_RANGES.values(), strict=True)
+    ]
     board.calibrations[CHANNELS.index(arguments[0])] = Calibration(*clipped)
 
 

@@ -56,6 +56,18 @@ class Waveform:
             if value not in choices:
                 raise LimitError(f"{name} is {value!r}, one of {', '.join(choices)} was expected.")
 
+    def metadata(self) -> dict[str, str]:
+        """Header lines of the recording."""
+        return {
+            "waveform": self.shape,
+            "voltage_v": f"{self.voltage_v:g}",
+            "frequency_hz": f"{self.frequency_hz:g}",
+            "periods": str(self.periods),
+            "duty": f"{self.duty:g}",
+            "polarity": self.polarity,
+            "muscles": self.muscles,
+        }
+
     @property
     def duration_s(self) -> float:
         """Time from start to end [s]."""

@@ -163,10 +163,14 @@ def test_parameters_are_checked(driver, ros):
     ros.await_mode(STANDBY, 10.0)
     assert "maximum_voltage" in change("maximum_voltage", 20_000.0)
     assert change("maximum_voltage", 20_000.0) != "accepted"
-    assert "in use" in change("maximum_voltage", 3000.0)
+    assert "in use" in change("slew_rate", 100.0)
+    assert change("maximum_voltage", 5000.0) == "accepted"
+    assert "only be lowered" in change("maximum_voltage", 6000.0)
+    ros.wait(lambda: ros.state.maximum_voltage == 5000.0)
+    assert ros.state.slew_rate == 250_000.0
     request = DescribeParameters.Request(names=["maximum_voltage"])
     (described,) = ros.request(DescribeParameters, "/hasel_driver/describe_parameters", request).descriptors
-    assert described.floating_point_range[0].to_value == 10_000.0
+    assert described.floating_point_range[0].to_value == 9800.0
     assert "[V]" in described.description
 
 

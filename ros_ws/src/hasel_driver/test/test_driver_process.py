@@ -132,15 +132,99 @@ def test_pulled_cable(start_driver, virtual_rig, ros, tmp_path, grounded_in_time
         assert ros.false_claims(virtual_rig, pulled_s) == []
 
 
-def test_a_second_driver_cannot_open_the_port(start_driver, virtual_rig, ros):
-    """The first has it alone and goes on; the second says what is wrong."""
+def test_a_second_driver_on_the_port_ends(start_driver, virtual_rig, ros):
+    """The first has it alone and goes on; the second ends with a sentence instead of answering the services."""
     first = start_driver(virtual_rig.port)
     first.arm()
     with ros.commanding():
         ros.wait(lambda: virtual_rig.live)
         second = start_driver(virtual_rig.port)
-        ros.wait(lambda: any("another program has it open" in line for line in second.log), 10.0)
+        assert second.process.wait(15.0) == 1
+        second.close()
         assert virtual_rig.live
+    assert any("another program has it open" in line and "This node ends" in line for line in second.log)
+    assert ros.trigger("disarm").success
+
+
+def test_a_port_that_comes_later_is_opened(start_driver, virtual_rig, ros, tmp_path):
+    """What failed at the start is tried again, and said once."""
+    link = tmp_path / "supply"
+    driver = start_driver(link)
+    ros.wait(lambda: any("cannot be opened" in line for line in driver.log), 15.0)
+    time.sleep(2.5)
+    assert sum("cannot be opened" in line for line in driver.log) == 1
+    link.symlink_to(virtual_rig.port)
+    ros.await_mode(STANDBY, 15.0)
+    driver.arm()
+
+
+def test_the_last_state_is_true(start_driver, virtual_rig, ros):
+    """A driver that is ended while live says at last that the supply is in STANDBY and grounded, as it is."""
+    driver = start_driver(virtual_rig.port)
+    driver.arm()
+    with ros.commanding():
+        ros.wait(lambda: virtual_rig.live)
+        driver.process.terminate()
+        assert driver.process.wait(5.0) == 0
+    time.sleep(0.2)
+    assert (ros.state.mode, ros.state.grounded, virtual_rig.live) == (STANDBY, True, False)
+
+
+def test_simulated_time_without_a_clock_watches_all_the_same(start_driver, virtual_rig, ros):
+    """With use_sim_time and nobody who publishes /clock, a second master is a fault as ever."""
+    driver = start_driver(virtual_rig.port, use_sim_time=True)
+    driver.arm()
+    from hasel_driver.testing.ros_client import RosClient
+
+    rival = RosClient()
+    try:
+        with ros.commanding():
+            ros.wait(lambda: virtual_rig.live)
+            with rival.commanding((1000.0, 1000.0)):
+                ros.wait(lambda: ros.state.fault_code == FaultCode.TWO_MASTERS, 10.0)
+    finally:
+        rival.close()
+
+
+STARTS = {
+    "did you mean 'maximum_voltage'": {"maximum_voltge": 200.0},
+    "Did you mean hasel?": {"backend": "Hasel"},
+    "0 to 9800 was expected": {"maximum_voltage": 20000},
+    "maximum_voltage is 'high', a number was expected": {"maximum_voltage": "high"},
+}
+
+
+@pytest.mark.parametrize("words", STARTS)
+def test_a_wrong_parameter_is_one_sentence(start_driver, ros, words):
+    """Misspelt, of another kind or out of range: the node ends with what was expected."""
+    driver = start_driver("/dev/no-such-port", **STARTS[words])
+    assert driver.process.wait(15.0) == 1
+    driver.close()
+    log = "".join(driver.log)
+    assert words in log
+    assert "Traceback" not in log
+
+
+def test_a_whole_number_is_a_voltage(start_driver, virtual_rig, ros):
+    """`-p maximum_voltage:=200`, as the README's checklist says, is 200 V."""
+    start_driver(virtual_rig.port, maximum_voltage=200)
+    assert ros.await_mode(STANDBY, 15.0).maximum_voltage == 200.0
+
+
+def test_an_open_interlock_at_the_start_is_told_and_closed_later(start_driver, virtual_rig, ros):
+    """The state tells which channel is open; once both are closed the driver arms."""
+    virtual_rig.say("interlock_b")
+    driver = start_driver(virtual_rig.port)
+    ros.await_mode(STANDBY, 15.0)
+    assert ros.state.interlock.tolist() == [2, 1]
+    time.sleep(0.6)
+    assert "interlock is open" in ros.trigger("arm").message
+    virtual_rig.say("recover")
+    assert "opened without the other" in ros.trigger("arm").message
+    virtual_rig.say("interlock")
+    time.sleep(0.05)
+    virtual_rig.say("recover")
+    driver.arm()
 
 
 def test_missing_port_is_said_in_one_sentence(start_driver, ros):

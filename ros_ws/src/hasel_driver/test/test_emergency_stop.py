@@ -1,9 +1,14 @@
 """The emergency stop: service, latched topic, and what it takes to go on."""
 
 import time
+from contextlib import contextmanager
 
 import pytest
 from hasel_driver.faults import FaultCode
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from std_msgs.msg import Bool
+
+TOPIC = "/hasel/emergency_stop"
 
 STANDBY, ARMED, ACTIVE, FAULT = range(4)
 
@@ -38,8 +43,113 @@ def test_topic_stops_and_holds(provoke, ros, rounds):
     for _ in range(rounds):
         provoke(lambda: ros.emergency_stop_topic(True), FaultCode.EMERGENCY_STOP)
         assert "publish false" in ros.trigger("clear_fault").message
+        assert ros.state.emergency_stop_holders == ["/user"]
         ros.emergency_stop_topic(False)
         time.sleep(0.2)
         assert ros.state.mode == FAULT
         assert ros.trigger("clear_fault").success
         ros.await_mode(STANDBY)
+
+
+QUALITIES = {
+    "default": QoSProfile(depth=10),
+    "best effort": QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
+    "best effort, latched": QoSProfile(
+        depth=1, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.TRANSIENT_LOCAL
+    ),
+}
+
+
+@pytest.mark.parametrize("quality", QUALITIES)
+def test_every_quality_of_service_is_heard(provoke, driver, ros, quality):
+    """A publisher as rqt and joystick nodes make it stops as one of the latched topic does."""
+    ros.emergency_stop_topic(False, QUALITIES[quality])
+    ros.wait(lambda: not driver_says_unheard(ros))
+    provoke(lambda: ros.emergency_stop_topic(True), FaultCode.EMERGENCY_STOP)
+    ros.emergency_stop_topic(False)
+    ros.wait(lambda: ros.trigger("clear_fault").success)
+
+
+def driver_says_unheard(ros) -> bool:
+    """Whether arming is refused because of a publisher that is not connected; leaves the supply disarmed."""
+    answer = ros.trigger("arm")
+    ros.trigger("disarm")
+    return "might not be heard" in answer.message
+
+
+@contextmanager
+def publisher(name: str, kind=Bool):
+    """Another node that publishes the stop."""
+    from hasel_driver.testing.ros_client import another_node
+
+    with another_node(name) as node:
+        yield node.create_publisher(kind, TOPIC, 10)
+
+
+def test_only_who_stopped_may_release(driver, ros):
+    """Another publisher's false does not take a stop back; its own does, and so does the explicit service."""
+    ros.await_mode(STANDBY)
+    with publisher("joystick") as first, publisher("panel") as second:
+        ros.wait(lambda: first.get_subscription_count() >= 2 and second.get_subscription_count() >= 2)
+        first.publish(Bool(data=True))
+        ros.await_mode(FAULT)
+        second.publish(Bool(data=False))
+        ros.wait(lambda: ros.state.emergency_stop_holders == ["/joystick"])
+        time.sleep(0.2)
+        assert "held by /joystick" in ros.trigger("clear_fault").message
+        second.publish(Bool(data=True))
+        ros.wait(lambda: ros.state.emergency_stop_holders == ["/joystick", "/panel"])
+        first.publish(Bool(data=False))
+        ros.wait(lambda: ros.state.emergency_stop_holders == ["/panel"])
+        assert not ros.trigger("clear_fault").success
+        second.publish(Bool(data=False))
+        ros.wait(lambda: ros.trigger("clear_fault").success)
+        first.publish(Bool(data=True))
+        ros.await_mode(FAULT)
+    ros.wait(lambda: ros.state.emergency_stop_holders == ["/joystick (gone)"])
+    assert not ros.trigger("clear_fault").success
+    assert "Released what /joystick held" in ros.trigger("release_emergency_stop").message
+    assert ros.state.mode == FAULT
+    assert ros.trigger("clear_fault").success
+
+
+def test_a_publisher_that_cannot_be_heard_forbids_arming(driver, ros):
+    """One of another type on the topic is no emergency stop, and somebody believes it is one."""
+    from std_msgs.msg import String
+
+    ros.await_mode(STANDBY)
+    with publisher("mistaken", String):
+        ros.wait(lambda: len(ros.node.get_publishers_info_by_topic(TOPIC)) == 1)
+        time.sleep(0.5)  # for the driver to learn of it as well
+        assert "mistaken publishes std_msgs/msg/String" in ros.trigger("arm").message
+        assert ros.await_mode(STANDBY)
+    ros.wait(lambda: ros.trigger("arm").success)
+
+
+@pytest.mark.parametrize("service", ["disarm", "emergency_stop"])
+def test_a_charged_output_is_no_success(driver, shared_rig, ros, service):
+    """With a welded contact neither stop nor disarm answers "grounded", nor does any state; arming is refused."""
+    driver.arm()
+    ros.drive(lambda: shared_rig.live and ros.state.measured_voltage[0] > 2900)
+    shared_rig.say("weld")
+    answer = ros.trigger(service)
+    assert (answer.success, "NOT proven" in answer.message) == (False, True)
+    state = ros.await_mode(FAULT)
+    assert (state.grounded, "treat it as live" in state.fault_text) == (False, True)
+    assert not ros.trigger("arm").success
+    shared_rig.say("recover")
+    ros.wait(lambda: ros.state.grounded)
+
+
+def test_deactivating_a_charged_output_is_a_fault(driver, shared_rig, ros):
+    """What the lifecycle cannot prove it calls FAULT."""
+    from lifecycle_msgs.msg import Transition
+
+    driver.arm()
+    ros.drive(lambda: shared_rig.live and ros.state.measured_voltage[0] > 2900)
+    shared_rig.say("unground")
+    ros.transition(Transition.TRANSITION_DEACTIVATE)
+    ros.await_mode(FAULT)
+    shared_rig.say("recover")
+    ros.transition(Transition.TRANSITION_ACTIVATE)
+    ros.wait(lambda: ros.state.grounded)

@@ -44,7 +44,7 @@ def test_every_example_of_the_document_parses():
         17, True, ("VOLTAGE", "6500", "-2000")
     )
     assert protocol.parse_device_line(examples[2].encode()) == protocol.Telemetry(
-        123456789, Mode.ACTIVE, False, 0, (6500, -2000), (6497, -1998), (12, 8), (True, True), 6000
+        123456789, Mode.ACTIVE, False, 0, (6500, -2000), (6497, -1998), (12, 8), (True, True), 7000
     )
 
 

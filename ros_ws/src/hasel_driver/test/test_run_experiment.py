@@ -1,7 +1,10 @@
 """The action: progress, recording, its completeness, and every way to end early."""
 
+import itertools
+import os
 import random
 import re
+import resource
 import time
 from itertools import pairwise
 from pathlib import Path
@@ -22,6 +25,7 @@ SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
 def run(ros, tmp_path):
     """Sends a goal; returns a function that waits for its end."""
     client = ActionClient(ros.node, RunExperiment, "/hasel/run_experiment")
+    numbers = itertools.count()
 
     def begin(**changes):
         goal = {
@@ -33,7 +37,7 @@ def run(ros, tmp_path):
             "duty": 1.0,
             "muscles": "both",
             "rest_time": 0.3,
-            "output": str(tmp_path / "run.mcap"),
+            "output": str(tmp_path / f"run_{next(numbers)}.mcap"),
         } | changes
         assert client.wait_for_server(10.0)
         feedback = []
@@ -154,17 +158,87 @@ def test_fails_when_the_recording_lacks_a_topic(driver, ros, run):
     assert "no message of /hasel/bending/measured" in result.message
 
 
-def test_a_full_disk_ends_the_run(driver, shared_rig, ros, run, tmp_path):
+def test_a_full_disk_ends_the_run(driver, shared_rig, ros, run):
     """It is told, the output goes to zero, and the driver lives on."""
-    path = tmp_path / "full.mcap"
-    path.symlink_to("/dev/full")
-    driver.arm()
-    _, _, end = run(periods=1000, output=str(path))
-    status, result = end()
+    unlimited = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
+    resource.prlimit(driver.process.pid, resource.RLIMIT_FSIZE, (20_000, resource.RLIM_INFINITY))
+    try:
+        driver.arm()
+        _, _, end = run(periods=1000)
+        status, result = end()
+    finally:
+        resource.prlimit(driver.process.pid, resource.RLIMIT_FSIZE, unlimited)
     assert (status, result.success) == (ABORTED, False)
     assert re.search("written|finished", result.message)
     ros.await_mode(ARMED)
     assert not shared_rig.live
+
+
+def test_no_recording_is_overwritten(driver, ros, run, tmp_path):
+    """A file, a folder or a pipe that exists is left as it is, and the goal fails before anything is live."""
+    taken = tmp_path / "taken.mcap"
+    taken.write_bytes(b"precious")
+    os.mkfifo(tmp_path / "pipe.mcap")
+    driver.arm()
+    for output in ("taken", "taken.mcap", "pipe"):
+        _, _, end = run(output=str(tmp_path / output))
+        status, result = end()
+        assert (status, "exists already" in result.message) == (ABORTED, True), result.message
+    for output in ("/", "~nobody-there/x"):
+        _, _, end = run(output=output)
+        assert "the path of a file was expected" in end()[1].message
+    assert taken.read_bytes() == b"precious"
+    ros.await_mode(ARMED)
+
+
+def test_runs_without_a_rest_are_complete(driver, run, tmp_path):
+    """A drive that begins before the first state is counted all the same."""
+    driver.arm()
+    for index in range(6):
+        _, _, end = run(rest_time=0.0, periods=2, frequency=5.0, output=str(tmp_path / f"{index}.mcap"))
+        status, result = end()
+        assert (status, result.success) == (SUCCEEDED, True), result.message
+
+
+def test_a_client_that_ends_takes_the_voltage_with_it(driver, shared_rig, ros, run):
+    """Nobody is left who could cancel: zero within a second."""
+    from hasel_driver.testing.ros_client import another_node
+
+    driver.arm()
+    with another_node("experimenter") as node:
+        client = ActionClient(node, RunExperiment, "/hasel/run_experiment")
+        assert client.wait_for_server(10.0)
+        sent = client.send_goal_async(RunExperiment.Goal(voltage=3000.0, frequency=1.0, periods=100))
+        ros.wait(lambda: sent.done() and sent.result().accepted and shared_rig.live)
+        client.destroy()
+    left_s = time.monotonic()
+    assert shared_rig.await_live(False, 5.0) - left_s < 1.0
+    ros.await_mode(ARMED)
+    for _ in range(20):  # until that experiment is wound up
+        handle, _, end = run(periods=1)
+        if handle.accepted:
+            break
+        time.sleep(0.1)
+    assert end()[0] == SUCCEEDED
+
+
+def test_a_file_is_driven_and_recorded(driver, shared_rig, run, tmp_path):
+    """The voltages of a CSV file, row by row, signs included."""
+    path = tmp_path / "drive.csv"
+    path.write_text(
+        "time_s,voltage_upper_v,voltage_lower_v\n0,1000,0\n0.3,0,-2000\n0.6,1500,500\n0.9,0,0\n1,0,0\n"
+    )
+    driver.arm()
+    _, _, end = run(waveform_file=str(path), rest_time=0.2)
+    status, result = end()
+    assert (status, result.success) == (SUCCEEDED, True), result.message
+    states = read_file(Path(result.recording)).decoded(
+        "/hasel/state", "hasel_interfaces/msg/SupplyState"
+    )
+    pairs = {tuple(state.commanded_voltage) for state in states}
+    assert pairs == {(0.0, 0.0), (1000.0, 0.0), (0.0, -2000.0), (1500.0, 500.0)}
+    stamps = [s.header.stamp.sec + s.header.stamp.nanosec * 1e-9 for s in states if any(s.commanded_voltage)]
+    assert stamps[-1] - stamps[0] == pytest.approx(0.9, abs=0.1)
 
 
 def test_one_experiment_at_a_time(driver, ros, run):
@@ -181,6 +255,8 @@ REFUSALS = {
     "one of box, ramp, sine, triangle": {"waveform": "saw"},
     "frequency_hz is nan": {"frequency": float("nan")},
     "rest_time is -1.0 s": {"rest_time": -1.0},
+    "duty is 0.0": {"duty": 0.0},
+    "There is no waveform file /no/such.csv": {"waveform_file": "/no/such.csv"},
     "/proc/no": {"output": "/proc/no/such/place.mcap"},
 }
 

@@ -25,7 +25,7 @@ def inputs():
     rclpy.init()
     inputs = UrgentInputs(
         lambda voltage_v, _age_s: take("commands", voltage_v),
-        lambda stop: take("stops", stop),
+        lambda stop, _who: take("stops", stop),
         lambda: None,
     )
     yield told

@@ -21,7 +21,12 @@ class VirtualSupply:
         try:
             self._wait_for(port)
             self._processes.append(
-                self._start("hasel_driver.driver_node", "--ros-args", "-p", f"port:={port}")
+                self._start(
+                    "hasel_driver.driver_node",
+                    "--ros-args",
+                    *("-p", f"port:={port}"),
+                    *("-p", "history_file:=" + str(port.with_name("history.jsonl"))),
+                )
             )
         except BringupError:
             self.__exit__()

@@ -2,8 +2,10 @@
 
 import subprocess
 import sys
+import tempfile
 import threading
 import time
+from pathlib import Path
 
 from hasel_driver.mode import Mode
 from hasel_driver.testing.ros_client import RosClient
@@ -15,7 +17,9 @@ class DriverProcess:
     def __init__(self, client: RosClient, port: str, **parameters: object) -> None:
         self._client = client
         client.states.clear()
-        chosen = {"port": port, "discovery_time": 0.2} | parameters
+        self._folder = tempfile.TemporaryDirectory(prefix="hasel_driver_")
+        self.history = Path(self._folder.name) / "history.jsonl"
+        chosen = {"port": port, "discovery_time": 0.2, "history_file": self.history} | parameters
         arguments = [word for key, value in chosen.items() for word in ("-p", f"{key}:={value}")]
         self.process = subprocess.Popen(
             [sys.executable, "-m", "hasel_driver.driver_node", "--ros-args", *arguments],
@@ -58,3 +62,4 @@ class DriverProcess:
             self.process.kill()
             self.process.wait()
         self._reader.join(timeout=5.0)
+        self._folder.cleanup()

@@ -14,6 +14,7 @@ from lifecycle_msgs.srv import ChangeState, GetState
 from rclpy.context import Context
 from rclpy.duration import Duration
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Bool
@@ -143,10 +144,10 @@ class RosClient:
         with self.commanding(voltage_v):
             self.wait(until, timeout_s)
 
-    def emergency_stop_topic(self, stop: bool) -> None:
-        """Publish on the latched topic."""
+    def emergency_stop_topic(self, stop: bool, quality: QoSProfile | int = LATCHED) -> None:
+        """Publish on the topic, which is latched unless another quality of service is asked for."""
         if self._stop is None:
-            self._stop = self.node.create_publisher(Bool, "/hasel/emergency_stop", LATCHED)
+            self._stop = self.node.create_publisher(Bool, "/hasel/emergency_stop", quality)
         self._stop.publish(Bool(data=stop))
 
     def drop_emergency_stop_topic(self) -> None:
@@ -179,6 +180,30 @@ class RosClient:
         self.states.clear()
         self.wait(lambda: bool(self.states) and self.states[-1].mode == mode, timeout_s)
         return self.states[-1]
+
+
+@contextmanager
+def another_node(name: str) -> Iterator[Node]:
+    """A node in a context of its own, as of another process, spun in the background."""
+    context = Context()
+    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
+    node = rclpy.create_node(name, context=context)
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+
+    def spin() -> None:
+        with suppress(ExternalShutdownException):
+            executor.spin()
+
+    thread = threading.Thread(target=spin, daemon=True)
+    thread.start()
+    try:
+        yield node
+    finally:
+        executor.shutdown()
+        thread.join(timeout=5.0)
+        node.destroy_node()
+        rclpy.try_shutdown(context=context)
 
 
 def _stamp_s(state: SupplyState) -> float:

@@ -1,0 +1,42 @@
+"""Where an experiment is recorded: never where something exists already."""
+
+import itertools
+from datetime import datetime
+from pathlib import Path
+
+from hasel_driver.errors import LimitError
+
+SUFFIX = ".mcap"
+
+
+def chosen_path(output: str) -> Path:
+    """The path that a goal names, with its suffix. Raises LimitError for a name that can be no file."""
+    try:
+        path = Path(output).expanduser()
+        path = path if path.suffix == SUFFIX else path.with_name(path.name + SUFFIX)
+    except (ValueError, RuntimeError) as error:
+        raise LimitError(f"output is {output!r}, the path of a file was expected ({error}).") from error
+    return path
+
+
+def reserve(path: Path) -> Path:
+    """Create `path`, empty, and return it. Raises LimitError where something is already, OSError where nothing can be."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        path.open("xb").close()
+    except FileExistsError as error:
+        raise LimitError(
+            f"{path} exists already, and no recording is overwritten: choose another output, or leave it empty."
+        ) from error
+    return path
+
+
+def reserve_unique(folder: Path, name: str) -> Path:
+    """A file in `folder` named by the time to the millisecond and `name`, numbered where that is taken."""
+    moment = datetime.now().strftime("%Y-%m-%d_%H-%M-%S-%f")[:-3]
+    for number in itertools.count(1):
+        extra = f"_{number}" if number > 1 else ""
+        try:
+            return reserve(folder / f"{moment}_{name}{extra}{SUFFIX}")
+        except LimitError:
+            continue

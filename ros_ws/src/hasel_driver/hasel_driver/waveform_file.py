@@ -1,0 +1,80 @@
+"""A drive given as a file: CSV with time_s, voltage_upper_v and voltage_lower_v, each row holding until the next."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from hasel_recording.csv_columns import understand
+from hasel_recording.csv_numbers import CsvNumbers
+from hasel_recording.csv_reader import drive_columns
+from hasel_recording.csv_text import read_text
+from hasel_recording.drive_channel import HASEL_PAIR
+from hasel_recording.errors import RecordingError
+
+from hasel_driver.errors import LimitError
+from hasel_driver.limits import HARDWARE_MAXIMUM_V, Voltages
+
+LONGEST_S = 3600.0
+
+
+@dataclass(frozen=True)
+class FileWaveform:
+    """Rows [n] of time [s], from 0, and voltages [n, 2] [V]; the drive ends with the last row's time."""
+
+    path: Path
+    time_s: np.ndarray
+    voltages_v: np.ndarray
+
+    @property
+    def duration_s(self) -> float:
+        """Time from the first row to the last [s]."""
+        return float(self.time_s[-1])
+
+    @property
+    def voltage_v(self) -> float:
+        """Highest magnitude [V]."""
+        return float(np.abs(self.voltages_v).max())
+
+    @property
+    def polarity(self) -> str:
+        """`positive` where no voltage is below 0, else `mixed`."""
+        return "positive" if (self.voltages_v >= 0).all() else "mixed"
+
+    def voltage(self, time_s: float) -> Voltages:
+        """Voltage of the upper and lower muscle [V] at `time_s` after the start; 0 outside the drive."""
+        if not 0.0 <= time_s < self.duration_s:
+            return 0.0, 0.0
+        upper, lower = self.voltages_v[np.searchsorted(self.time_s, time_s, side="right") - 1]
+        return float(upper), float(lower)
+
+    def metadata(self) -> dict[str, str]:
+        """Header lines of the recording."""
+        return {"waveform": "file", "waveform_file": str(self.path), "voltage_v": f"{self.voltage_v:g}"}
+
+
+def read_waveform(path: Path) -> FileWaveform:
+    """The drive in a CSV file.
+
+    Raises:
+        RecordingError: it cannot be read, or lacks a column.
+        LimitError: times or voltages that no supply can give.
+    """
+    if not path.is_file():
+        raise RecordingError(
+            f"There is no waveform file {path}: check the name, as seen from the driver's machine."
+        )
+    text = read_text(path)
+    columns = understand(text.names, {}, str(path), angle=False)
+    numbers = CsvNumbers(text)
+    time_s = numbers.times(columns.time)
+    channels, voltages_v, _ = drive_columns(columns, numbers, text)
+    if voltages_v is None or channels != HASEL_PAIR:
+        expected = " and ".join(channel.column for channel in HASEL_PAIR)
+        raise RecordingError(f"{path} has the columns {', '.join(text.names)}: {expected} were expected.")
+    if len(time_s) < 2 or not 0.0 < time_s[-1] - time_s[0] <= LONGEST_S:
+        raise LimitError(
+            f"{path} lasts from its first row to its last: more than 0 and at most {LONGEST_S:g} s."
+        )
+    if not np.isfinite(voltages_v).all() or np.abs(voltages_v).max() > HARDWARE_MAXIMUM_V:
+        raise LimitError(f"{path} holds a voltage that is no number, or above {HARDWARE_MAXIMUM_V:g} V.")
+    return FileWaveform(path, time_s - time_s[0], voltages_v)

@@ -1,0 +1,26 @@
+"""No two runs are recorded in one file."""
+
+import pytest
+from hasel_driver.errors import LimitError
+from hasel_driver.recording_path import chosen_path, reserve, reserve_unique
+
+
+def test_names_are_unique_however_fast_they_are_made(tmp_path):
+    """Fifty names within a moment are fifty files."""
+    assert len({reserve_unique(tmp_path, "3000V_1Hz") for _ in range(50)}) == 50
+
+
+def test_what_exists_is_refused(tmp_path):
+    """A second reservation fails, and a folder is no file."""
+    reserve(tmp_path / "run.mcap")
+    (tmp_path / "folder.mcap").mkdir()
+    for name in ("run.mcap", "folder.mcap"):
+        with pytest.raises(LimitError, match="exists already"):
+            reserve(tmp_path / name)
+
+
+@pytest.mark.parametrize("output", ["/", "", "~no-such-user/run"])
+def test_no_name_is_no_path(output):
+    """One sentence instead of an error of pathlib's."""
+    with pytest.raises(LimitError, match="the path of a file was expected"):
+        chosen_path(output)

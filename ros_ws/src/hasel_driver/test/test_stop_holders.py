@@ -1,0 +1,33 @@
+"""One flag for each publisher."""
+
+from hasel_driver.stop_holders import StopHolders
+
+A, B = b"a", b"b"
+
+
+def test_only_its_own_false_releases():
+    """The order of arrival of other publishers' messages does not matter."""
+    holders = StopHolders()
+    holders.take(A, 1, "/a", True)
+    holders.take(B, 1, "/b", False)
+    assert holders.names({A: "/a", B: "/b"}) == ["/a"]
+    holders.take(A, 2, "/a", False)
+    assert not holders
+
+
+def test_a_message_heard_twice_counts_once():
+    """A late copy of an old true does not take the place of a newer false."""
+    holders = StopHolders()
+    assert holders.take(A, 1, "/a", True)
+    assert holders.take(A, 2, "/a", False)
+    assert not holders.take(A, 1, "/a", True)
+    assert not holders
+
+
+def test_release_names_who_held():
+    """Whoever is gone is marked, and released by the service only."""
+    holders = StopHolders()
+    holders.take(A, 1, "/a", True)
+    assert holders.names({}) == ["/a (gone)"]
+    assert holders.release() == ["/a"]
+    assert not holders
