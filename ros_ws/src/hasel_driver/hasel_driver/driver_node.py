@@ -163,6 +163,7 @@ class DriverNode(LifecycleNode):
         thread, self._thread = self._thread, None
         if thread is not None:
             self._last_limits = thread.supervisor.limits
+            thread.come_to_rest()
             thread.stop()
             with quiet_at_shutdown():
                 self._state.wait_for_all_acked(Duration(seconds=LAST_STATE_S))

@@ -103,7 +103,10 @@ class DriverServices:
             return status.grounded is True and not status.mode.may_be_live
 
         if _result(thread.expect(off, PROOF_TIMEOUT_S)):
-            return f"{done}: the supply reports its output grounded, by contacts and measured voltage. Stored charge needs its bleeder's time."
+            return (
+                f"{done}: the supply reports its output grounded, by contacts and measured voltage."
+                " Stored charge needs its bleeder's time."
+            )
         if not supervisor.capabilities.proves_grounded and supervisor.connected:
             return f"{done}: the supply was switched off, but this kind cannot prove its output grounded."
         unproven = Fault(FaultCode.GROUND_NOT_PROVEN, f"{done.lower()} {PROOF_TIMEOUT_S} s ago")

@@ -5,6 +5,7 @@ import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 from hasel_interfaces.action import RunExperiment
@@ -136,8 +137,8 @@ class ExperimentServer:
         while not experiment.finished:
             if goal_handle.is_cancel_requested or recording.problem:
                 thread.call(experiment.cancel)
-            elif client.gone():
-                thread.call(lambda: experiment.cancel("its client has gone"))
+            elif (name := client.gone()) is not None:
+                thread.call(partial(experiment.cancel, f"its client {name} has gone"))
             if not thread.is_alive():
                 raise RefusedError("The supply's thread has ended; the board grounds itself.")
             with quiet_at_shutdown():

@@ -20,7 +20,7 @@ def chosen_path(output: str) -> Path:
 
 
 def reserve(path: Path) -> Path:
-    """Create `path`, empty, and return it. Raises LimitError where something is already, OSError where nothing can be."""
+    """Create `path`, empty, and return it. Raises LimitError where it exists, OSError where it cannot be made."""
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
         path.open("xb").close()
@@ -34,9 +34,10 @@ def reserve(path: Path) -> Path:
 def reserve_unique(folder: Path, name: str) -> Path:
     """A file in `folder` named by the time to the millisecond and `name`, numbered where that is taken."""
     moment = datetime.now().strftime("%Y-%m-%d_%H-%M-%S-%f")[:-3]
-    for number in itertools.count(1):
-        extra = f"_{number}" if number > 1 else ""
+    numbered = (f"{moment}_{name}_{number}{SUFFIX}" for number in itertools.count(2))
+    path = folder / f"{moment}_{name}{SUFFIX}"
+    while True:
         try:
-            return reserve(folder / f"{moment}_{name}{extra}{SUFFIX}")
+            return reserve(path)
         except LimitError:
-            continue
+            path = folder / next(numbered)

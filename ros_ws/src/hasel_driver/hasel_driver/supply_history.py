@@ -1,7 +1,7 @@
 """What a supply went through, kept on disk: faults, breakdowns, and how the muscles' leakage grows.
 
 One JSON object a line, appended and never rewritten:
-`{"time": "2026-01-31T12:00:00+00:00", "event": "fault", "code": 2, "name": "OVERCURRENT", "text": …, "measured_v": […]}`
+`{"time": "2026-01-31T12:00:00+00:00", "event": "fault", "code": 2, "name": "OVERCURRENT", "text": …, …}`
 `{"time": …, "event": "leakage", "channel": "upper", "voltage_v": 5000.0, "current_a": 5e-06, "resistance_ohm": 1e9}`
 """
 

@@ -1,5 +1,6 @@
 """Runs a supervisor in a thread of its own, woken by the port and by requests, never held up by the node."""
 
+import concurrent.futures
 import contextlib
 import os
 import queue
@@ -80,14 +81,17 @@ class SupplyThread(threading.Thread):
         """To be called by each part of the node; while armed, 300 ms without one of them is a fault."""
         self._host_alive_s[part] = time.monotonic()
 
-    def stop(self) -> None:
-        """Disarm, tell what became of it, close the port and end."""
-        with contextlib.suppress(RefusedError, TimeoutError):
+    def come_to_rest(self) -> None:
+        """Disarm, and have the status told that proves the output grounded, or a fault."""
+        with contextlib.suppress(RefusedError, concurrent.futures.TimeoutError):
             self.call(self.supervisor.disarm).result(timeout=LAST_WORD_S)
             if not self.expect(self._at_rest, LAST_WORD_S).result(timeout=2 * LAST_WORD_S):
                 unproven = Fault(FaultCode.GROUND_NOT_PROVEN, "the driver ends")
                 self.call(lambda: self.supervisor.fail(unproven)).result(timeout=LAST_WORD_S)
             self.call(lambda: self._on_status(self.supervisor.status())).result(timeout=LAST_WORD_S)
+
+    def stop(self) -> None:
+        """Disarm, close the port and end."""
         self._stopping = True
         self._wake()
         self.join(timeout=5.0)

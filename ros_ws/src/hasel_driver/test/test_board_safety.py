@@ -16,6 +16,11 @@ def drive(board, *voltage, settle_s=0.1) -> None:
     board.listen(settle_s)
 
 
+def ask(board, text: str) -> tuple[bool, str]:
+    """A command as one text."""
+    return board.ask(*text.split())
+
+
 @pytest.mark.parametrize("how", ["weld", "unground"])
 @pytest.mark.parametrize("command", ["STOP", "DISARM"])
 def test_ground_is_contact_and_measured_voltage(board, rig, how, command):
@@ -76,7 +81,7 @@ def test_boots_with_a_maximum_of_nothing(rig, converse):
 def test_a_waveform_set_before_is_clipped_to_the_maximum(board, rig):
     """The order of SET WAVEFORM and SET MAXIMUM does not matter."""
     board.ask("SET", "MAXIMUM", 9800)
-    board.ask("SET", *"WAVEFORM box 9800 500 3 1000 positive upper".split())
+    ask(board, "SET WAVEFORM box 9800 500 3 1000 positive upper")
     board.ask("SET", "MAXIMUM", 2000)
     assert board.ask("GET", "WAVEFORM") == (True, "WAVEFORM box 2000 500 3 1000 positive upper")
     board.ask("ARM")
@@ -93,7 +98,7 @@ def test_the_maximum_may_be_lowered_while_live(board, rig, drive_by):
     if drive_by == "voltage":
         drive(board, 5000, -1000)
     else:
-        board.ask("SET", *"WAVEFORM box 5000 500 9 1000 positive upper".split())
+        ask(board, "SET WAVEFORM box 5000 500 9 1000 positive upper")
         board.ask("ARM")
         board.ask("START")
         board.listen(0.1)
@@ -112,7 +117,7 @@ def test_a_saturated_monitor_is_a_fault(board, rig):
     assert board.report().fault_code == 0
     board.ask("DISARM")
     board.listen(0.1)
-    board.ask("SET", *"CALIBRATION upper 10400 0 10000 0".split())
+    ask(board, "SET CALIBRATION upper 10400 0 10000 0")
     drive(board, 9800, 0, settle_s=0.2)
     assert board.report().fault_code == OVERVOLTAGE
 
@@ -158,11 +163,11 @@ def test_calibration_corrects_output_and_monitor_and_survives_a_reset(board, rig
     board.listen(0.05)
     words = "CALIBRATION upper 10309 0 9615 0"
     assert board.ask("SET", *words.split()) == (True, words)
-    assert board.ask("SET", *"CALIBRATION lower 20000 0 0 9999".split()) == (
+    assert ask(board, "SET CALIBRATION lower 20000 0 0 9999") == (
         True,
         "CALIBRATION lower 11000 0 9000 150",
     )
-    board.ask("SET", *"CALIBRATION lower 10000 0 10000 0".split())
+    ask(board, "SET CALIBRATION lower 10000 0 10000 0")
     board.events.clear()
     rig.say("reset")
     board.until(lambda: any(event.words[0] == "BOOT" for event in board.events))

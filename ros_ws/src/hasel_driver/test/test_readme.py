@@ -25,7 +25,7 @@ def shown(value: object) -> str:
     """A default as the README shows it."""
     if isinstance(value, bool):
         return str(value)
-    if isinstance(value, float):
+    if isinstance(value, (int, float)):
         return f"{value:g}"
     if isinstance(value, list):
         return ", ".join(f"`{item}`" for item in value)
@@ -56,7 +56,7 @@ def test_every_mode():
 
 def test_every_fault_of_the_board_is_in_the_protocol():
     """PROTOCOL.md lists the board's faults with the codes used by the driver."""
-    listed = re.findall(r"^\| ([A-Z]+) \| (\d+) \|", PROTOCOL, re.MULTILINE)
+    listed = re.findall(r"^\| ([A-Z_]+) \| (\d+) \|", PROTOCOL, re.MULTILINE)
     assert {name: int(code) for name, code in listed} == {
         code.name: int(code) for code in FaultCode if code < 100
     }

@@ -232,9 +232,7 @@ def test_a_file_is_driven_and_recorded(driver, shared_rig, run, tmp_path):
     _, _, end = run(waveform_file=str(path), rest_time=0.2)
     status, result = end()
     assert (status, result.success) == (SUCCEEDED, True), result.message
-    states = read_file(Path(result.recording)).decoded(
-        "/hasel/state", "hasel_interfaces/msg/SupplyState"
-    )
+    states = read_file(Path(result.recording)).decoded("/hasel/state", "hasel_interfaces/msg/SupplyState")
     pairs = {tuple(state.commanded_voltage) for state in states}
     assert pairs == {(0.0, 0.0), (1000.0, 0.0), (0.0, -2000.0), (1500.0, 500.0)}
     stamps = [s.header.stamp.sec + s.header.stamp.nanosec * 1e-9 for s in states if any(s.commanded_voltage)]
