@@ -21,7 +21,9 @@ def state(upper: float, lower: float) -> dict:
     """Return a SupplyState with this voltage [V]."""
     unknown = [math.nan, math.nan]
     supply = {"commanded_voltage": [upper, lower], "measured_voltage": unknown, "current": unknown}
-    return supply | {"mode": 2, "fault_code": 0, "fault_text": ""}
+    safety = {"grounded": False, "interlock": [0, 0], "emergency_stop_holders": []}
+    limits = dict.fromkeys(("maximum_voltage", "slew_rate", "trip_current", "heartbeat_timeout"), math.nan)
+    return supply | {"mode": 2, "fault_code": 0, "fault_text": ""} | safety | limits
 
 
 @pytest.fixture
