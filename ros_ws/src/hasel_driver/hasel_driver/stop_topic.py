@@ -5,12 +5,14 @@ from collections.abc import Callable
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from hasel_driver.identified_subscription import IDENTIFIER_BYTES, IdentifiedSubscription
 from hasel_driver.stop_holders import StopHolders
 
 TOPIC, TYPE = "/hasel/emergency_stop", "std_msgs/msg/Bool"
 DEPTH = 100
+NOT_KNOWN_YET = "_NODE_NAME_UNKNOWN_"
 # A subscription is not matched by a publisher that offers less than it asks for, and is not given more than it asks
 # for: the last of these hears everybody, the others hear whoever offers more better.
 QUALITIES = tuple(
@@ -36,7 +38,7 @@ class StopTopic:
     def present(self) -> dict[bytes, str]:
         """Names of the publishers that exist, by identifier."""
         return {
-            bytes(info.endpoint_gid[:IDENTIFIER_BYTES]): f"{info.node_namespace.rstrip('/')}/{info.node_name}"
+            bytes(info.endpoint_gid[:IDENTIFIER_BYTES]): _name(info)
             for info in self._node.get_publishers_info_by_topic(TOPIC)
         }
 
@@ -45,10 +47,10 @@ class StopTopic:
         publishers = self._node.get_publishers_info_by_topic(TOPIC)
         for info in publishers:
             if info.topic_type != TYPE:
-                return f"{info.node_name} publishes {info.topic_type} on {TOPIC}, {TYPE} is expected"
+                return f"{_name(info)} publishes {info.topic_type} on {TOPIC}, {TYPE} is expected"
         heard = self._subscriptions[-1].publishers
         if heard < len(publishers):
-            names = ", ".join(info.node_name for info in publishers)
+            names = ", ".join(map(_name, publishers))
             return f"of {len(publishers)} publishers of {TOPIC} ({names}) only {heard} are connected"
         return None
 
@@ -61,3 +63,9 @@ class StopTopic:
         name = self.present().get(publisher, "an unknown node")
         if self._holders.take(publisher, sequence, name, asserted):
             self._on_change(asserted, name)
+
+
+def _name(info: TopicEndpointInfo) -> str:
+    if info.node_name == NOT_KNOWN_YET:
+        return "a node whose name is not known yet"
+    return f"{info.node_namespace.rstrip('/')}/{info.node_name}"
