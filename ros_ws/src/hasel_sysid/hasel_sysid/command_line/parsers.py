@@ -44,10 +44,12 @@ def suggest_parser() -> argparse.ArgumentParser:
     options = recording_options("suggest", what, effects=True, noise=True)
     options.add_argument(
         "--max-voltage",
-        metavar="V",
+        "--max-level",
+        metavar="LEVEL",
+        dest="max_level",
         type=float,
-        default=5500.0,
-        help="highest safe voltage (default: %(default)g)",
+        help="highest safe level of the drive, in its SI unit (default: 5500 V; of other quantities the highest one "
+        "that was recorded)",
     )
     return options
 

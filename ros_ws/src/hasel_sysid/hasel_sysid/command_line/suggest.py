@@ -4,6 +4,8 @@ import argparse
 import sys
 from collections.abc import Sequence
 
+from hasel_recording import HASEL_PAIR
+from hasel_sim.model import Model
 from hasel_sim.parallel import executor
 from ruamel.yaml import YAML
 
@@ -13,12 +15,15 @@ from hasel_sysid.command_line.parsers import suggest_parser
 from hasel_sysid.command_line.progress import progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.diagnosis import diagnose
+from hasel_sysid.drive_match import drive_unit
+from hasel_sysid.errors import SysidError
 from hasel_sysid.fit import fit_least_squares
 from hasel_sysid.problem import Problem
 from hasel_sysid.suggest import Suggestion, rivals, suggest
 
 GOAL_FILE = "suggested_run.yaml"
 _SHOWN = 5
+_SAFE_VOLTAGE = 5500.0
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -43,12 +48,23 @@ def _suggest(options: argparse.Namespace) -> None:
             pool,
             rivals(problem, found, named=bool(options.effects)),
             found.noise,
-            options.max_voltage,
+            _highest(options.max_level, given.model),
             lambda text, share: progress(text, 0.75 + 0.25 * share),
+        )
+    if not ranked:
+        raise SysidError(
+            "no experiment of the library can be simulated with these explanations: plan the next by hand"
         )
     for suggestion in ranked[:_SHOWN]:
         print(suggestion)
     _write(ranked[0], options)
+
+
+def _highest(asked: float | None, model: Model) -> float:
+    """The highest level to propose: what was asked for, else what is safe for the rig or was recorded already."""
+    if asked is not None:
+        return asked
+    return _SAFE_VOLTAGE if drive_unit(model) == "V" else float(max(model.levels, default=0.0))
 
 
 def _write(best: Suggestion, options: argparse.Namespace) -> None:
@@ -62,7 +78,8 @@ def _write(best: Suggestion, options: argparse.Namespace) -> None:
     yaml.default_flow_style = False
     with path.open("w") as file:
         yaml.dump(best.manoeuvre.goal(), file)
-    print(f"Wrote {path}, a goal for the RunExperiment action.")
+    action = ", a goal for the RunExperiment action" if best.manoeuvre.channels == HASEL_PAIR else ""
+    print(f"Wrote {path}{action}.")
 
 
 if __name__ == "__main__":

@@ -6,11 +6,13 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+from hasel_recording import HASEL_PAIR
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 from hasel_sim.simulate import simulate
 
 from hasel_sysid.draft import draft
+from hasel_sysid.drive_match import drive_unit, model_channels
 from hasel_sysid.errors import SysidError
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.suggest.manoeuvre import Manoeuvre, manoeuvres
@@ -48,16 +50,22 @@ def suggest(
 ) -> list[Suggestion]:
     """Rank all safe experiments, best first.
 
-    candidates: fitted models by the effect that each adds; highest: largest voltage allowed [V]; brief: only a few
-    experiments, at the highest voltage. An experiment is as good as it is for the pair of explanations that it
-    separates least.
+    candidates: fitted models by the effect that each adds; highest: largest level allowed, in the unit of the drive;
+    brief: only a few experiments, at the highest level. An experiment is as good as it is for the pair of explanations
+    that it separates least. Raises SysidError where none is possible.
     """
-    levels = next(iter(candidates.values())).levels
-    library = manoeuvres(levels, highest, brief)
+    model = next(iter(candidates.values()))
+    levels, channels, unit = model.levels, model_channels(model) or HASEL_PAIR, drive_unit(model)
+    if len(levels) and not unit:
+        raise SysidError(
+            f"model '{model.name}' is driven by {', '.join(map(str, channels))}, and experiments are only proposed for "
+            "channels of one unit: plan the next run by hand"
+        )
+    library = manoeuvres(levels, highest, brief, channels)
     if not library:
         raise SysidError(
-            f"no experiment is possible: the highest voltage allowed is {highest:g} V and the lowest known one "
-            f"{levels[0]:g} V; raise --max-voltage"
+            f"no experiment is possible: the highest level allowed is {highest:g} {unit} and the lowest known one "
+            f"{levels[0]:g} {unit}; raise --max-voltage"
         )
     futures = [
         {name: pool.submit(simulate, draft(model), manoeuvre.run()) for name, model in candidates.items()}

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from hasel_interfaces.action import RunExperiment
+from hasel_recording import DriveChannel
 from hasel_sysid.suggest import Manoeuvre, manoeuvres
 
 
@@ -39,3 +40,19 @@ def test_passive_bodies_are_held_and_let_go():
     library = manoeuvres(np.zeros(0), 5500.0)
     assert {m.run().initial_state for m in library} == {"static_equilibrium"}
     assert len({m.load_factor for m in library}) == len(library)
+
+
+def test_other_channels_are_driven_in_their_own_unit():
+    """A chamber is filled for half the period; three channels take turns; both are said in their unit."""
+    chamber = (DriveChannel("chamber", "pressure", "Pa"),)
+    library = manoeuvres(np.array([10000.0, 25000.0]), 25000.0, channels=chamber)
+    assert {m.muscles for m in library} == {"both"}
+    one = Manoeuvre(25000.0, 1.0, 2, "box", "both", channels=chamber)
+    assert one.run().schedule.signal[:, 0].tolist() == [25000.0, 0.0, 25000.0, 0.0]
+    assert str(one) == "box of 25000 Pa at 1 Hz, 2 periods, chamber only"
+    assert one.goal()["channels"] == ["pressure_chamber_pa"]
+    three = tuple(DriveChannel(name, "voltage", "V") for name in ("root", "middle", "tip"))
+    for waveform in ("box", "triangle"):
+        signal = Manoeuvre(5000.0, 1.0, 2, waveform, "both", channels=three).run().schedule.signal
+        assert np.count_nonzero(signal, axis=1).max() == 1
+        assert signal.max(axis=0) == pytest.approx([5000.0] * 3, rel=0.05)
