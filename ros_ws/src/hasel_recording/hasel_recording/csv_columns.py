@@ -77,8 +77,8 @@ class _Reader:
         self.source, self.names = source, names
         self.left = {meant[name]: name for name in names if name in meant}
         mapped = {_role(name) for name in self.left}
-        self.unused = [name for name in names if name not in meant and _role(name) in mapped]
-        self.left |= {name: name for name in names if name not in (*meant, *self.unused)}
+        self.unused = [name for name in names if name not in meant and _role(name.lower()) in mapped]
+        self.left |= {name.lower(): name for name in names if name not in (*meant, *self.unused)}
 
     def columns(self) -> Columns:
         """Take what is known and complain about what resembles it."""

@@ -16,6 +16,8 @@ from hasel_recording.marker_angle import sin_theta_from_markers
 from hasel_recording.recording import MARKER_NAMES, Recording
 from hasel_recording.stand_in import as_meant
 
+SEPARATED_BY = {";": "semicolons", "\t": "tabs", " ": "blanks"}
+
 
 def read_csv(path: Path, mapping: Mapping[str, str] | None = None, own_drive: bool = True) -> Recording:
     """Read one run; raises RecordingError naming the line and column of what is wrong.
@@ -88,7 +90,7 @@ def _understood(columns: Columns, text: CsvText) -> list[str]:
     """Which column is read as what, one sentence each; those that mean what they are called are left out."""
     said = [f"columns {', '.join(name for name in text.names if name in columns.names())}"]
     if text.separator != ",":
-        said.append(f"cells are separated by {'tabs' if text.separator == chr(9) else 'semicolons'}")
+        said.append(f"cells are separated by {SEPARATED_BY[text.separator]}")
     if columns.time.factor != 1 or columns.time.name != "time_s":
         said.append(f"time is column {columns.time.name!r}, times {columns.time.factor:g} in s")
     if columns.theta:

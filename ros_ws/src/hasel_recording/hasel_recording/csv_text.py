@@ -1,6 +1,8 @@
 """The text of a lab's CSV file: header lines, a row of column names, cells."""
 
+import codecs
 import csv
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,7 +28,7 @@ class CsvText:
 def read_text(path: Path) -> CsvText:
     """Read and split a file; raises RecordingError for one that is no text or has no rows.
 
-    Cells are separated by semicolons, tabs or commas, whichever the row of column names has.
+    Cells are separated by semicolons, tabs or commas, whichever the row of column names has, else by blanks.
     """
     text = _decoded(path)
     metadata: dict[str, str] = {}
@@ -44,11 +46,10 @@ def read_text(path: Path) -> CsvText:
 
 def _decoded(path: Path) -> str:
     content = path.read_bytes()
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return content.decode("utf-16", errors="replace")  # a spreadsheet's "Unicode text"
     if b"\0" in content:
-        raise RecordingError(
-            f"{path} is not a text file in UTF-8: give a CSV or an MCAP recording (a spreadsheet saves such as "
-            "'CSV UTF-8')."
-        )
+        raise RecordingError(f"{path} is not a text file: give a CSV or an MCAP recording.")
     try:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -58,17 +59,20 @@ def _decoded(path: Path) -> str:
 
 
 def _table(path: Path, metadata: dict[str, str], top: str, rest: list[str], first_line: int) -> CsvText:
-    separator = next((sign for sign in SEPARATORS if sign in top), ",")
-    names = [name.strip() for name in next(csv.reader([top], delimiter=separator))]
+    separator = next((sign for sign in SEPARATORS if sign in top), " ")
+    names = [name.strip() for name in next(_split([top], separator))]
+    if all(_is_number(name) for name in names):
+        raise RecordingError(
+            f"{path} has numbers where a row of column names is expected: put one on top, such as "
+            "time_s,voltage_upper_v,voltage_lower_v,sin_theta."
+        )
     padding = separator * (len(names) - 1)  # a spreadsheet fills header lines up to the table's width
     if padding:
         metadata = {key: value.removesuffix(padding) for key, value in metadata.items()}
     lines, cells = [], []
-    reader = csv.reader(rest, delimiter=separator)
-    for row in reader:
+    for line, row in enumerate(_split(rest, separator), start=first_line):
         if not any(cell.strip() for cell in row):
             continue
-        line = first_line + reader.line_num - 1
         if len(row) != len(names):
             raise RecordingError(
                 f"{path}, line {line} has {len(row)} cells where the top row names {len(names)} columns: "
@@ -79,3 +83,16 @@ def _table(path: Path, metadata: dict[str, str], top: str, rest: list[str], firs
     if not cells:
         raise RecordingError(f"{path} has column names but no frames: was the recording stopped too early?")
     return CsvText(path, metadata, names, lines, cells, separator)
+
+
+def _split(lines: list[str], separator: str) -> Iterator[list[str]]:
+    """Cells of every line; a blank separates however often it is repeated."""
+    return (line.split() for line in lines) if separator == " " else csv.reader(lines, delimiter=separator)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text.replace(",", "."))
+    except ValueError:
+        return False
+    return True

@@ -91,6 +91,7 @@ BAD_FILES = {
     "cells": (GOOD + "0.1,3500,0.1\n", r"line 3 has 3 cells where the top row names 4"),
     "empty": ("", r"is empty"),
     "header only": ("#model: beam\n", r"is empty"),
+    "no names": ("0,0.1\n0.01,0.2\n", r"has numbers where a row of column names is expected"),
     "no frames": ("time_s,sin_theta\n", r"no frames"),
     "binary": (b"\x89\xff\x00", r"not a text file"),
     "markers coincide": (
@@ -155,3 +156,22 @@ def test_any_channel_of_any_quantity(tmp_path):
     run = read_recording(path)
     assert [channel.column for channel in run.channels] == ["pressure_chamber_pa", "travel_tendon_m"]
     assert run.drive_signal[0] == pytest.approx([25000, 0.007])
+
+
+@pytest.mark.parametrize(
+    ("text", "encoding"),
+    [
+        ("time_s sin_theta\n0   0.1\n0.01 -0.2\n", "utf-8"),
+        ("time_s\tsin_theta\n0\t0.1\n0.01\t-0.2\n", "utf-16"),
+        ("TIME_S,Sin_Theta\n0,0.1\n0.01,-0.2\n", "utf-8-sig"),
+        ('"time_s","sin_theta"\r\n0,0.1\r\n0.01,-0.2\r\n', "utf-8"),
+        ("time_s,sin_theta,\n0,0.1,\n0.01,-0.2,\n", "utf-8"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore:.*column '' is not used")
+def test_what_other_programs_write(tmp_path, text, encoding):
+    """Blanks, tabs, quotes, capitals, a last empty column, any encoding: the same two frames."""
+    path = tmp_path / "run.csv"
+    path.write_bytes(text.encode(encoding))
+    run = read_recording(path)
+    assert (run.time_s.tolist(), run.sin_theta.tolist()) == ([0.0, 0.01], [0.1, -0.2])

@@ -24,7 +24,12 @@ class Finding:
 
     def __str__(self) -> str:
         where = f"{self.recording}: " if self.recording else ""
-        return f"{where}{self.fault}: {self.evidence}; {self.advice}."
+        return f"{where}{self.sentence}"
+
+    @property
+    def sentence(self) -> str:
+        """The finding without its recording."""
+        return f"{self.fault}: {self.evidence}; {self.advice}" + ("" if self.advice.endswith("?") else ".")
 
     def to_json(self) -> dict:
         """Plain words and numbers."""

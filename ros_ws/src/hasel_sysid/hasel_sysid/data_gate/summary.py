@@ -29,9 +29,8 @@ class Summary:
 
     def __str__(self) -> str:
         rows = [f"  {what:<8} {said}" for what, said in self.rows]
-        found = [f"  {f.severity.value:<8} {f.fault}: {f.evidence}; {f.advice}." for f in self.findings] or [
-            "  looks in order"
-        ]
+        found = [f"  {finding.severity.value:<8} {finding.sentence}" for finding in self.findings]
+        found = found or ["  looks in order"]
         return "\n".join([str(self.recording.path or self.recording.name), *rows, *found])
 
     def to_json(self) -> dict:

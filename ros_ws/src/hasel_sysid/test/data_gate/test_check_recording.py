@@ -211,7 +211,7 @@ def test_fault_is_named(made_recording, name):
     assert finding.severity is Severity(severity)
     assert found[0].severity is Severity(severity)
     assert str(finding).startswith(f"run: {fault}: ")
-    assert str(finding).endswith(".")
+    assert str(finding)[-1] in ".?"
 
 
 def test_middle_and_tail_are_told_from_head_and_middle(made_recording):
@@ -334,3 +334,18 @@ def test_measured_beam_is_clean(real_beam):
     paths = sorted(real_beam.glob("*.csv"))
     assert paths
     assert [str(f) for path in paths for f in check_recording(read_recording(path))] == []
+
+
+@pytest.mark.parametrize(
+    ("header", "said"),
+    [
+        ({"initial_time_s": "soon"}, "initial_time_s is 'soon', expected a number"),
+        ({"initial_time_s": "50"}, "let go at 50 s and the last frame is at"),
+        ({"initial_stat": "rest"}, "did you mean 'initial_state'?"),
+    ],
+)
+def test_header_lines_that_are_not_understood(made_recording, header, said):
+    """A value that is no number, a start after the end, and a misspelt key are each said."""
+    found = check_recording(made_recording(metadata=header))
+    assert len(found) == 1
+    assert said in str(found[0])
