@@ -17,7 +17,9 @@ PLAIN_ELEMENT = 0.25
 MOST_PLAIN = 24
 """Elements along a slender body without spine: enough for the elastica, whatever its height."""
 ROOT_ELEMENT = 1.0 / 16.0
-"""Length of the elements on both sides of the fin's root over the spine's thickness."""
+"""Length of the elements on both sides of the fin's root over the spine's thickness, at density 1."""
+THINNEST = 1.0 / 64.0
+"""The same at any density: thinner ones no longer matter, and their shape spoils the solution."""
 FIN_ELEMENTS, GAP_ELEMENTS = 14, 6
 """Elements along the fin, and along the last piece of the body before it."""
 
@@ -36,7 +38,8 @@ def graded(start: float, end: float, first: float, count: int) -> np.ndarray:
     if count < 2 or first * count >= length:
         return spread(start, end, count)
     powers = np.arange(count)
-    growth = brentq(lambda g: first * (g**powers).sum() - length, 1.0, length / first)
+    largest = (length / first) ** (1 / (count - 1))
+    growth = brentq(lambda g: first * (g**powers).sum() - length, 1.0, largest)
     ends = np.concatenate([[0.0], np.cumsum(growth**powers)])
     return start + np.sign(end - start) * length * ends / ends[-1]
 
@@ -57,7 +60,7 @@ def spined_stations(
         size = (PASSIVE_ELEMENT if passive else MUSCLE_ELEMENT) * height / density
         if has_fin and b == breaks[-1]:
             count = max(1, round(GAP_ELEMENTS * density)) + int(max(0.0, b - a - height) / size)
-            pieces.append(graded(b, a, ROOT_ELEMENT * thickness / density, count)[::-1])
+            pieces.append(graded(b, a, root_element(thickness, density), count)[::-1])
         else:
             pieces.append(spread(a, b, _count(b - a, size)))
     return _joined(pieces)
@@ -65,7 +68,12 @@ def spined_stations(
 
 def fin_stations(start: float, end: float, thickness: float, density: float) -> np.ndarray:
     """Element ends along the fin [m], graded away from its root."""
-    return graded(start, end, ROOT_ELEMENT * thickness / density, max(2, round(FIN_ELEMENTS * density)))
+    return graded(start, end, root_element(thickness, density), max(2, round(FIN_ELEMENTS * density)))
+
+
+def root_element(thickness: float, density: float) -> float:
+    """Length [m] of the elements on both sides of the fin's root."""
+    return max(ROOT_ELEMENT / density, THINNEST) * thickness
 
 
 def with_middles(ends: np.ndarray) -> np.ndarray:
