@@ -1,4 +1,4 @@
-"""When a drive switched, where rows are missing around the switch."""
+"""When a drive switched, where rows around the switch are missing or farther apart than usual."""
 
 import warnings
 from dataclasses import replace
@@ -35,7 +35,7 @@ def with_placed_switches(recording: Recording) -> Recording:
     for row in changes[uncertain]:
         before, after = float(time_s[row - 1]), float(time_s[row])
         due, period = _due(time_s, values, changes[~uncertain], row)
-        gap = f"rows are missing from {before:g} to {after:g} s, where the drive switches"
+        gap = f"the drive switches between the rows at {before:g} and {after:g} s, farther apart than usual"
         if due is None:
             said = (
                 f"{gap}; it is taken to switch at {after:g} s: give its own file with --drive to know better."

@@ -73,8 +73,16 @@ def load_experiments(
     mapping, drives: as of hasel_recording.read_recordings. One among good ones that cannot be read, or not be
     simulated, is skipped with a RecordingWarning; raises RecordingError when none is left.
     """
+    return usable(read_recordings(paths, mapping, drives))
+
+
+def usable(recordings: Iterable[Recording]) -> list[Experiment]:
+    """The recordings that can be simulated, as experiments; the others are skipped, each with a RecordingWarning.
+
+    Raises RecordingError when none is left.
+    """
     good, refused = [], []
-    for recording in read_recordings(paths, mapping, drives):
+    for recording in recordings:
         fault = refusal(recording)
         if fault is None:
             good.append(experiment(recording))

@@ -7,7 +7,7 @@ from hasel_recording import Recording, read_recordings
 from hasel_sim.model import Model
 from hasel_sim.parallel import executor
 
-from hasel_sysid.dataset import experiment, prepared
+from hasel_sysid.dataset import for_model, prepared, usable
 from hasel_sysid.diagnosis import Diagnosis, Verdict, diagnose
 from hasel_sysid.diagnosis.context import SIGNIFICANT
 from hasel_sysid.diagnosis.explained import Status, status_with
@@ -28,9 +28,9 @@ def fit_recordings(
 ) -> FitResult:
     """Fit the model's free parameters in `jobs` processes (0: one per core), this one staying responsive.
 
-    Raises SysidError, SimulationError or ModelError.
+    Raises RecordingError, SysidError, SimulationError or ModelError.
     """
-    experiments = [experiment(recording) for recording in recordings]
+    experiments = for_model(model.with_levels([]), usable(recordings))
     with executor(jobs or None) as pool:
         problem = Problem(experiments, pool)
         return identify(problem, prepared(model, experiments), method or DEFAULT_METHOD, progress)
@@ -45,9 +45,9 @@ def diagnose_recordings(
 ) -> Diagnosis:
     """Fit and rank the effects (all known ones when none is named) that could be missing.
 
-    Raises SysidError, SimulationError or ModelError.
+    Raises RecordingError, SysidError, SimulationError or ModelError.
     """
-    experiments = [experiment(recording) for recording in recordings]
+    experiments = for_model(model.with_levels([]), usable(recordings))
     with executor(jobs or None) as pool:
         problem = Problem(experiments, pool)
         fit = fit_least_squares(problem, prepared(model, experiments), progress)
