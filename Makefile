@@ -26,8 +26,8 @@ test: lint ## lint, then every test but the slow ones
 test-slow: build ## the slow tests
 	@$(ENVIRONMENT) && python -m pytest -m slow
 
-demo: build ## fit the swimmer, compare on unseen runs, replay one, write report.html (BEAM=DIR: the beam too)
-	@bin/ros2-run hasel_bringup demo $(if $(BEAM),--beam $(BEAM))
+demo: build ## fit the swimmer, compare on unseen runs, replay one, write report.html (BODY=DIR: measured bodies too)
+	@bin/ros2-run hasel_bringup demo $(foreach folder,$(BODY) $(BEAM),--body $(folder))
 
 bench: build ## measure the speeds that the README states
 	@bin/ros2-run hasel_bringup bench

@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from hasel_bringup.demo.live_error import LiveError
+from hasel_bringup.demo.measured_bodies import MeasuredBody, found_in
 from hasel_bringup.errors import BringupError
 
 _DATA = Path("data") / "unseen_rig" / "quadratic_drag"
@@ -29,7 +30,12 @@ def _parser() -> argparse.ArgumentParser:
         help="fit_*.csv and val_*.csv (default: %(default)s)",
     )
     parser.add_argument(
-        "--beam", type=Path, metavar="DIR", help="also gravity_a.csv and gravity_b.csv of a measured beam"
+        "--body",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="DIR",
+        help="also the measured bodies in this folder: beam, loaded beam, arm (may be given several times)",
     )
     parser.add_argument(
         "--output", type=Path, default=Path("output") / "demo", metavar="DIR", help="(default: %(default)s)"
@@ -40,10 +46,10 @@ def _parser() -> argparse.ArgumentParser:
 class Demo:
     """The steps in order; each tells what it does and how long it took."""
 
-    def __init__(self, data: Path, beam: Path | None, output: Path) -> None:
+    def __init__(self, data: Path, bodies: Sequence[Path], output: Path) -> None:
         self.fitted, self.unseen = _files(data, "fit_*.csv"), _files(data, "val_*.csv")
         self.replayed = data / _REPLAYED if (data / _REPLAYED) in self.unseen else self.unseen[-1]
-        self.beam = None if beam is None else (*_files(beam, "gravity_a.csv"), *_files(beam, "gravity_b.csv"))
+        self.bodies = found_in(list(bodies))
         self.output = output
         output.mkdir(parents=True, exist_ok=True)
         self._console = Console(highlight=False)
@@ -69,8 +75,11 @@ class Demo:
         self._step(
             f"Replay {self.replayed.name} again, with both models", lambda: self._live(fitted, improved)
         )
-        if self.beam:
-            self._step("Fit the measured beam to one run, compare on another", self._beam)
+        for body, fitted, unseen in self.bodies:
+            self._step(
+                f"A measured body: fit the {body.name.replace('_', ' ')} to {_runs(fitted)}, judge on {_runs(unseen)}",
+                lambda body=body, fitted=fitted, unseen=unseen: self._measured(body, fitted, unseen),
+            )
         minutes, seconds = divmod(round(time.monotonic() - begun), 60)
         self._console.print(
             f"\nDone in {minutes} min {seconds} s: open {escape(str(self.output / 'report.html'))}"
@@ -93,13 +102,14 @@ class Demo:
                     f"{model.stem}: the nodes end at mean |Δ sin θ| = {error:.4f} over {frames} frames in real time"
                 )
 
-    def _beam(self) -> None:
-        """The beam's model is a bare elastic one: what its rubber does besides is to be found."""
-        seen, unseen = map(str, self.beam)
-        _call(
-            improve,
-            [seen, "--validate", unseen, "--model", "beam", "--output", str(self.output / "beam")],
-        )
+    def _measured(self, body: MeasuredBody, fitted: list[Path], unseen: list[Path]) -> None:
+        """The model is a bare one: what the real body does besides is to be found."""
+        recordings = [*map(str, fitted), "--validate", *map(str, unseen)]
+        _call(improve, [*recordings, "--model", body.model, "--output", str(self.output / body.name)])
+
+
+def _runs(paths: Sequence[Path]) -> str:
+    return "one run" if len(paths) == 1 else f"{len(paths)} runs"
 
 
 def _files(folder: Path, pattern: str) -> list[Path]:
@@ -124,7 +134,7 @@ def main() -> int:
     """Command line of `demo`; returns the exit code."""
     arguments = _parser().parse_args()
     try:
-        Demo(arguments.data, arguments.beam, arguments.output).run()
+        Demo(arguments.data, arguments.body, arguments.output).run()
     except (BringupError, RecordingError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
