@@ -47,7 +47,7 @@ def found_in(folders: list[Path]) -> list[tuple[MeasuredBody, list[Path], list[P
         if not here:
             known = "; ".join(", ".join((*body.fitted, *body.unseen)) for body in MEASURED_BODIES)
             raise BringupError(
-                f"there is no measured body in {folder}; expected a folder with one of these sets of recordings: {known}"
+                f"there is no measured body in {folder}; expected one of these sets of recordings: {known}"
             )
         found += here
     return found
