@@ -20,11 +20,18 @@ class CsvNumbers:
     def column(self, column: Column, may_be_missing: bool = False) -> np.ndarray:
         """The column's numbers in its SI unit; a blank or NaN cell is NaN where it may be missing."""
         index = self._text.names.index(column.name)
-        values = [
-            self._number(row[index], column.name, line, may_be_missing)
-            for line, row in zip(self._text.lines, self._text.cells, strict=True)
-        ]
-        return np.array(values) * column.factor if column.factor != 1 else np.array(values)
+        try:
+            values = np.array([float(row[index]) for row in self._text.cells])
+        except ValueError:  # a blank, a decimal comma, or what is no number at all
+            values = np.array([np.nan])
+        if not np.isfinite(values).all():
+            values = np.array(
+                [
+                    self._number(row[index], column.name, line, may_be_missing)
+                    for line, row in zip(self._text.lines, self._text.cells, strict=True)
+                ]
+            )
+        return values * column.factor if column.factor != 1 else values
 
     def _number(self, cell: str, name: str, line: int, may_be_missing: bool) -> float:
         if may_be_missing and cell.lower() in NOT_MEASURED:

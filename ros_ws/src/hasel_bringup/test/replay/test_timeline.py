@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hasel_bringup.errors import BringupError
 from hasel_bringup.replay.timeline import one_after_the_other, timeline
-from hasel_recording import Recording
+from hasel_recording import DriveChannel, Recording, RecordingError
 
 TIME = np.array([0.0, 0.1, 0.2])
 VOLTAGE = np.array([[10.0, 0.0], [10.0, 0.0], [0.0, -20.0]])
@@ -38,6 +38,13 @@ def test_a_passive_body_is_replayed_at_zero_volt():
     """The simulator needs states to follow, also of a body without muscles."""
     frames = timeline(Recording("beam", TIME, np.zeros(3)))
     assert [frame.voltage for frame in frames] == [(0.0, 0.0)] * 3
+
+
+def test_only_the_rigs_two_voltages_are_replayed():
+    """The state that is published has two voltages: a run of other channels is refused with one sentence."""
+    chamber = (DriveChannel("chamber", "pressure", "Pa"),)
+    with pytest.raises(RecordingError, match="is driven by pressure_chamber_pa, where voltage_upper_v and"):
+        timeline(Recording("arm", TIME, np.zeros(3), VOLTAGE[:, :1], channels=chamber))
 
 
 def test_frames_before_the_release_are_left_out():
