@@ -9,6 +9,7 @@ from pathlib import Path
 
 from hasel_recording import RecordingError, read_recording
 from hasel_sysid.command_line import fit, improve
+from hasel_sysid.command_line.running import MISLEADING
 from rich.console import Console
 from rich.markup import escape
 
@@ -122,9 +123,12 @@ def _files(folder: Path, pattern: str) -> list[Path]:
 
 
 def _call(command, arguments: Sequence[str]) -> None:
-    """Run one of the commands as a user would. Raises BringupError when it fails."""
+    """Run one of the commands as a user would; what it says of misleading recordings is enough.
+
+    Raises BringupError when it fails.
+    """
     code = command.main(arguments)
-    if code:
+    if code not in (0, MISLEADING):
         raise BringupError(
             f"{command.__name__.rpartition('.')[2]} failed with exit code {code}; see its message above"
         )

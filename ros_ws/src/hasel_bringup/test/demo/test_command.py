@@ -1,10 +1,12 @@
 """The demonstration's choice of files."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
-from hasel_bringup.demo.command import Demo
+from hasel_bringup.demo.command import Demo, _call
 from hasel_bringup.errors import BringupError
+from hasel_sysid.command_line.running import MISLEADING
 
 ROOT = Path(__file__).resolve().parents[5]
 DATA = ROOT / "data" / "unseen_rig" / "quadratic_drag"
@@ -22,3 +24,14 @@ def test_a_folder_without_a_measured_body_is_refused(tmp_path):
     """Before anything is computed."""
     with pytest.raises(BringupError, match=r"gravity_a\.csv"):
         Demo(DATA, [tmp_path], tmp_path / "out")
+
+
+@pytest.mark.parametrize(("code", "goes_on"), [(0, True), (MISLEADING, True), (2, False), (130, False)])
+def test_a_misleading_recording_does_not_end_the_demo(code, goes_on):
+    """What the data gate says of a recording is printed; only a command that fails ends the demonstration."""
+    command = SimpleNamespace(__name__="hasel_sysid.command_line.fit", main=lambda arguments: code)
+    if goes_on:
+        _call(command, [])
+    else:
+        with pytest.raises(BringupError, match=f"fit failed with exit code {code}"):
+            _call(command, [])
