@@ -24,7 +24,7 @@ from hasel_driver.limits import Limits, Voltages
 from hasel_driver.messages import to_diagnostics, to_supply_state
 from hasel_driver.middleware import avoid_shared_memory
 from hasel_driver.node_parameters import declare, values
-from hasel_driver.realtime import request_realtime
+from hasel_driver.realtime import middleware_threads, request_realtime
 from hasel_driver.spinning import quiet_at_shutdown, spin
 from hasel_driver.status import Status
 from hasel_driver.supervisor import Supervisor
@@ -109,6 +109,8 @@ class DriverNode(LifecycleNode):
 
     def _begin_realtime(self, priority: int) -> None:
         problem = request_realtime(priority)
+        for thread in middleware_threads():
+            request_realtime(priority, thread)
         if problem is None:
             self.get_logger().info(f"Commands are sent with real-time priority {priority}.")
         else:

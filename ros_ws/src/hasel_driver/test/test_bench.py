@@ -18,11 +18,22 @@ def test_a_missed_bar_is_said_and_returned():
     assert (met, "MISSED" in line) == (False, True)
 
 
-def test_measures_latency_rate_and_grounding(capsys, monkeypatch):
+@pytest.mark.parametrize("supply", ["virtual", "firmware"])
+def test_measures_latency_rate_and_grounding(capsys, monkeypatch, request, supply):
     """A short run prints the three figures, each from as many measurements as were asked for."""
     monkeypatch.setattr(bench, "FLAT_OUT_S", 0.3)
-    bench.main(["--commands", "50", "--kills", "1"])
+    arguments = ["--commands", "50", "--kills", "1"]
+    if supply == "firmware":
+        arguments += ["--firmware", str(request.getfixturevalue("firmware_build"))]
+    bench.main(arguments)
     lines = capsys.readouterr().out.splitlines()
     assert int(re.search(r"command to wire: median .* n = (\d+)", lines[0])[1]) > 40
-    assert int(re.search(r"command rate: (\d+) /s", lines[1])[1]) > 100
+    assert int(re.search(r"commands obeyed: (\d+) /s", lines[1])[1]) > 50
     assert "node killed to output grounded: median" in lines[2]
+
+
+def test_a_folder_without_the_firmware_is_said(capsys, tmp_path):
+    """One sentence, not a trace."""
+    with pytest.raises(SystemExit):
+        bench.main(["--firmware", str(tmp_path)])
+    assert "build them with make first" in capsys.readouterr().err
