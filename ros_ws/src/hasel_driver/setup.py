@@ -21,6 +21,8 @@ setup(
     entry_points={
         "console_scripts": [
             "bench = hasel_driver.bench:main",
+            "console = hasel_driver.console:main",
+            "calibrate = hasel_driver.calibrate:main",
             "driver_node = hasel_driver.driver_node:main",
             "stored_charge = hasel_driver.stored_charge:main",
             "virtual_shvps = hasel_driver.virtual_shvps:main",

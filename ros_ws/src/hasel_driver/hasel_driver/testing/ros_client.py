@@ -134,6 +134,15 @@ class RosClient:
             ended.set()
             thread.join()
 
+    @contextmanager
+    def silent(self) -> Iterator[None]:
+        """Publish no commands, nor be able to: somebody else does."""
+        self.node.destroy_publisher(self.commands)
+        try:
+            yield
+        finally:
+            self.commands = self.node.create_publisher(Actuation, "/hasel/command", 100)
+
     def drive(
         self,
         until: Callable[[], bool],

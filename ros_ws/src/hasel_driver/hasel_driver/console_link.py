@@ -1,0 +1,111 @@
+"""What the console says to the driver's node and hears of it."""
+
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any
+
+import rclpy
+from hasel_interfaces.msg import Actuation, SupplyState
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParameters
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from std_srvs.srv import Trigger
+
+from hasel_driver.errors import RefusedError
+from hasel_driver.limits import Voltages
+
+ANSWER_S = 5.0
+FRESH_S = 0.5
+
+
+class ConsoleLink:
+    """A node of its own, spun in the background; `command` publishes only within `commanding`."""
+
+    def __init__(self) -> None:
+        rclpy.init()
+        self._node = rclpy.create_node("hasel_console")
+        self._state: SupplyState | None = None
+        self._heard_s = 0.0
+        self._commands = None
+        self._node.create_subscription(SupplyState, "/hasel/state", self._take, 10)
+        self._clients: dict[str, Any] = {}
+        self._executor = SingleThreadedExecutor()
+        self._executor.add_node(self._node)
+        self._thread = threading.Thread(target=self._spin, daemon=True)
+        self._thread.start()
+
+    def state(self) -> SupplyState | None:
+        """The last state, if it is of now."""
+        return self._state if time.monotonic() - self._heard_s < FRESH_S else None
+
+    def await_mode(self, mode: int) -> SupplyState | None:
+        """The last state; one that is about to have this mode is waited for."""
+        end_s = time.monotonic() + FRESH_S
+        while time.monotonic() < end_s and (self._state is None or self._state.mode != mode):
+            time.sleep(0.01)
+        return self.state()
+
+    def trigger(self, name: str) -> str:
+        """Call one of the driver's services; its words. Raises RefusedError with them where it fails."""
+        answer = self._ask(Trigger, f"/hasel/{name}", Trigger.Request())
+        if not answer.success:
+            raise RefusedError(answer.message)
+        return answer.message
+
+    def lower_limit(self, voltage_v: float) -> str:
+        """Lower the driver's maximum voltage [V]."""
+        value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=voltage_v)
+        request = SetParameters.Request(parameters=[Parameter(name="maximum_voltage", value=value)])
+        (result,) = self._ask(SetParameters, "/hasel_driver/set_parameters", request).results
+        if not result.successful:
+            raise RefusedError(result.reason)
+        return f"The limit is {voltage_v:g} V."
+
+    @contextmanager
+    def commanding(self) -> Iterator[None]:
+        """The driver allows one publisher of commands: this one is there only as long as it is needed."""
+        self._commands = self._node.create_publisher(Actuation, "/hasel/command", 10)
+        try:
+            end_s = time.monotonic() + ANSWER_S
+            while not self._commands.get_subscription_count():
+                if time.monotonic() > end_s:
+                    raise RefusedError("Nobody takes commands: start the driver's node.")
+                time.sleep(0.01)
+            yield
+        finally:
+            self._node.destroy_publisher(self._commands)
+            self._commands = None
+
+    def command(self, voltage_v: Voltages) -> None:
+        """Publish one command."""
+        message = Actuation(voltage=list(voltage_v))
+        message.header.stamp = self._node.get_clock().now().to_msg()
+        self._commands.publish(message)
+
+    def close(self) -> None:
+        """Leave."""
+        self._executor.shutdown()
+        self._thread.join(timeout=2.0)
+        self._node.destroy_node()
+        rclpy.try_shutdown()
+
+    def _spin(self) -> None:
+        with suppress(ExternalShutdownException):
+            self._executor.spin()
+
+    def _take(self, state: SupplyState) -> None:
+        self._state, self._heard_s = state, time.monotonic()
+
+    def _ask(self, kind: type, name: str, request: Any) -> Any:
+        if name not in self._clients:
+            self._clients[name] = self._node.create_client(kind, name)
+        client = self._clients[name]
+        if client.wait_for_service(ANSWER_S):
+            done = threading.Event()
+            future = client.call_async(request)
+            future.add_done_callback(lambda _: done.set())
+            if done.wait(ANSWER_S):
+                return future.result()
+        raise RefusedError(f"{name} gives no answer: start the driver's node, or treat the output as live.")

@@ -1,0 +1,76 @@
+"""The hand tool: by lines from a pipe, and by keys of a terminal."""
+
+import os
+import pty
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from itertools import pairwise
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not there")
+pytest.importorskip("hasel_interfaces", reason="the workspace is not built")
+
+from hasel_driver.console import ramp
+from hasel_driver.faults import FaultCode
+from hasel_driver.mode import Mode
+
+CONSOLE = [sys.executable, "-m", "hasel_driver.console"]
+
+
+def test_a_ramp_is_straight_and_keeps_its_rate():
+    """Both voltages arrive together, none moves faster than the rate, and the end is exact."""
+    values = list(ramp((0.0, 0.0), (3000.0, -1000.0), 1000.0, 0.1))
+    assert values[-1] == (3000.0, -1000.0)
+    assert max(abs(b[0] - a[0]) for a, b in pairwise(values)) == pytest.approx(100.0)
+    assert all(upper == pytest.approx(-3 * lower) for upper, lower in values)
+
+
+def test_a_script_arms_ramps_and_disarms(start_driver, virtual_rig, ros):
+    """Without the ros2 command line: the output reaches its voltage and comes back, and is grounded at the end."""
+    start_driver(virtual_rig.port)
+    ros.await_mode(Mode.STANDBY)
+    time.sleep(0.3)
+    lines = "arm\nlimit 2500\nrate 5000\nramp 2000 -1000 0.3\nfly\nramp nowhere 0 1\nstate\nquit\n"
+    with ros.silent():
+        done = subprocess.run(CONSOLE, input=lines, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    for words in ("Armed", "The limit is 2500 V", "ANY KEY STOPS", "'fly' is not understood", "is no number"):
+        assert words in done.stdout
+    assert "Disarmed: the supply reports its output grounded" in done.stdout
+    peaks = virtual_rig.ask("output")[4:]
+    assert peaks == pytest.approx([2000.0, 1000.0], abs=20)
+    assert ros.await_mode(Mode.STANDBY).maximum_voltage == 2500.0
+
+
+def test_any_key_stops(start_driver, virtual_rig, ros, grounded_in_time):
+    """A key pressed while the voltage is on grounds it, and it stays off."""
+    start_driver(virtual_rig.port)
+    ros.await_mode(Mode.STANDBY)
+    time.sleep(0.3)
+    here, there = pty.openpty()
+    process = subprocess.Popen(CONSOLE, stdin=there, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    try:
+        os.write(here, b"arm\n")
+        ros.await_mode(Mode.ARMED, 20.0)
+        with ros.silent():
+            os.write(here, b"ramp 3000 0\n")
+            ros.wait(lambda: virtual_rig.live, 10.0)
+            time.sleep(0.3)
+            pressed_s = time.monotonic()
+            os.write(here, b"x")
+            grounded_in_time(virtual_rig, pressed_s)
+            assert ros.await_mode(Mode.FAULT).fault_code == FaultCode.EMERGENCY_STOP
+        for _ in range(20):  # what is typed before its prompt is lost
+            os.write(here, b"quit\n")
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(0.5)
+                break
+        assert process.returncode == 0
+    finally:
+        process.kill()
+        process.wait()
+        os.close(here)
+        os.close(there)
