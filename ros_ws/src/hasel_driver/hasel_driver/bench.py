@@ -117,7 +117,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         command = [str(options.firmware / "simulate"), str(options.firmware / "hasel_supply.elf")]
         what = "driver and firmware"
         if not all(Path(file).is_file() for file in command):
-            parser.error(f"{options.firmware} holds no simulate and hasel_supply.elf: build them with make first")
+            parser.error(
+                f"{options.firmware} holds no simulate and hasel_supply.elf: build them with make first"
+            )
     client, rig = RosClient(), Rig(command)
     try:
         return int(not measure(client, rig, options.commands, options.kills, what))

@@ -35,13 +35,13 @@ class BoardHandshake:
             SupplyFaultError: the port went away meanwhile.
         """
         self._await_boot()
-        name = " ".join(self._transact("GET", "IDENTITY")[1:])
+        name = " ".join(self.transact("GET", "IDENTITY")[1:])
         if name.split()[2:] != ["protocol", str(protocol.PROTOCOL_VERSION)]:
             raise PortError(
                 f"{name!r} answers on {self._port.path}, protocol {protocol.PROTOCOL_VERSION} was expected:"
                 " load the sketch in firmware/ onto the board."
             )
-        self._transact("DISARM")
+        self.transact("DISARM")
         fault = self._inherited_fault()
         if fault is not None:
             self._clear()
@@ -81,14 +81,14 @@ class BoardHandshake:
             ("HEARTBEAT", limits.heartbeat_s * 1e3),
             ("DEADTIME", limits.dead_time_s * 1e3),
         ):
-            applied = self._transact("SET", quantity, round(value))
+            applied = self.transact("SET", quantity, round(value))
             if applied != (quantity, str(round(value))):
                 raise PortError(
                     f"The board applied {' '.join(applied)}, {round(value)} was asked for:"
                     " choose a limit within the range in firmware/PROTOCOL.md."
                 )
 
-    def _transact(self, *words: object) -> tuple[str, ...]:
+    def transact(self, *words: object) -> tuple[str, ...]:
         reply = self._ask(*words)
         if not reply.accepted:
             raise self._refused(reply, " ".join(str(word) for word in words))

@@ -38,7 +38,9 @@ SERVICES = {
 }
 
 
-def ramp(start_v: Voltages, end_v: Voltages, rate_v_per_s: float, period_s: float = PERIOD_S) -> Iterator[Voltages]:
+def ramp(
+    start_v: Voltages, end_v: Voltages, rate_v_per_s: float, period_s: float = PERIOD_S
+) -> Iterator[Voltages]:
     """Voltages from `start_v` to `end_v` [V], both moving straight and arriving together, one for each period."""
     farthest_v = max(abs(b - a) for a, b in zip(start_v, end_v, strict=True))
     steps = max(1, -(-farthest_v // (rate_v_per_s * period_s)))

@@ -4,13 +4,13 @@ import math
 from dataclasses import dataclass, field, replace
 
 from hasel_driver import protocol
+from hasel_driver.calibration import Calibration
 from hasel_driver.errors import ProtocolError
 from hasel_driver.faults import FaultCode
 from hasel_driver.limits import DISCHARGED_V
 from hasel_driver.line_buffer import LineBuffer
 from hasel_driver.mode import Mode
 from hasel_driver.virtual_bridge import VirtualBridge
-from hasel_driver.virtual_calibration import Calibration
 from hasel_driver.virtual_commands import SETTINGS, RefusalError, execute
 from hasel_driver.virtual_muscle import Contact, VirtualMuscle
 from hasel_driver.waveform import Waveform

@@ -5,10 +5,10 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from hasel_driver import protocol
+from hasel_driver.calibration import CALIBRATION_RANGES, Calibration
 from hasel_driver.errors import LimitError
 from hasel_driver.faults import FaultCode
 from hasel_driver.mode import Mode
-from hasel_driver.virtual_calibration import CALIBRATION_RANGES, Calibration
 from hasel_driver.waveform import Waveform
 
 if TYPE_CHECKING:

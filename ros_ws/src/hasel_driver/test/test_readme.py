@@ -71,7 +71,7 @@ def test_every_setting_of_the_board_is_in_the_protocol():
 def test_every_executable():
     """Each console script is named."""
     scripts = re.findall(r'"(\w+) = hasel_driver', (PACKAGE / "setup.py").read_text())
-    assert len(scripts) == 5
+    assert len(scripts) == 7
     assert all(f"`{script}`" in README for script in scripts)
 
 

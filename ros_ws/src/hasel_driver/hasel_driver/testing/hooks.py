@@ -7,7 +7,7 @@ from _pytest.runner import runtestprotocol
 
 from hasel_driver.testing.punctuality import Punctuality
 
-ATTEMPTS = 3
+ATTEMPTS = 5
 LATE_WITHIN_S = 20.0  # before a failure: what was late earlier did not cause it
 MANY = 10
 SUPPLIES = {"rig", "virtual_rig", "firmware_rig", "shared_rig", "loaded_rig"}
