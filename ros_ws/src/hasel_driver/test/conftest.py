@@ -27,6 +27,7 @@ NEEDED_FILES = {
 }
 NEEDED_PROGRAMS = {"gcc-avr": "avr-g++", "gcc": "cc", "make": "make"}
 GROUNDED_WITHIN_S = 0.5
+ALSO_ON_FIRMWARE_SLOWLY = {"test_run_experiment.py", "test_driver_node.py"}
 
 
 @pytest.fixture(scope="session")
@@ -45,6 +46,15 @@ def firmware_build(tmp_path_factory) -> Path:
 def firmware_command(firmware_build) -> list[str]:
     """Command line of the firmware in simavr."""
     return [str(firmware_build / "simulate"), str(firmware_build / "hasel_supply.elf")]
+
+
+def pytest_collection_modifyitems(items):
+    """The node's own tests on the firmware, which the board's and the thread's tests try in full, are slow ones."""
+    for item in items:
+        parameters = getattr(item, "callspec", None)
+        on_firmware = parameters is not None and parameters.params.get("rig_command") == "firmware"
+        if on_firmware and item.path.name in ALSO_ON_FIRMWARE_SLOWLY:
+            item.add_marker(pytest.mark.slow)
 
 
 @pytest.fixture(scope="module", params=["virtual", "firmware"])

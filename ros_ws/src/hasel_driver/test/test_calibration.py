@@ -52,7 +52,7 @@ def test_the_procedure_makes_board_and_probe_agree(rig, monkeypatch):
     for point in run().points:
         assert point.probe_v == pytest.approx(point.asked_v, abs=15)
         assert point.monitor_v == pytest.approx(point.probe_v, abs=25)
-    assert not rig.live
+    rig.await_live(False)
 
 
 def test_an_empty_answer_stops(rig, monkeypatch, capsys):
@@ -61,4 +61,4 @@ def test_an_empty_answer_stops(rig, monkeypatch, capsys):
     monkeypatch.setattr("builtins.input", lambda _: "")
     assert calibrate.main(["--port", rig.port, "--channel", "lower"]) == 1
     assert "nothing was stored" in capsys.readouterr().err
-    assert not rig.live
+    rig.await_live(False)

@@ -13,16 +13,27 @@ class Conversation:
 
     def __init__(self, path: str, maximum_v: int | None = 6000) -> None:
         self._port = SerialPort(path, protocol.BAUD)
-        self._port.open()
         self._lines = LineBuffer()
         self._sequence = 255
         self.events: list[protocol.Event] = []
         self.reports: list[protocol.Telemetry] = []
         self._replies: list[protocol.Reply] = []
-        self.until(lambda: any(event.words[0] == "BOOT" for event in self.events))
+        self._open()
         if maximum_v is not None:
             self.ask("SET", "MAXIMUM", maximum_v)
             self._sequence = 255
+
+    def _open(self) -> None:
+        """A banner that comes while pyserial still empties its buffers is lost: then once more."""
+        for timeout_s in (1.0, 1.0, 3.0):
+            self._port.open()
+            try:
+                self.until(lambda: any(event.words[0] == "BOOT" for event in self.events), timeout_s)
+                return
+            except AssertionError:
+                self._port.close()
+                time.sleep(0.05)
+        raise AssertionError("the board's banner was not heard")
 
     def send(self, data: bytes) -> None:
         """Raw bytes."""
