@@ -1,7 +1,10 @@
 """Every component is found with its true size, and no other one is blamed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from hasel_recording import DriveChannel
 from hasel_sysid.where_it_fails.component import Kind
 from hasel_sysid.where_it_fails.components.free_swing import fit_swing
 from hasel_sysid.where_it_fails.components.upper_against_lower import half_wave_asymmetry
@@ -43,6 +46,14 @@ def test_weaker_lower_side_is_found(made_run):
     side = _component(run, Kind.UPPER_AGAINST_LOWER)
     assert side.value == pytest.approx(-0.2, abs=0.02)
     assert side.detail["half_wave_asymmetry"] > 3 * 0.002 / np.sqrt(2)
+
+
+def test_a_body_driven_one_way_has_no_sides(made_run):
+    """With one chamber alone a difference of the sides means nothing, whatever the motion about its mean."""
+    run = made_run(lambda time, simulated, truth: np.where(simulated > 0, simulated, 0.8 * simulated))
+    chamber = (DriveChannel("chamber", "pressure", "Pa"),)
+    one_way = replace(run, drive_values=run.drive_values[:, :1], channels=chamber)
+    assert Kind.UPPER_AGAINST_LOWER not in {component.kind for component in split(one_way)}
 
 
 def test_slower_return_is_found(made_run):

@@ -6,6 +6,7 @@ from scipy.interpolate import CubicSpline
 from hasel_sysid.where_it_fails.component import Component, Kind
 from hasel_sysid.where_it_fails.components.added import explained_by
 from hasel_sysid.where_it_fails.components.aligned import Alignment
+from hasel_sysid.where_it_fails.drive_cycle import comparable, driven_side
 from hasel_sysid.where_it_fails.run_series import RunSeries
 
 
@@ -22,8 +23,18 @@ def half_wave_asymmetry(time: np.ndarray, series: np.ndarray, period: float) -> 
     return float(np.std(even))
 
 
+def _driven_both_ways(run: RunSeries) -> bool:
+    side = driven_side(comparable(run.drive_values, run.channels))
+    return bool(np.any(side > 0) and np.any(side < 0))
+
+
 def upper_against_lower(run: RunSeries, aligned: Alignment) -> Component | None:
-    """Bending to the lower side relative to the upper, less one; None when the run bends to one side only."""
+    """Bending to the lower side relative to the upper, less one; None when the run is driven or bends to one side only.
+
+    A body that only one channel bends has two sides merely because its offset is taken out.
+    """
+    if not _driven_both_ways(run):
+        return None
     up, down = aligned.shifted.max(), -aligned.shifted.min()
     if min(up, down) < 0.1 * max(up, down):
         return None
