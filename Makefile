@@ -31,6 +31,7 @@ demo: build ## fit the swimmer, compare on unseen runs, replay one, write report
 
 bench: build ## measure the speeds that the README states
 	@bin/ros2-run hasel_bringup bench
+	@bin/ros2-run hasel_tracker bench
 
 bench-hidden: build ## measure how often the right hidden effect is named
 	@bin/ros2-run hasel_bringup bench_hidden

@@ -1,6 +1,7 @@
 """Frames from an image topic of another node."""
 
 import time
+from collections import deque
 from collections.abc import Callable
 
 from rclpy.node import Node
@@ -13,16 +14,24 @@ from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.image_message import image_of
 
 LOOK_PERIOD_S = 0.2
+QUEUE_DEPTH = 50
+USUAL_INTERVALS = 100
 
 
 class ImageTopic:
-    """Puts the images of `topic` into the queue of the live tracker, as soon as someone publishes them."""
+    """Puts the images of `topic` into the queue of the live tracker, as soon as someone publishes them.
+
+    lost: images that never came, by the gaps between the stamps of those that did.
+    """
 
     def __init__(self, node: Node, topic: str, live: Callable[[], LiveTracker]) -> None:
         self._node = node
         self._topic = topic
         self._live = live
         self._first_stamp_ns: int | None = None
+        self._last_stamp_ns: int | None = None
+        self._intervals_ns: deque[int] = deque(maxlen=USUAL_INTERVALS)
+        self.lost = 0
         self._waiting = node.create_timer(LOOK_PERIOD_S, self._subscribe)
 
     def _subscribe(self) -> None:
@@ -34,12 +43,15 @@ class ImageTopic:
         reliable = all(each.qos_profile.reliability == ReliabilityPolicy.RELIABLE for each in publishers)
         policy = ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT
         kind = CompressedImage if self._topic.endswith("compressed") else Image
-        self._node.create_subscription(kind, self._topic, self._take, QoSProfile(depth=5, reliability=policy))
+        self._node.create_subscription(
+            kind, self._topic, self._take, QoSProfile(depth=QUEUE_DEPTH, reliability=policy)
+        )
 
     def _take(self, message: Image | CompressedImage) -> None:
         stamp_ns = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
         stamp_ns = stamp_ns or time.time_ns()
         self._first_stamp_ns = self._first_stamp_ns or stamp_ns
+        self._count_lost(stamp_ns)
         try:
             image = image_of(message)
         except TrackerError as error:
@@ -47,3 +59,12 @@ class ImageTopic:
             return
         time_s = (stamp_ns - self._first_stamp_ns) * 1e-9
         self._live().queue.put(Frame(0, time_s, image=image, stamp_ns=stamp_ns))
+
+    def _count_lost(self, stamp_ns: int) -> None:
+        last, self._last_stamp_ns = self._last_stamp_ns, stamp_ns
+        if last is None or stamp_ns <= last:
+            return
+        self._intervals_ns.append(stamp_ns - last)
+        # The camera's own interval: the short ones among the last, which no loss has stretched.
+        usual = sorted(self._intervals_ns)[len(self._intervals_ns) // 10]
+        self.lost += max(round((stamp_ns - last) / usual) - 1, 0)

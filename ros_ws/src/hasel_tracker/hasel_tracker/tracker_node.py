@@ -61,6 +61,7 @@ class TrackerNode(Node):
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
         self._next_preview_s = 0.0
         self._reported_drops = 0
+        self._topic: ImageTopic | None = None
         self._last_note = ""
         self._camera: PersistentCamera | None = None
         self._live = self._open(self._value("source"))
@@ -135,7 +136,7 @@ class TrackerNode(Node):
 
     def _report(self) -> None:
         health = self._live.statistics.take()
-        dropped = self._live.queue.dropped
+        dropped = self._live.queue.dropped + (0 if self._topic is None else self._topic.lost)
         camera = None if self._camera is None else self._camera.camera
         fault = self._live.fault or ("" if self._camera is None else self._camera.fault)
         self._live.fault = ""

@@ -11,8 +11,12 @@ from rich.table import Table
 from hasel_tracker.bench.accuracy import CONDITIONS, Accuracy, measure_accuracy
 from hasel_tracker.bench.robustness import CASES, Robustness, measure_robustness
 from hasel_tracker.bench.speed import Speed, measure_speed
+from hasel_tracker.lab.catalogue import ADVERSARIAL, SEVERAL_SEEDS
+from hasel_tracker.lab.catalogue import CASES as LAB_CASES
+from hasel_tracker.lab.wrong_while_valid import Honesty, measure_honesty
 
 CSRT_FRAMES = 12
+LAB_SEEDS = 10
 
 
 @dataclass(frozen=True)
@@ -37,6 +41,7 @@ class BenchReport:
     accuracies: list[Accuracy]
     csrt: Accuracy
     robustness: list[Robustness]
+    honesty: list[Honesty]
     speed: Speed
 
     def bars(self) -> list[Bar]:
@@ -52,12 +57,15 @@ class BenchReport:
             Bar(
                 "false angles in the robustness cases", sum(each.false_angles for each in self.robustness), 0
             ),
+            Bar("wrong while valid in the laboratory's scenes", sum(each.wrong for each in self.honesty), 0),
             Bar("frames late to recover", sum(each.late_frames for each in self.robustness), 0),
         ]
 
     def print(self, console: Console) -> None:
         """Print the tables."""
-        console.print(self._accuracy_table(), self._robustness_table(), self._bars_table())
+        console.print(
+            self._accuracy_table(), self._honesty_table(), self._robustness_table(), self._bars_table()
+        )
         console.print(f"Speed at 1080p, one core: {self.speed}")
 
     def values(self) -> dict[str, Any]:
@@ -66,6 +74,7 @@ class BenchReport:
             "accuracies": [_plain(each) for each in self.accuracies],
             "csrt": _plain(self.csrt),
             "robustness": [_plain(each) for each in self.robustness],
+            "honesty": [_plain(each) for each in self.honesty],
             "speed": _plain(self.speed),
             "bars": [_plain(each) | {"met": bool(each.met)} for each in self.bars()],
         }
@@ -78,6 +87,25 @@ class BenchReport:
             pixels = [f"{value:.4f}" for value in each.marker_rms_px]
             angle = [f"{each.sin_theta_rms:.1e}", f"{each.sin_theta_spread:.1e}"]
             table.add_row(each.condition, *pixels, *angle, f"{100 * each.lost_share:.0f} %")
+        return table
+
+    def _honesty_table(self) -> Table:
+        table = Table(title="Laboratory scenes of another renderer, 1280 × 720")
+        for heading in (
+            "scene",
+            "frames",
+            "px rms",
+            "sin θ rms",
+            "σ of sin θ said",
+            "lost",
+            "wrong while valid",
+        ):
+            table.add_column(heading, justify="left" if heading == "scene" else "right")
+        for each in self.honesty:
+            table.add_row(
+                each.case, str(each.frames), _shown(each.rms_px, ".3f"), _shown(each.sin_theta_rms, ".1e"),
+                _shown(each.sin_theta_std, ".1e"), _shown(100 * each.lost_share, ".0f", " %"), str(each.wrong),
+            )  # fmt: skip
         return table
 
     def _robustness_table(self) -> Table:
@@ -116,7 +144,16 @@ def run_bench(frames: int, told: Callable[[str], None]) -> BenchReport:
     for case in CASES:
         robustness.append(measure_robustness(case, frames))
         told(str(robustness[-1]))
-    return BenchReport(accuracies, csrt, robustness, speed)
+    honesty = []
+    for case in LAB_CASES:
+        seeds = LAB_SEEDS if case in ADVERSARIAL and case.name in SEVERAL_SEEDS else 1
+        honesty.append(measure_honesty(case, max(case.least_frames, frames // 3), seeds))
+        told(str(honesty[-1]))
+    return BenchReport(accuracies, csrt, robustness, honesty, speed)
+
+
+def _shown(value: float, form: str, unit: str = "") -> str:
+    return "–" if np.isnan(value) else f"{value:{form}}{unit}"
 
 
 def _plain(result: Any) -> dict[str, Any]:

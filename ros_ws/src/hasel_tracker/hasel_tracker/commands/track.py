@@ -12,7 +12,15 @@ from hasel_tracker.calibration.camera_calibration import CameraCalibration
 from hasel_tracker.calibration.settings_file import load_settings
 from hasel_tracker.commands.command import point, progress_bar, run_command
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.offline.drive import Alignment, Drive, align_by_movement, align_by_stamp, read_drive
+from hasel_tracker.offline.drive import (
+    Alignment,
+    Drive,
+    align_by_hand,
+    align_by_lamp,
+    align_by_response,
+    align_by_stamp,
+    read_drive,
+)
 from hasel_tracker.offline.fixes import read_fixes
 from hasel_tracker.offline.movement import cut_to_periods
 from hasel_tracker.offline.run_output import write_run
@@ -68,6 +76,15 @@ def parser() -> argparse.ArgumentParser:
     options.add_argument("--merge", choices=("auto", "stamp", "lag"), default="auto",
                          help="by stamp, by the lag found, or stamp if both have it (default)")  # fmt: skip
     options.add_argument(
+        "--lag", type=float, metavar="SECONDS", help="merge by this lag, added to the drive's time"
+    )
+    options.add_argument(
+        "--led",
+        type=_region,
+        metavar="X,Y,W,H",
+        help="merge by a lamp here that lights when the drive starts",
+    )
+    options.add_argument(
         "--cut", type=float, metavar="HZ", help="keep two periods of this frequency from the first movement"
     )
     options.add_argument(
@@ -100,7 +117,8 @@ def _track(options: argparse.Namespace) -> None:
         options.box,
         options.roi,
     )
-    run = _follow(source, tracker, options.annotate, placed)
+    lamp: list[float] = []
+    run = _follow(source, tracker, options.annotate, placed, options.led, lamp)
     print(f"{options.video}: {run}")
     if source.damaged_frames:
         print(f"warning: {source.damaged_frames} frames are damaged and were left out.", file=sys.stderr)
@@ -110,7 +128,7 @@ def _track(options: argparse.Namespace) -> None:
             f"No frame of {options.video} gives an angle ({tracker.note}); point at the markers with --at, or learn "
             "their colour with `calibrate colour`."
         )
-    alignment = None if drive is None else _align(run, drive, options.merge)
+    alignment = None if drive is None else _align(run, drive, options, np.array(lamp))
     if alignment is not None:
         print(alignment)
     if options.cut is not None:
@@ -127,6 +145,8 @@ def _follow(
     tracker: BendingTracker,
     annotated: Path | None,
     placed: dict[int, np.ndarray],
+    led: tuple[int, int, int, int] | None,
+    lamp: list[float],
 ) -> TrackedRun:
     video = None if annotated is None else H264Writer(annotated, source.frame_rate_hz)
     with progress_bar() as progress:
@@ -135,6 +155,9 @@ def _follow(
         def seen(frame: Frame, tracked: TrackedFrame) -> None:
             if video is not None:
                 video.write(annotate(frame.image, tracked), frame.time_s)
+            if led is not None:
+                x, y, width, height = led
+                lamp.append(float(frame.image[y : y + height, x : x + width].mean()))
             progress.advance(task)
 
         try:
@@ -144,11 +167,16 @@ def _follow(
                 video.close()
 
 
-def _align(run: TrackedRun, drive: Drive, merge: str) -> Alignment:
+def _align(run: TrackedRun, drive: Drive, options: argparse.Namespace, lamp: np.ndarray) -> Alignment:
+    if options.lag is not None:
+        return align_by_hand(options.lag, run, drive)
+    if options.led is not None:
+        return align_by_lamp(run, drive, lamp)
+    merge = options.merge
     stamped = run.start_stamp_ns is not None and drive.start_stamp_ns is not None
     if merge == "stamp" or (merge == "auto" and stamped):
         return align_by_stamp(run, drive)
-    return align_by_movement(run, drive)
+    return align_by_response(run, drive)
 
 
 def _metadata(options: argparse.Namespace) -> dict[str, str]:

@@ -19,7 +19,8 @@ TAIL, MIDDLE = 2, 1
 class LabCase:
     """A scene by name; `expected`: an angle is due in (nearly) every frame in which all dots are seen.
 
-    settings: what the user tells the tracker. h264_rate_factor: the video goes through H.264. method: how the dots
+    settings: what the user tells the tracker. least_frames: until what the case is about has happened.
+    h264_rate_factor: the video goes through H.264. method: how the dots
     are located; None leaves it to the caller.
     """
 
@@ -29,6 +30,7 @@ class LabCase:
     settings: TrackerSettings = TrackerSettings()  # noqa: RUF009
     h264_rate_factor: int | None = None
     method: str | None = None
+    least_frames: int = 8
 
 
 def _one(scene: LabScene) -> Callable[[int], LabScene]:
@@ -95,7 +97,7 @@ ADVERSARIAL = (
         lambda seed: replace(_scattered(seed, 3, ()), texture=25.0),
         expected=False,
     ),
-    LabCase("tail hidden, a blue dot at its distance", _dot_for_hidden_tail),
+    LabCase("tail hidden, a blue dot at its distance", _dot_for_hidden_tail, least_frames=48),
     LabCase(
         "gliding into the picture",
         _one(
@@ -105,10 +107,12 @@ ADVERSARIAL = (
                 frame_rate_hz=60.0,
             )
         ),
+        least_frames=40,
     ),
     LabCase(
         "tail covered at the start",
         _one(LabScene((replace(RIGHT_WAY, hidden=((TAIL, 0.0, 0.05),)),), exposure_s=0.0)),
+        least_frames=14,
     ),
     LabCase("body without taper, head on the right", _one(LabScene((UNTAPERED,))), expected=False),
     LabCase(
@@ -119,6 +123,7 @@ ADVERSARIAL = (
     LabCase(
         "away for over a second, back turned",
         _one(LabScene((replace(RIGHT_WAY, hidden=AWAY, heading_rad=-0.4, bend_rad=0.5),), **LOW_RATE)),
+        least_frames=68,
     ),
     LabCase("reflection over the dots, 40 %", _reflected(0.4), expected=False),
     LabCase("reflection over the dots, 60 %", _reflected(0.6), expected=False),
@@ -132,6 +137,7 @@ ADVERSARIAL = (
             exposure_s=0.0,
         ),
         expected=False,
+        least_frames=24,
     ),
     LabCase(
         "tether across a dot's rim",
@@ -182,3 +188,8 @@ REAL = (
     ),
 )
 CASES = (*ADVERSARIAL, *REAL)
+SEVERAL_SEEDS = tuple(
+    case.name
+    for case in ADVERSARIAL
+    if case.name.startswith(("no swimmer", "swimmer and", "two", "three", "reflection"))
+)

@@ -10,32 +10,35 @@ from hasel_recording.message_fields import nanoseconds
 from hasel_recording.topics import STATE, TOPIC_TYPES
 
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.offline.movement import first_movement_s
+from hasel_tracker.offline.drive_lag import estimate_lag
 from hasel_tracker.offline.tracked_run import TrackedRun
 
+LAMP_SHARE, LEAST_LAMP_LEVELS = 0.05, 30.0
 COLUMNS = ("time_s", "voltage_upper_v", "voltage_lower_v")
 
 
 @dataclass(frozen=True)
 class Drive:
-    """Voltages (m, 2) [V], upper and lower, each from its time_s (m,) on; `start_stamp_ns` of time 0."""
+    """Voltages (m, 2) [V], upper and lower, each from its time_s (m,) on; `start_stamp_ns` of time 0.
+
+    The last voltage holds for as long as voltages did in the median: longer is not known.
+    """
 
     time_s: np.ndarray
     voltage: np.ndarray
     start_stamp_ns: int | None = None
 
     def at(self, time_s: np.ndarray) -> np.ndarray:
-        """Voltages [V] at some times, shape (n, 2); 0 V before the first row."""
+        """Voltages [V] at some times, shape (n, 2); 0 V before the first row, NaN after the recording's end."""
         row = np.searchsorted(self.time_s, time_s + 1e-9, side="right") - 1
-        return np.where((row >= 0)[:, None], self.voltage[np.maximum(row, 0)], 0.0)
+        held = np.where((row >= 0)[:, None], self.voltage[np.maximum(row, 0)], 0.0)
+        return np.where((time_s > self.end_s + 1e-9)[:, None], np.nan, held)
 
     @property
-    def first_voltage_s(self) -> float:
-        """Time [s] at which a muscle first gets a voltage; raises TrackerError if none ever does."""
-        driven = np.flatnonzero(np.abs(self.voltage).max(axis=1) > 0.0)
-        if not driven.size:
-            raise TrackerError("The drive's recording is 0 V throughout; give that of the run in the video.")
-        return float(self.time_s[driven[0]])
+    def end_s(self) -> float:
+        """Until when the voltage is known [s]."""
+        steps = np.diff(self.time_s)
+        return float(self.time_s[-1] + (np.median(steps) if steps.size else 0.0))
 
 
 @dataclass(frozen=True)
@@ -113,13 +116,45 @@ def align_by_stamp(run: TrackedRun, drive: Drive) -> Alignment:
     return Alignment(lag, 0.5 / run.frame_rate_hz, "from the stamps of both")
 
 
-def align_by_movement(run: TrackedRun, drive: Drive) -> Alignment:
-    """Lag from what must coincide: the first voltage and the first movement.
+def align_by_response(run: TrackedRun, drive: Drive) -> Alignment:
+    """Lag at which the drive foretells the angle best over the whole run; TrackerError if it is not determined."""
+    found = estimate_lag(run.time_s, run.sin_theta, drive.time_s, drive.voltage, drive.end_s)
+    return Alignment(found.lag_s, found.uncertainty_s, "from the body's answer to the drive")
 
-    The body answers within a frame or two of the voltage, so this is right to about one frame; the lag that
-    a slow supply or muscle adds is not seen as such.
-    """
-    moved = first_movement_s(run.time_s, run.sin_theta)
-    return Alignment(
-        moved - drive.first_voltage_s, 1.0 / run.frame_rate_hz, "the first movement set to the first voltage"
+
+def align_by_hand(lag_s: float, run: TrackedRun, drive: Drive) -> Alignment:
+    """A lag that the user gives; TrackerError if video and drive then do not overlap."""
+    if lag_s + drive.end_s < run.time_s[0] or lag_s + drive.time_s[0] > run.time_s[-1]:
+        raise TrackerError(
+            f"With a lag of {lag_s:+.3f} s the drive ({drive.time_s[0]:.3f} to {drive.end_s:.3f} s) and the video "
+            f"({run.time_s[0]:.3f} to {run.time_s[-1]:.3f} s) do not overlap; the lag is added to the drive's time."
+        )
+    return Alignment(lag_s, 0.5 / run.frame_rate_hz, "as given")
+
+
+def align_by_lamp(run: TrackedRun, drive: Drive, lamp: np.ndarray) -> Alignment:
+    """Lag at which a lamp that lights with the drive does so; lamp: its brightness (n,) in each frame."""
+    driven = np.abs(drive.voltage).max(axis=1)
+    first = int(np.argmax(driven > LAMP_SHARE * driven.max()))
+    low, high = np.quantile(lamp, [0.02, 0.98])
+    lit = lamp > 0.5 * (low + high)
+    if high - low < LEAST_LAMP_LEVELS or lit[0] or not driven.max() > 0.0:
+        raise TrackerError(
+            f"The lamp's brightness goes from {low:.0f} to {high:.0f}, and it is {'lit' if lit[0] else 'dark'} in the "
+            "first frame; expected it dark at first and clearly brighter when the drive starts: point --led at it."
+        )
+    index = int(np.argmax(lit))
+    between = 0.5 * (run.time_s[index - 1] + run.time_s[index])
+    return Alignment(float(between - drive.time_s[first]), 0.5 / run.frame_rate_hz, "from the lamp in view")
+
+
+def until_drive_ends(run: TrackedRun, drive: Drive, alignment: Alignment) -> tuple[TrackedRun, str]:
+    """The run as long as its drive is known, and a sentence about what was left out, or ''."""
+    end_s = drive.end_s + alignment.lag_s
+    left_out = int((run.time_s > end_s + 1e-9).sum())
+    if not left_out:
+        return run, ""
+    return run.between(run.time_s[0], end_s + 2e-9), (
+        f"The drive's recording ends {run.time_s[-1] - end_s:.3f} s before the video: the voltage of the last "
+        f"{left_out} frames is not known, so they were left out; track without --drive to have them."
     )

@@ -9,7 +9,7 @@ from hasel_recording.bending_angle_message import bending_angle_message
 from hasel_recording.topics import MEASURED, STATE
 
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.offline.drive import Alignment, Drive
+from hasel_tracker.offline.drive import Alignment, Drive, until_drive_ends
 from hasel_tracker.offline.tracked_run import TrackedRun
 from hasel_tracker.tracking.marker_set import marker_names
 
@@ -22,15 +22,16 @@ def write_run(
 ) -> str:
     """Write .csv or .mcap; times start at the run's first frame. Returns what could not be kept, or ''."""
     origin = float(run.time_s[0])
-    shifted = None
+    shifted, ended = None, ""
     if drive is not None:
+        run, ended = until_drive_ends(run, drive, alignment)
         shifted = Drive(drive.time_s + alignment.lag_s - origin, drive.voltage)
         metadata = metadata | {"drive_lag_s": f"{alignment.lag_s:.6f}", "drive_merged": alignment.means}
     try:
         if path.suffix.lower() == ".mcap":
             _write_mcap(path, run, shifted, metadata)
-            return ""
-        return _write_csv(path, run, shifted, metadata)
+            return ended
+        return f"{ended} {_write_csv(path, run, shifted, metadata)}".strip()
     except RecordingError as error:
         raise TrackerError(str(error)) from error
 

@@ -1,7 +1,7 @@
 """A camera through OpenCV: ask for format and rate, read back what it gives, stamp every frame."""
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -10,6 +10,7 @@ from hasel_tracker.errors import TrackerError
 from hasel_tracker.sources.frame import Frame
 
 RATE_SHARE = 0.95
+RATE_TOLERANCE = 0.005  # drivers give 119.98 for 120
 LONGEST_CLOCK_DIFFERENCE_S = 2.0
 
 
@@ -52,7 +53,8 @@ class CameraSource:
     @property
     def complaint(self) -> str:
         """One sentence if the camera does not give what was asked for, else empty."""
-        if self.given == self.asked:
+        same_rate = abs(self.given.frame_rate_hz / self.asked.frame_rate_hz - 1.0) < RATE_TOLERANCE
+        if replace(self.given, frame_rate_hz=0.0) == replace(self.asked, frame_rate_hz=0.0) and same_rate:
             return ""
         return f"Asked the camera for {self.asked}, it gives {self.given}."
 

@@ -11,6 +11,7 @@ from av.video.stream import VideoStream
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.sources.frame import Frame
 
+COARSE_TIME_S = 2e-4
 START_STAMP = re.compile(r"start_stamp_ns=(\d+)")
 
 
@@ -44,10 +45,18 @@ class VideoSource:
             stream.thread_type = "AUTO"
             stream.codec_context.thread_count = self._threads
             first_s = None
+            coarse_s = float(stream.time_base or 0.0)
             for index, picture in enumerate(self._pictures(container, stream)):
                 seconds = picture.time if picture.time is not None else index / self.frame_rate_hz
                 first_s = seconds if first_s is None else first_s
-                yield self._frame(index, seconds - first_s, picture)
+                yield self._frame(index, self._mended(seconds - first_s, coarse_s), picture)
+
+    def _mended(self, time_s: float, coarse_s: float) -> float:
+        """A time that the file rounds to its time base (MKV: 1 ms), put on the frame that the frame rate says."""
+        if not COARSE_TIME_S <= coarse_s < 0.5 / max(self.frame_rate_hz, 1e-9):
+            return time_s
+        even = round(time_s * self.frame_rate_hz) / self.frame_rate_hz
+        return even if abs(even - time_s) <= 1.01 * coarse_s else time_s
 
     def _pictures(self, container: InputContainer, stream: VideoStream) -> Iterator[av.VideoFrame]:
         packets = container.demux(stream)

@@ -21,9 +21,12 @@ def nearer_to(row: np.ndarray, point: np.ndarray) -> bool:
 
 def thicker_first(links: tuple[BodyLink, ...]) -> bool | None:
     """Whether the body is thicker towards the first end of the row; None where both halves look alike."""
-    half = (len(links) + 1) // 2
-    front = np.mean([link.width_px for link in links[:half]])
-    rear = np.mean([link.width_px for link in links[-half:]])
+    if len(links) < 2:
+        return None
+    place = np.linspace(-1.0, 1.0, len(links))
+    widths = np.array([link.width_px for link in links])
+    slope = float(place @ widths / (place @ place))
+    front, rear = widths.mean() - slope, widths.mean() + slope  # of a line through all
     if not (min(front, rear) > 0.0 and max(front, rear) > CLEAR_RATIO * min(front, rear)):
         return None
     return bool(front > rear)

@@ -47,25 +47,29 @@ def test_what_is_rendered_is_tracked(folder, output, more):
 
 
 def test_cut_annotate_and_merge(folder, capsys):
-    """One call cuts to two periods, merges the drive by the lag it finds and reports, and writes annotated video."""
+    """One call cuts to two periods, merges the drive by the lag given, and writes annotated video."""
     assert render(["swim.mp4", *SMALL]) == 0
     write_recording(
         Recording(
-            "drive", np.array([0.0, 0.35, 0.475]), np.zeros(3), np.array([[0, 0], [5000.0, 0], [0, 5000.0]])
+            "drive",
+            np.array([0.0, 0.35, 0.475, 0.6, 0.725, 0.85]),
+            np.zeros(6),
+            np.array([[0, 0], *[[5000.0, 0], [0, 5000.0]] * 2, [5000.0, 0]]),
         ),
         "drive.csv",
     )
     arguments = ["swim.mp4", "-o", "run.mcap", "--drive", "drive.csv", "--annotate", "seen.mp4", "--cut", "4"]
+    arguments += ["--lag", "-0.25"]
     assert track([*arguments, "--model", "swimmer"]) == 0
     said = capsys.readouterr().out
-    assert "the first movement set to the first voltage" in said
+    assert "(as given)" in said
     assert "Cut to 60 frames" in said
     recording = read_recording("run.mcap")
     assert len(recording.time_s) == 60
     assert recording.metadata["model"] == "swimmer"
-    assert float(recording.metadata["drive_lag_s"]) == pytest.approx(0.1 - 0.35, abs=2.1 / 120)
+    assert float(recording.metadata["drive_lag_s"]) == pytest.approx(0.1 - 0.35, abs=1e-6)
     assert recording.voltage[0].tolist() == [5000.0, 0.0]
-    assert recording.voltage[30].tolist() == [0.0, 5000.0]
+    assert recording.voltage[20].tolist() == [0.0, 5000.0]
     assert len(list(VideoSource("seen.mp4"))) == 84
 
 

@@ -1,17 +1,9 @@
 """Scenes of another renderer in which a wrong angle was once called valid, and pictures of real laboratories."""
 
 import pytest
-from hasel_tracker.lab.catalogue import ADVERSARIAL, REAL
+from hasel_tracker.lab.catalogue import ADVERSARIAL, REAL, SEVERAL_SEEDS
 from hasel_tracker.lab.wrong_while_valid import measure_honesty
 
-FRAMES = {
-    "tail hidden, a blue dot at its distance": 48,
-    "gliding into the picture": 40,
-    "tail covered at the start": 14,
-    "away for over a second, back turned": 68,
-    "a blue dot drifts past the tail": 24,
-}
-SEVERAL = ("dots", "dot", "two swimmers", "reflection", "tether")
 QUICK = (
     "electrodes, H.264 crf 28", "textured ground", "exposure × 0.2", "dark tank", "dark body", "dots of 10 px",
     "640 × 480, dots of 12 px", "30 frames/s, 4 Hz",
@@ -21,8 +13,7 @@ QUICK = (
 @pytest.mark.parametrize("case", ADVERSARIAL, ids=lambda case: case.name)
 def test_no_wrong_angle_is_called_valid(case):
     """Whatever else is blue, hidden, reflected or alike at both ends: no valid angle is off by more than 0.01."""
-    seeds = 2 if any(word in case.name for word in SEVERAL) and case.name not in FRAMES else 1
-    honesty = measure_honesty(case, FRAMES.get(case.name, 8), seeds)
+    honesty = measure_honesty(case, case.least_frames, 2 if case.name in SEVERAL_SEEDS else 1)
     assert honesty.wrong == 0, str(honesty)
     if case.expected:
         assert honesty.lost_share < 0.5, str(honesty)

@@ -2,7 +2,14 @@ import numpy as np
 import pytest
 from hasel_recording import Recording, read_recording, write_recording
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.offline.drive import Drive, align_by_movement, align_by_stamp, read_drive
+from hasel_tracker.offline.drive import (
+    Drive,
+    align_by_hand,
+    align_by_lamp,
+    align_by_stamp,
+    read_drive,
+    until_drive_ends,
+)
 from hasel_tracker.offline.run_output import write_run
 from hasel_tracker.offline.tracked_run import TrackedRun
 
@@ -21,9 +28,9 @@ def run_of(start_s: float, stamp_ns: int | None = None) -> TrackedRun:
 
 def box_drive(path, first_s: float) -> None:
     """The drive of a run as a CSV recording: upper then lower muscle at 5 kV."""
-    times = np.array([0.0, first_s, first_s + 0.25, first_s + 0.5])
-    voltage = np.array([[0.0, 0.0], [5000.0, 0.0], [0.0, 5000.0], [5000.0, 0.0]])
-    write_recording(Recording("drive", times, np.zeros(4), voltage), path)
+    times = np.array([0.0, first_s, first_s + 0.25, first_s + 0.5, 4.0])
+    voltage = np.array([[0.0, 0.0], [5000.0, 0.0], [0.0, 5000.0], [5000.0, 0.0], [0.0, 0.0]])
+    write_recording(Recording("drive", times, np.zeros(5), voltage), path)
 
 
 @pytest.mark.parametrize("suffix", ["csv", "mcap"])
@@ -31,17 +38,31 @@ def test_voltages_are_read_from_either_kind(tmp_path, suffix):
     """CSV and MCAP recordings of the drive give the same voltages at the same times."""
     box_drive(tmp_path / f"drive.{suffix}", 1.0)
     drive = read_drive(tmp_path / f"drive.{suffix}")
-    assert drive.first_voltage_s == pytest.approx(1.0)
+    assert drive.end_s == pytest.approx(4.625)
+    assert np.isnan(drive.at(np.array([4.7]))).all()  # the last voltage is not held for ever
     assert drive.at(np.array([-1.0, 0.99, 1.1, 1.3])).tolist() == [[0, 0], [0, 0], [5000, 0], [0, 5000]]
 
 
-@pytest.mark.parametrize("lag_s", [-0.6, 0.0, 0.35])
-def test_lag_is_found_from_the_first_movement(tmp_path, lag_s):
-    """A drive that started earlier or later than the video is moved to where it belongs, to a frame."""
-    box_drive(tmp_path / "drive.csv", 1.0)
-    alignment = align_by_movement(run_of(1.0 + lag_s), read_drive(tmp_path / "drive.csv"))
-    assert alignment.lag_s == pytest.approx(lag_s, abs=1.01 / 120.0)
-    assert f"{alignment.lag_s:+.4f}" in str(alignment)
+def test_a_lag_by_hand_or_by_a_lamp():
+    """A lag that is given is taken; a lamp that lights with the drive gives it to half a frame; both are checked."""
+    drive = Drive(np.array([0.0, 0.5, 1.0]), np.array([[0.0, 0.0], [5000.0, 0.0], [0.0, 5000.0]]))
+    run = run_of(1.0)
+    assert align_by_hand(0.25, run, drive).lag_s == 0.25
+    with pytest.raises(TrackerError, match="do not overlap"):
+        align_by_hand(-9.0, run, drive)
+    lamp = np.where(TIMES >= 0.8, 200.0, 20.0)
+    assert align_by_lamp(run, drive, lamp).lag_s == pytest.approx(0.3, abs=0.51 / 120)
+    with pytest.raises(TrackerError, match="point --led at it"):
+        align_by_lamp(run, drive, np.full(240, 20.0))
+
+
+def test_frames_after_the_drive_are_left_out_aloud():
+    """Where the drive's recording ends before the video the voltage is not known: the run ends there, aloud."""
+    drive = Drive(np.arange(100) / 100.0, np.full((100, 2), 3005.0))
+    cut, said = until_drive_ends(run_of(0.5), drive, align_by_hand(0.0, run_of(0.5), drive))
+    assert cut.time_s[-1] == pytest.approx(1.0, abs=1 / 120)
+    assert "ends 0.992 s before the video" in said
+    assert until_drive_ends(cut, drive, align_by_hand(0.0, cut, drive)) == (cut, "")
 
 
 def test_stamps_decide_where_both_have_them():
@@ -60,7 +81,7 @@ def test_merged_run_reads_back(tmp_path, suffix, stamp_ns):
     """The written recording holds angle, markers and the voltages of their moment; lost frames stay without angle."""
     box_drive(tmp_path / "drive.csv", 1.0)
     run, drive = run_of(0.4, stamp_ns), read_drive(tmp_path / "drive.csv")
-    alignment = align_by_movement(run, drive)
+    alignment = align_by_hand(-0.6, run, drive)
     path = tmp_path / f"run.{suffix}"
     left_out = write_run(path, run, drive, alignment, {"model": "swimmer"})
     recording = read_recording(path)
@@ -89,9 +110,3 @@ def test_unusable_drives_are_explained(tmp_path, text, message):
     path.write_text(text)
     with pytest.raises(TrackerError, match=message):
         read_drive(path)
-
-
-def test_drive_without_voltage_cannot_be_aligned():
-    """A drive that was never switched on cannot be matched to a movement."""
-    with pytest.raises(TrackerError, match="0 V throughout"):
-        align_by_movement(run_of(0.5), Drive(np.array([0.0, 1.0]), np.zeros((2, 2))))

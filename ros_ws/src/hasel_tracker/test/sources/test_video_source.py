@@ -6,6 +6,7 @@ import pytest
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.sources.open_source import open_recorded
 from hasel_tracker.sources.video_source import VideoSource
+from hasel_tracker.video.video_writer import JpegWriter
 
 
 def test_every_frame_with_its_time(video, frames):
@@ -57,3 +58,14 @@ def test_video_cut_off_in_the_middle_gives_what_is_there(video, tmp_path):
     half = tmp_path / "half.mp4"
     half.write_bytes(Path(video).read_bytes()[: Path(video).stat().st_size // 2])
     assert 20 < len(list(VideoSource(half))) < 84
+
+
+def test_times_that_mkv_rounds_to_milliseconds_are_mended(frames, tmp_path):
+    """MKV keeps times to 1 ms; frames at 120 per second come back with their own times and rate."""
+    path = tmp_path / "swim.mkv"
+    writer = JpegWriter(path, 120.0)
+    for frame in frames[:30]:
+        writer.write(frame.image, frame.time_s)
+    writer.close()
+    times = [frame.time_s for frame in VideoSource(path)]
+    assert times == pytest.approx([frame.time_s for frame in frames[:30]], abs=1e-9)
