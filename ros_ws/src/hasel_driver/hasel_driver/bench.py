@@ -83,7 +83,9 @@ def measure(client: RosClient, rig: Rig, commands: int, kills: int, what: str) -
         measured_s = latencies(client, rig, commands)
         rate_hz = command_rate(client, rig, FLAT_OUT_S)
         if not rig.live:
-            raise AssertionError("the supply left the armed state while it was driven")
+            raise AssertionError(
+                f"the supply left the armed state while it was driven ({client.state.fault_text})"
+            )
     finally:
         driver.close()
     latency, fast = report(f"{what}, command to wire", measured_s, LATENCY_BAR_S, 99)

@@ -25,8 +25,12 @@ def test_measures_latency_rate_and_grounding(capsys, monkeypatch, request, suppl
     arguments = ["--commands", "50", "--kills", "1"]
     if supply == "firmware":
         arguments += ["--firmware", str(request.getfixturevalue("firmware_build"))]
-    bench.main(arguments)
-    lines = capsys.readouterr().out.splitlines()
+    for _ in range(3):  # a machine that is late makes the measurement fail, which is said
+        bench.main(arguments)
+        output = capsys.readouterr()
+        if "try again on a machine with less to do" not in output.err:
+            break
+    lines = output.out.splitlines()
     assert int(re.search(r"command to wire: median .* n = (\d+)", lines[0])[1]) > 40
     assert int(re.search(r"commands obeyed: (\d+) /s", lines[1])[1]) > 50
     assert "node killed to output grounded: median" in lines[2]

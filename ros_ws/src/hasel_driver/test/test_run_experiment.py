@@ -5,6 +5,8 @@ import os
 import random
 import re
 import resource
+import subprocess
+import sys
 import time
 from itertools import pairwise
 from pathlib import Path
@@ -220,6 +222,40 @@ def test_a_client_that_ends_takes_the_voltage_with_it(driver, shared_rig, ros, r
             break
         time.sleep(0.1)
     assert end()[0] == SUCCEEDED
+
+
+CLIENT = """
+import rclpy
+from hasel_interfaces.action import RunExperiment
+from rclpy.action import ActionClient
+rclpy.init()
+node = rclpy.create_node("doomed")
+client = ActionClient(node, RunExperiment, "/hasel/run_experiment")
+client.wait_for_server()
+client.send_goal_async(RunExperiment.Goal(voltage=3000.0, frequency=1.0, periods=1000))
+rclpy.spin(node)
+"""
+
+
+@pytest.mark.slow
+def test_a_client_that_is_killed_takes_the_voltage_with_it(driver, shared_rig, ros):
+    """The middleware notices when its lease runs out: zero within 25 s, as the README says."""
+    driver.arm()
+    process = subprocess.Popen([sys.executable, "-c", CLIENT])
+    try:
+        ros.wait(lambda: shared_rig.live, 20.0)
+        time.sleep(1.0)
+    finally:
+        process.kill()
+        process.wait()
+    killed_s = time.monotonic()
+    ros.wait(lambda: ros.state.mode == ARMED and time.monotonic() - killed_s > 1.0 and _at_rest(ros), 30.0)
+    assert time.monotonic() - killed_s < 25.0
+
+
+def _at_rest(ros) -> bool:
+    """Whether the last second's states are all at 0 V."""
+    return not any(any(state.commanded_voltage) for state in list(ros.heard)[-100:])
 
 
 def test_a_file_is_driven_and_recorded(driver, shared_rig, run, tmp_path):

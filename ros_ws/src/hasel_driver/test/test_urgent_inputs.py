@@ -33,6 +33,25 @@ def inputs():
     rclpy.try_shutdown()
 
 
+def test_every_watch_runs_on_a_steady_clock(tmp_path):
+    """Neither simulated time nor a step of the system's clock holds up a timer of the node or of its inputs."""
+    from hasel_driver.driver_node import DriverNode
+    from rclpy.clock import ClockType
+    from rclpy.parameter import Parameter
+
+    rclpy.init()
+    history = Parameter("history_file", value=str(tmp_path / "history.jsonl"))
+    node = DriverNode(parameter_overrides=[history])
+    try:
+        timers = [*node.timers, *node._inputs._node.timers]
+        assert len(timers) == 4
+        assert {timer.clock.clock_type for timer in timers} == {ClockType.STEADY_TIME}
+    finally:
+        node.leave()
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
 def test_later_commands_do_not_push_out_a_nan(ros, inputs):
     """Commands that come faster than they are taken are all seen, so that none that is not a number is missed."""
     ros.wait(lambda: ros.commands.get_subscription_count() == 1)
