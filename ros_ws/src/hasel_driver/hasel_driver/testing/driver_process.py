@@ -19,7 +19,8 @@ class DriverProcess:
         client.states.clear()
         self._folder = tempfile.TemporaryDirectory(prefix="hasel_driver_")
         self.history = Path(self._folder.name) / "history.jsonl"
-        chosen = {"port": port, "discovery_time": 0.2, "history_file": self.history} | parameters
+        own = {"history_file": self.history, "recording_directory": self._folder.name}
+        chosen = {"port": port, "discovery_time": 0.2} | own | parameters
         arguments = [word for key, value in chosen.items() for word in ("-p", f"{key}:={value}")]
         self.process = subprocess.Popen(
             [sys.executable, "-m", "hasel_driver.driver_node", "--ros-args", *arguments],
