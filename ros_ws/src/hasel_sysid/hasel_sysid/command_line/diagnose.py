@@ -14,7 +14,7 @@ from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import code_after, show
 from hasel_sysid.compare import compare
 from hasel_sysid.diagnosis import diagnose
-from hasel_sysid.fit import fit_least_squares
+from hasel_sysid.fit import fit_from_afar
 from hasel_sysid.improve.result import diagnosis_json
 from hasel_sysid.problem import Problem
 from hasel_sysid.report.from_diagnosis import diagnosis_content
@@ -35,7 +35,7 @@ def _diagnose(options: argparse.Namespace) -> int:
     given = load_inputs(options)
     with executor(options.jobs, options.scheduler) as pool, progress_bar("diagnose") as progress:
         problem = Problem(given.experiments, pool, given.noise)
-        fit = fit_least_squares(problem, given.model, part(progress, "fit: ", 0.0, 0.3))
+        fit = fit_from_afar(problem, given.model, part(progress, "fit: ", 0.0, 0.3))
         found = diagnose(problem, fit, options.effects, part(progress, "diagnosis: ", 0.3, 0.95))
         label, last = f"{given.label}, fitted", part(progress, "", 0.95, 1.0)
         comparison = compare(fit.model, given.experiments, pool, given.unseen, label, last)

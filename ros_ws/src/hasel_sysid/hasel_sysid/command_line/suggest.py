@@ -17,7 +17,7 @@ from hasel_sysid.command_line.running import run_command
 from hasel_sysid.diagnosis import diagnose
 from hasel_sysid.drive_match import drive_unit
 from hasel_sysid.errors import SysidError
-from hasel_sysid.fit import fit_least_squares
+from hasel_sysid.fit import fit_from_afar
 from hasel_sysid.problem import Problem
 from hasel_sysid.suggest import Suggestion, rivals, suggest
 
@@ -40,7 +40,7 @@ def _suggest(options: argparse.Namespace) -> None:
     given = load_inputs(options)
     with executor(options.jobs, options.scheduler) as pool, progress_bar("suggest") as progress:
         problem = Problem(given.experiments, pool, given.noise)
-        fit = fit_least_squares(problem, given.model, lambda text, share: progress(text, 0.15 * share))
+        fit = fit_from_afar(problem, given.model, lambda text, share: progress(text, 0.15 * share))
         found = diagnose(
             problem, fit, options.effects, lambda text, share: progress(text, 0.15 + 0.6 * share)
         )

@@ -8,6 +8,8 @@ from hasel_sim.effects.registry import catalogue, find_effects
 from hasel_sim.errors import ModelError
 from hasel_sim.model import Model
 
+from hasel_sysid.fit.decades import over_range
+
 _LARGER = 2.0
 
 
@@ -62,6 +64,18 @@ def starts(effect: Effect) -> list[Start]:
 def larger_starts(effect: Effect) -> list[Start]:
     """The same starts with whatever is one-sided at twice its typical size; none where nothing is one-sided."""
     return [larger for start in starts(effect) if (larger := resized(start, _LARGER)).values != start.values]
+
+
+def decade_starts(effect: Effect) -> list[Start]:
+    """Starts over the decades of the plausible range of the effect's first size; its other values are typical."""
+    first = next((p for p in effect.parameters if not p.scan), None)
+    if first is None:
+        return []
+    begin = _start(effect, {})
+    typical = {f"{effect.id}.{p.name}": p.typical for p in effect.parameters if not p.scan}
+    name = f"{effect.id}.{first.name}"
+    sizes = over_range(first.null, first.typical, first.lower, first.upper)
+    return [replace(begin, values={**begin.values, **typical, name: size}) for size in sizes]
 
 
 def resized(start: Start, factor: float) -> Start:

@@ -21,15 +21,20 @@ Progress = Callable[[str, float], None]
 
 
 def diagnose(
-    problem: Problem, fit: FitResult, only: Sequence[str] | None = None, progress: Progress | None = None
+    problem: Problem,
+    fit: FitResult,
+    only: Sequence[str] | None = None,
+    progress: Progress | None = None,
+    decades: bool = False,
 ) -> Diagnosis:
     """Rank every effect of the catalogue (or the named ones) as an explanation of what `fit` leaves.
 
+    decades: start every effect from sizes over all decades of its range, where the model may be far off.
     Raises ModelError for an unknown effect.
     """
     effects = candidate_effects(fit.model, tuple(only) if only else None)
     trials = Trials(problem, fit.evaluation)
-    best, first = search(trials, effects, progress)
+    best, first = search(trials, effects, progress, decades)
     finals = full_fits(
         problem, fit, best, lambda worth: search_from_larger(trials, best, worth, progress), progress
     )

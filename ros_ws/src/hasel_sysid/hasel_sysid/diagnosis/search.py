@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 from hasel_sim.effects.base import Effect
 
-from hasel_sysid.diagnosis.candidates import Start, larger_starts, resized, starts
+from hasel_sysid.diagnosis.candidates import Start, decade_starts, larger_starts, resized, starts
 from hasel_sysid.diagnosis.trial import Trial, Trials
 
 _ROUNDS = (9, 5)
@@ -25,7 +25,7 @@ Progress = Callable[[str, float], None]
 
 
 def search(
-    trials: Trials, effects: Sequence[Effect], progress: Progress | None = None
+    trials: Trials, effects: Sequence[Effect], progress: Progress | None = None, decades: bool = False
 ) -> tuple[list[Trial], list[Trial]]:
     """The best trial of every effect, best first, and the first trial at every start.
 
@@ -33,6 +33,9 @@ def search(
     further steps with the most promising.
     """
     every = [start for effect in effects for start in starts(effect)]
+    usual = {id(start) for start in every}
+    if decades:
+        every += [start for effect in effects for start in decade_starts(effect)]
     every.sort(key=lambda start: not start.changes_nothing)
     first: list[Trial] = []
     for begin in range(0, len(every), _BATCH):
@@ -40,8 +43,10 @@ def search(
         if progress:
             done = min(1.0, (begin + _BATCH) / len(every))
             progress(f"tried {len(first)} of {len(every)} starts", 0.5 * done)
-    first += _nearer(trials, every, first)
-    return _steps(trials, _best_of_each(first), progress), first
+    if not decades:
+        first += _nearer(trials, every, first)
+    best = _steps(trials, _best_of_each(first), progress)
+    return best, [trial for trial in first if not decades or id(trial.start) in usual]
 
 
 def _nearer(trials: Trials, tried: Sequence[Start], found: Sequence[Trial]) -> list[Trial]:

@@ -7,12 +7,13 @@ from hasel_sim.model import Model
 
 from hasel_sysid.errors import SysidError
 from hasel_sysid.fit.adam import fit_adam
-from hasel_sysid.fit.least_squares import Progress, fit_least_squares
+from hasel_sysid.fit.from_afar import fit_from_afar
+from hasel_sysid.fit.least_squares import Progress
 from hasel_sysid.fit.refinement import changes_by_refinement, with_numerical_error
 from hasel_sysid.fit.result import FitResult
 from hasel_sysid.problem import Problem
 
-METHODS: dict[str, Callable[..., FitResult]] = {"least_squares": fit_least_squares, "adam": fit_adam}
+METHODS: dict[str, Callable[..., FitResult]] = {"least_squares": fit_from_afar, "adam": fit_adam}
 """Ways to fit, by the name that `fit --method` takes."""
 
 

@@ -22,6 +22,8 @@ def exchanged(problem: Problem, stages: Sequence[Stage], accepted: Finding) -> F
     if len(stages) < 2:
         return best
     before, chosen = stages[-2], stages[-1].effects[-1]
+    if before.diagnosis is None:
+        return best
     group = next((g for g in before.diagnosis.groups if chosen in g), ())
     for rival in group:
         if rival in (chosen, accepted.effect):

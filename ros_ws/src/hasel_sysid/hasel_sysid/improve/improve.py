@@ -10,8 +10,9 @@ from hasel_sysid.diagnosis import diagnose
 from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.diagnosis.explained import PARTLY, Status
 from hasel_sysid.diagnosis.search import WORTH_A_STEP
-from hasel_sysid.fit import FitResult, fit_least_squares
+from hasel_sysid.fit import FitResult, fit_from_afar, in_step
 from hasel_sysid.fit.refinement import changes_by_refinement, with_numerical_error
+from hasel_sysid.improve.coarse_to_fine import far_start
 from hasel_sysid.improve.conclusion import (
     conclude,
     is_noise,
@@ -53,10 +54,17 @@ def improve(
     """
     report = _Reporter(progress)
     opposed = opposed_runs(problem, model)
-    fit = fit_least_squares(problem, model, report.part("fit", 0.0, 0.15))
+    fit = fit_from_afar(problem, model, report.part("fit", 0.0, 0.15))
     stages = [_stage(fit, model, validation)]
+    far = None
+    if not opposed and not in_step(fit.evaluation):
+        far = far_start(problem, fit.model, only, most_effects, report.part("far start", 0.15, 0.75))
+    if far is not None:
+        stages[0] = _completed(problem, replace(stages[0], diagnosis=far.first), on_stage)
+        stages += [_stage(refit, model, validation) for refit in far.fits]
+        stages[1:-1] = [_completed(problem, stage, on_stage) for stage in stages[1:-1]]
     reason, negligible = "", False
-    for number in range(most_effects):
+    for number in range(len(stages) - 1, most_effects):
         found = diagnose(problem, stages[-1].fit, only, report.part("diagnosis", *report.share(number)))
         stages[-1] = _completed(problem, replace(stages[-1], diagnosis=found), on_stage)
         decision = decide(stages[-1], found)
@@ -64,12 +72,13 @@ def improve(
         if opposed:
             reason = f"A fault of the set-up comes before any effect: {'; '.join(map(str, opposed))}"
             break
-        refit = _extended(problem, stages, decision)
+        refit = _extended(problem, stages, decision, pairs=far is None)
         if refit is None:
             break
         stages.append(_stage(refit, model, validation))
         added = " and ".join(effect for effect in stages[-1].effects if effect not in stages[-2].effects)
-        stages[0] = with_hindsight(stages)
+        if far is None:
+            stages[0] = with_hindsight(stages)
         if is_noise(refit, found):
             reason = f"What is left after adding {added} is noise."
             break
@@ -111,11 +120,11 @@ def _concluded(
     )
 
 
-def _extended(problem: Problem, stages: Sequence[Stage], decision: Decision) -> FitResult | None:
+def _extended(problem: Problem, stages: Sequence[Stage], decision: Decision, pairs: bool) -> FitResult | None:
     """The fit with the effect that was accepted, or with two at once where none alone explains; None to stop."""
     if decision.accepted is not None:
         return pruned(problem, exchanged(problem, stages, decision.accepted), stages[-1].effects)
-    if decision.none_alone and left_over(stages) > 1 - PARTLY:
+    if pairs and decision.none_alone and left_over(stages) > 1 - PARTLY:
         return explaining_pair(problem, stages[0])
     return None
 

@@ -11,7 +11,7 @@ from hasel_sysid.dataset import for_model, prepared, usable
 from hasel_sysid.diagnosis import Diagnosis, Verdict, diagnose
 from hasel_sysid.diagnosis.context import SIGNIFICANT
 from hasel_sysid.diagnosis.explained import Status, status_with
-from hasel_sysid.fit import FitResult, fit_least_squares, identify
+from hasel_sysid.fit import FitResult, fit_from_afar, identify
 from hasel_sysid.fit.least_squares import Progress
 from hasel_sysid.problem import Problem
 
@@ -50,7 +50,7 @@ def diagnose_recordings(
     experiments = for_model(model.with_levels([]), usable(recordings))
     with executor(jobs or None) as pool:
         problem = Problem(experiments, pool)
-        fit = fit_least_squares(problem, prepared(model, experiments), progress)
+        fit = fit_from_afar(problem, prepared(model, experiments), progress)
         return diagnose(problem, fit, effects or None, progress)
 
 

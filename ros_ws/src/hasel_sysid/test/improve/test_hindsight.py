@@ -40,11 +40,12 @@ def test_improve_looks_back_when_an_effect_was_added(monkeypatch):
     """The baseline that it hands on is the one ranked again, from the stages known by then."""
     improve = importlib.import_module("hasel_sysid.improve.improve")
     bare, soft = (
-        SimpleNamespace(model=SimpleNamespace(effects=effects))
+        SimpleNamespace(model=SimpleNamespace(effects=effects), evaluation=None)
         for effects in ([], [SimpleNamespace(id="spine_modulus")])
     )
     stubs = {
-        "fit_least_squares": bare,
+        "fit_from_afar": bare,
+        "in_step": True,
         "diagnose": stage().diagnosis,
         "decide": SimpleNamespace(accepted=stage().diagnosis.best, reason="", negligible=False),
         "exchanged": soft,

@@ -40,7 +40,8 @@ def improved(monkeypatch):
     def run(one=None, most_effects=3):
         decide.one = one
         stubs = {
-            "fit_least_squares": fit(0.02, PLAIN),
+            "fit_from_afar": fit(0.02, PLAIN),
+            "in_step": True,
             "diagnose": found,
             "exchanged": one and fit(one, WITH_ONE),
             "explaining_pair": fit(NOISE, WITH_TWO),

@@ -1,0 +1,35 @@
+"""Sizes over the decades of a plausible range, where a search from far away begins."""
+
+import numpy as np
+from hasel_sim.model import Model
+
+
+def decades(model: Model, name: str) -> list[float]:
+    """Values of a parameter over the decades of its plausible range; none for a range that is not known."""
+    parameter = model.parameters[name]
+    for effect in model.effects:
+        for p in effect.parameters:
+            if f"{effect.id}.{p.name}" == name:
+                return over_range(p.null, p.typical, p.lower, p.upper)
+    known = np.isfinite([parameter.lower, parameter.upper]).all() and parameter.lower > 0
+    if not known or name == "slope":
+        return []
+    return [float(v) for v in np.geomspace(parameter.lower, parameter.upper, 7)[1:-1]]
+
+
+def over_range(null: float, typical: float, lower: float, upper: float) -> list[float]:
+    """Sizes over a plausible range: of a ratio, evenly in its logarithm; else from the typical size outwards by factors
+    of sqrt(10), to either side of the null that the range has.
+    """
+    step = abs(typical - null)
+    if null == 1.0 and lower > 0:
+        return [float(v) for v in np.geomspace(lower, upper, 7)[1:-1]]
+    if step == 0 or not np.isfinite([lower, upper]).all():
+        return [typical]
+    found = []
+    for side, end in ((-1.0, lower), (1.0, upper)):
+        size = step
+        while side * (end - null) > size:
+            found.append(float(null + side * size))
+            size *= float(np.sqrt(10.0))
+    return sorted(found)
