@@ -3,7 +3,7 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help build test test-slow lint format demo bench bench-hidden clean
+.PHONY: help build test test-slow lint format demo bench bench-far bench-hidden clean
 
 ENVIRONMENT := . setup/environment.bash
 
@@ -35,6 +35,9 @@ bench: build ## measure the speeds that the README states
 
 bench-hidden: build ## measure how often the right hidden effect is named
 	@bin/ros2-run hasel_bringup bench_hidden
+
+bench-far: build ## measure how often a constant that is far off is named
+	@bin/ros2-run hasel_bringup bench_far
 
 clean: ## remove what was built, but not .venv
 	@rm -rf build install log

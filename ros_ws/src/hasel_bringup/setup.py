@@ -24,6 +24,7 @@ setup(
     entry_points={
         "console_scripts": [
             "bench = hasel_bringup.bench:main",
+            "bench_far = hasel_bringup.bench_far.command:main",
             "bench_hidden = hasel_bringup.bench_hidden.command:main",
             "demo = hasel_bringup.demo.command:main",
             "replay = hasel_bringup.replay.command:main",

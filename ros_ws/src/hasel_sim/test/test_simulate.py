@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.errors import ModelError, SimulationError
+from hasel_sim.model import load_model
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 
@@ -124,3 +125,11 @@ def test_a_step_that_cannot_be_followed_is_divided(swimmer, boxes):
     )
     expected = (above - below) / (2 * step)
     assert found.slopes[:, 0] == pytest.approx(expected, abs=2e-4 * np.abs(expected).max())
+
+
+def test_a_heavy_tip_that_is_let_go_from_far_is_followed():
+    """A trial shape on the way turns an element inside out; that ends the trial, not the simulation."""
+    model = load_model("beam").with_effects("payload").with_values({"payload.mass": 1.7})
+    model = model.with_numerics(mesh_density=0.5, quadrature_order=2, steps_per_second=120.0)
+    run = Run("let go", np.arange(0.0, 0.2, 1 / 120), None, "static_equilibrium", 3.0)
+    assert np.isfinite(simulate(model, run).sin_theta).all()

@@ -7,6 +7,8 @@ same two of the elastic stress that internal branches add within a step [Pa], fi
 Neo-Hookean, W = mu/2 (I1 - 2 - 2 ln J) + lambda/2 (ln J)^2: P = mu (F - F^-T) + lambda ln J F^-T (Bonet and Wood,
 Nonlinear Continuum Mechanics for Finite Element Analysis, section 6.4). Kelvin-Voigt:
 S = lambda_v tr(dE/dt) I + 2 mu_v dE/dt. Fibre along x: 1/2 w (|F m| - (1 - a))^2.
+
+A trial shape with an element of no area gives infinities, which end that trial, and no ZeroDivisionError.
 """
 
 import numpy as np
@@ -16,7 +18,7 @@ COEFFICIENTS = 7
 SHEAR, LAME, VISCOUS_SHEAR, VISCOUS_LAME, BRANCH_SHEAR, BRANCH_LAME, FIBRE = range(COEFFICIENTS)
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, error_model="numpy")
 def deformation(field, elements, gradients, out):
     """Gradient of a nodal field [nodes, 2] at every Gauss point, into out [elements, points, 4]."""
     for e in range(elements.shape[0]):
@@ -36,7 +38,7 @@ def deformation(field, elements, gradients, out):
             out[e, g, 3] = f11
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, error_model="numpy")
 def through_thickness_stretch(shear, lame, area_ratio):
     """Stretch f with no stress through the thickness: mu (f^2 - 1) + lambda ln(area_ratio f) = 0 (Newton)."""
     f = area_ratio ** (-lame / (lame + 2.0 * shear))
@@ -48,7 +50,7 @@ def through_thickness_stretch(shear, lame, area_ratio):
     return f
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, error_model="numpy")
 def first_piola(F, rate, coefficients, muscle, contraction, history, plane_stress, P):
     """First Piola stress [Pa] at every Gauss point.
 
@@ -92,7 +94,7 @@ def first_piola(F, rate, coefficients, muscle, contraction, history, plane_stres
             P[e, g, 3] = p3
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, error_model="numpy")
 def moduli(F, rate, coefficients, muscle, contraction, history, plane_stress, elastic, viscous):
     """Derivatives of the first Piola stress by F (elastic) and by its rate (viscous), [elements, points, 4, 4]."""
     inverse = np.empty((2, 2))
@@ -167,7 +169,7 @@ def moduli(F, rate, coefficients, muscle, contraction, history, plane_stress, el
                 elastic[e, g, 2, 2] += tension + slope * c * c
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, error_model="numpy")
 def scatter_stress(P, elements, gradients, areas, force):
     """Add the nodal forces of a stress field [elements, points, 4] to force [nodes, 2]."""
     local = np.empty((8, 2))
@@ -185,7 +187,7 @@ def scatter_stress(P, elements, gradients, areas, force):
             force[elements[e, a], 1] += local[a, 1]
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, error_model="numpy")
 def scatter_matrix(elastic, viscous, masses, weights, elements, gradients, areas, band, diagonal):
     """Add weights[0] K + weights[1] C + weights[2] M to a band matrix, entry (i, j) at [i, diagonal + j - i].
 
@@ -226,7 +228,7 @@ def scatter_matrix(elastic, viscous, masses, weights, elements, gradients, areas
                     band[row, j + 1] += local[2 * a + i, 2 * b + 1]
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, error_model="numpy")
 def scatter_directions(moduli, stress, elements, gradients, areas, directions, force):
     """Add to force [columns, nodes, 2] the change of the nodal forces along many directions at once.
 
@@ -268,7 +270,7 @@ def scatter_directions(moduli, stress, elements, gradients, areas, directions, f
                 force[c, node, 1] += local[a, 1]
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, error_model="numpy")
 def scatter_pulled_back(elastic, viscous, elements, gradients, areas, weights, force):
     """Add to force [2, nodes, 2] the transposed stiffness and damping times nodal weights [nodes, 2]."""
     local = np.empty((2, 8, 2))
@@ -305,7 +307,7 @@ def scatter_pulled_back(elastic, viscous, elements, gradients, areas, weights, f
                 force[row, node, 1] += local[row, a, 1]
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, error_model="numpy")
 def contraction_force(F, coefficients, muscle, elements, gradients, areas, force):
     """Derivative of the internal force by the contraction of each muscle, into force [muscles, nodes, 2]."""
     force[:] = 0.0
@@ -321,7 +323,7 @@ def contraction_force(F, coefficients, muscle, elements, gradients, areas, force
                 force[muscle[e] - 1, elements[e, n], 1] += pull * c * dx
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, error_model="numpy")
 def mass_product(masses, elements, columns, out):
     """Add to out [columns, nodes, 2] the element masses [elements, 8, 8] times the nodal vectors."""
     for e in range(elements.shape[0]):
@@ -335,7 +337,7 @@ def mass_product(masses, elements, columns, out):
                 out[c, elements[e, a], 1] += y
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, error_model="numpy")
 def scatter_sites(direct, along, nodes, shape, slope, measure, band, diagonal):
     """Add site matrices [n, 2, 2], for values (direct) and tangents (along) of the field, to a band matrix."""
     for s in range(nodes.shape[0]):
@@ -351,7 +353,7 @@ def scatter_sites(direct, along, nodes, shape, slope, measure, band, diagonal):
                     band[row, j + 1] += d1 * shape[s, b] + t1 * slope[s, b]
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, error_model="numpy")
 def second_piola(F, P, S):
     """Symmetric second Piola stress (xx, yy, xy) F^-1 P [elements, points, 3] of a first Piola stress."""
     for e in range(F.shape[0]):
@@ -363,7 +365,7 @@ def second_piola(F, P, S):
             S[e, g, 2] = 0.5 * (d * P[e, g, 1] - b * P[e, g, 3] + a * P[e, g, 2] - c * P[e, g, 0]) / J
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, error_model="numpy")
 def exchange_initial_stress(elastic, old, new):
     """Replace the second Piola stress (xx, yy, xy) whose geometric stiffness is in the moduli, in place."""
     for e in range(elastic.shape[0]):

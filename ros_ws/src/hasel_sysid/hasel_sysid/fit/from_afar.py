@@ -1,12 +1,14 @@
 """A fit from far away: coarse to fine, from the opening of every run to all of its frames."""
 
+from dataclasses import replace
+
 import numpy as np
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
 from hasel_sysid.draft import draft
 from hasel_sysid.fit.decades import decades
-from hasel_sysid.fit.least_squares import Progress, fit_least_squares
+from hasel_sysid.fit.least_squares import Progress, fit_least_squares, fitted_result
 from hasel_sysid.fit.opening import in_step, openings
 from hasel_sysid.fit.result import FitResult
 from hasel_sysid.problem import Problem
@@ -19,37 +21,47 @@ def fit_from_afar(problem: Problem, model: Model, progress: Progress | None = No
     """Least squares; where that ends out of step with the runs, once more from sizes over the decades of every range.
 
     A wrong frequency puts a model out of step within a few swings (cycle skipping), so the second fit begins with the
-    first swing of every run. Raises SimulationError when neither start can be simulated.
+    first swing of every run. Where more frames lose its step again, because something else is missing, the values are
+    those of the longest opening that it is in step with, and the result says so.
+    Raises SimulationError when neither start can be simulated.
     """
     try:
         near = fit_least_squares(problem, model, progress)
     except SimulationError:
-        if not _sizes(model):
+        far = _on_growing_openings(problem, model, progress) if _sizes(model) else None
+        if far is None:
             raise
-        return _on_growing_openings(problem, model, progress)
+        return far
     if in_step(near.evaluation) or not _sizes(model):
         return near
     try:
-        far = _on_growing_openings(problem, model, progress)
+        return _on_growing_openings(problem, model, progress) or near
     except SimulationError:
         return near
-    return min(near, far, key=lambda fit: fit.evaluation.sum_of_squares)
 
 
-def _on_growing_openings(problem: Problem, model: Model, progress: Progress | None) -> FitResult:
+def _on_growing_openings(problem: Problem, model: Model, progress: Progress | None) -> FitResult | None:
+    """The fit of the longest opening that the model is in step with; None where it is with none."""
     every = openings(problem)
-    model = _best_sizes(every[0], model)
-    for number, opening in enumerate(every[:-1]):
+    model, reached = _best_sizes(every[0], model), None
+    for number, opening in enumerate(every):
         if progress:
             progress(f"opening {number + 1} of {len(every)}", number / len(every))
-        found = fit_least_squares(opening, draft(model), most_evaluations=_BRIEF, drafts=False)
-        model = model.with_values({name: found.model.values[name] for name in model.free})
-    return fit_least_squares(problem, model, progress, drafts=False)
+        found = fit_least_squares(opening, model, most_evaluations=_BRIEF, drafts=False)
+        if not in_step(found.evaluation):
+            break
+        reached, model = opening, found.model
+    if reached is None:
+        return None
+    if reached is problem:
+        return found
+    whole = fitted_result(problem.evaluate(model, model.free), found.iterations)
+    return replace(whole, in_step_until=max(float(e.run.time[-1] - e.run.start) for e in reached.experiments))
 
 
 def _best_sizes(problem: Problem, model: Model) -> Model:
     """The model with each size in turn at the one of its decades that fits best, twice round."""
-    model = draft(model)
+    whole, model = model, draft(model)
     lowest = _squares(problem, [model])[0]
     for _ in range(_SWEEPS):
         before = lowest
@@ -61,7 +73,7 @@ def _best_sizes(problem: Problem, model: Model) -> Model:
                 model, lowest = tried[best], squares[best]
         if lowest == before:
             break
-    return model
+    return whole.with_values(model.values)
 
 
 def _squares(problem: Problem, models: list[Model]) -> list[float]:

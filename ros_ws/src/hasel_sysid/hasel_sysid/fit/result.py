@@ -12,7 +12,8 @@ class FitResult:
     """The fitted model and how well it is determined.
 
     model: with fitted values and standard errors; evaluation: at these values; at_bound: parameters on a bound;
-    undetermined: parameters that these recordings do not determine; iterations: simulations of all runs.
+    undetermined: parameters that these recordings do not determine; iterations: simulations of all runs;
+    in_step_until: how long after its start [s] the model moves with the body, None for all frames.
     """
 
     model: Model
@@ -21,6 +22,7 @@ class FitResult:
     undetermined: tuple[str, ...]
     iterations: int
     method: str
+    in_step_until: float | None = None
 
     @property
     def mean_absolute_error(self) -> float:
@@ -31,6 +33,11 @@ class FitResult:
     def sentences(self) -> list[str]:
         """What a user should know about the parameters, one sentence each."""
         notes = []
+        if self.in_step_until is not None:
+            notes.append(
+                f"The model is in step with the first {self.in_step_until:.2g} s of the runs only, to which it was "
+                "fitted: something else is missing."
+            )
         for name in self.at_bound:
             p = self.model.parameters[name]
             side = "upper" if abs(p.value - p.upper) < abs(p.value - p.lower) else "lower"

@@ -1,16 +1,18 @@
 """The search from far away: which effects bring the model into step, first with one swing, then with all frames."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hasel_sim.errors import HaselSimError
 from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis import Diagnosis, Verdict, diagnose
+from hasel_sysid.diagnosis.context import on_own_bound
 from hasel_sysid.fit import FitResult, fit_least_squares
 from hasel_sysid.fit.opening import in_step, openings
 from hasel_sysid.improve.conclusion import near_noise
 from hasel_sysid.improve.decision import LEAST_GAIN
+from hasel_sysid.improve.exchange import with_effect
 from hasel_sysid.improve.prune import pruned
 from hasel_sysid.problem import Problem
 
@@ -41,13 +43,17 @@ def far_start(
     what else is missing.
     """
     known = {effect.id for effect in model.effects}
+    seen: list[Diagnosis] = []
     first, every = None, openings(problem)[:-1]
     for number, opening in enumerate(every):
         part = _part(progress, number, len(every))
         fit = fit_least_squares(opening, model, most_evaluations=12, drafts=False)
         for _ in range(most_effects - _count(fit, known)):
             found = diagnose(opening, fit, only, part, decades=True)
-            first = first if first is not None or found.best is None else found
+            seen.append(found)
+            if first is None and found.best is not None:
+                # what finer numerics change was found for the opening's frames only
+                first = replace(found, context=replace(found.context, changes={}))
             better = _with_best(opening, fit, found, known)
             if better is None:
                 break
@@ -55,6 +61,8 @@ def far_start(
             if near_noise(fit, found):
                 break
         model = fit.model
+    if seen and every:
+        model = _swapped(every[-1], fit, seen, known).model
     fit = fit_least_squares(problem, model, drafts=False)
     if first is None or _count(fit, known) == 0 or not in_step(fit.evaluation):
         return None
@@ -70,6 +78,25 @@ def _with_best(opening: Problem, fit: FitResult, found: Diagnosis, known: set[st
         return None
     earlier = [effect.id for effect in fit.model.effects if effect.id not in known]
     return pruned(opening, best.fit, earlier)
+
+
+def _swapped(opening: Problem, fit: FitResult, seen: Sequence[Diagnosis], known: set[str]) -> FitResult:
+    """The fit, or a better one with one effect after the other in the place of what looked like it in a shorter opening.
+
+    What one swing cannot tell apart, more of them may.
+    """
+    for effect in [e.id for e in fit.model.effects if e.id not in known]:
+        rivals = {r: found for found in seen for g in found.groups if effect in g for r in g}
+        for rival in sorted(set(rivals) - {e.id for e in fit.model.effects}):
+            try:
+                model = with_effect(fit.model.without_effects(effect), rivals[rival], rival)
+                other = fit_least_squares(opening, model, most_evaluations=8, drafts=False)
+            except HaselSimError:
+                continue
+            better = other.evaluation.sum_of_squares < fit.evaluation.sum_of_squares
+            if better and not on_own_bound(rival, other):
+                fit, effect = other, rival
+    return fit
 
 
 def _ladder(problem: Problem, fit: FitResult, known: set[str]) -> list[FitResult]:

@@ -1,0 +1,123 @@
+"""`bench_far`: is a gross constant that is far off named, or put into the stated group?"""
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from hasel_sim.parallel import executor
+from hasel_sysid.dataset import prepared
+from hasel_sysid.improve import improve
+from hasel_sysid.problem import Problem
+
+from hasel_bringup.bench_far.far_case import SHIFTS, SIZES, FarCase, baseline, far_cases, measure, value_of
+
+
+@dataclass(frozen=True)
+class FarOutcome:
+    """named: whether the truth is among what was added; grouped: or stated to look like one of that; sure: whether the
+    model is said to explain what was seen.
+    """
+
+    case: str
+    value: float
+    missing: tuple[str, ...]
+    named: bool
+    grouped: bool
+    sure: bool
+    mae_unseen: float
+    seconds: float
+
+    @property
+    def right(self) -> bool:
+        """Named, or within the stated group."""
+        return self.named or self.grouped
+
+    def __str__(self) -> str:
+        word = (
+            "named"
+            if self.named
+            else "in the group"
+            if self.grouped
+            else "WRONG AND SURE"
+            if self.sure
+            else "missed"
+        )
+        added = " + ".join(self.missing) or "nothing"
+        return (
+            f"{self.case}: {word} (added {added}; unseen error {self.mae_unseen:.5f}; {self.seconds:.0f} s)"
+        )
+
+
+def run_case(case: FarCase, pool: Executor, only: Sequence[str] | None = None) -> FarOutcome:
+    """What `improve` says of one case. only: names of the candidate effects (default: all)."""
+    value = value_of(case)
+    fitted, unseen = measure(case, value, pool)
+    started = time.monotonic()
+    found = improve(
+        Problem(fitted, pool), prepared(baseline(case.body), fitted), Problem(unseen, pool), only
+    ).to_json()
+    missing, groups = found["verdict"]["missing"], found["indistinguishable"]
+    added = found["stages"][-1]["effects"]
+    named = case.effect in added
+    return FarOutcome(
+        case.name,
+        value,
+        tuple(added),
+        named,
+        any(case.effect in group and set(added) & set(group) for group in groups),
+        found["verdict"]["status"] == "explained" and case.effect not in missing,
+        found["stages"][-1]["mae_validation"],
+        time.monotonic() - started,
+    )
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    options = parser().parse_args(arguments)
+    cases = far_cases(options.effects, options.shifts)
+    cases = [case for case in cases if options.body in (None, case.body)]
+    outcomes = []
+    with executor(options.jobs) as pool:
+        for case in cases:
+            outcomes.append(run_case(case, pool, options.candidates))
+            print(outcomes[-1], flush=True)
+    right, sure = sum(o.right for o in outcomes), sum(o.sure and not o.right for o in outcomes)
+    print(
+        f"{right} of {len(outcomes)} right or in the stated group (bar: 90 %), {sure} wrong and sure (bar: 0)"
+    )
+    if options.json:
+        options.json.write_text(json.dumps([asdict(o) for o in outcomes], indent=1))
+    return 0
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command's options."""
+    options = argparse.ArgumentParser(
+        prog="bench_far",
+        description="Set a gross constant of a truth so that it rings 10 to 60 % faster or slower, and look whether "
+        "`improve` names it. Takes an hour or more.",
+    )
+    options.add_argument(
+        "--effects", type=_list_of(str), default=tuple(SIZES), metavar="A,B", help="hidden ones"
+    )
+    options.add_argument(
+        "--shifts", type=_list_of(float), default=SHIFTS, metavar="S,T", help="such as -0.4,0.25"
+    )
+    options.add_argument("--body", choices=("beam", "swimmer"), help="only this body")
+    options.add_argument("--candidates", type=_list_of(str), metavar="A,B", help="try only these effects")
+    options.add_argument("--jobs", type=int, metavar="N", help="simulations at once (default: one per core)")
+    options.add_argument("--json", type=Path, metavar="FILE", help="write the outcomes")
+    return options
+
+
+def _list_of(kind: type):
+    return lambda text: tuple(kind(part) for part in text.split(","))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
