@@ -31,8 +31,8 @@ _FRAMES_PER_SECOND = 100.0
 
 @dataclass(frozen=True)
 class FarCase:
-    """effect: the wrong constant; shift: of the ringing's frequency, as a share; body: beam (let go) or swimmer (driven);
-    noise: rms of sin theta, white.
+    """effect: the wrong constant; shift: of the ringing's frequency, as a share; body: beam (let go) or swimmer
+    (driven); noise: rms of sin theta, white.
     """
 
     effect: str

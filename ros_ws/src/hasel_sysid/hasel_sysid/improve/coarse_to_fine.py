@@ -81,7 +81,7 @@ def _with_best(opening: Problem, fit: FitResult, found: Diagnosis, known: set[st
 
 
 def _swapped(opening: Problem, fit: FitResult, seen: Sequence[Diagnosis], known: set[str]) -> FitResult:
-    """The fit, or a better one with one effect after the other in the place of what looked like it in a shorter opening.
+    """The fit, or a better one with one effect after the other in the place of one that looked like it before.
 
     What one swing cannot tell apart, more of them may.
     """
