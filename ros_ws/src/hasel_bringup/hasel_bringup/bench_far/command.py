@@ -14,7 +14,16 @@ from hasel_sysid.dataset import prepared
 from hasel_sysid.improve import improve
 from hasel_sysid.problem import Problem
 
-from hasel_bringup.bench_far.far_case import SHIFTS, SIZES, FarCase, baseline, far_cases, measure, value_of
+from hasel_bringup.bench_far.far_case import (
+    BODIES,
+    SHIFTS,
+    SIZES,
+    FarCase,
+    baseline,
+    far_cases,
+    measure,
+    value_of,
+)
 
 
 @dataclass(frozen=True)
@@ -79,8 +88,7 @@ def run_case(case: FarCase, pool: Executor, only: Sequence[str] | None = None) -
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns its exit code."""
     options = parser().parse_args(arguments)
-    cases = far_cases(options.effects, options.shifts)
-    cases = [case for case in cases if options.body in (None, case.body)]
+    cases = far_cases(options.effects, options.shifts, BODIES if options.body is None else (options.body,))
     outcomes = []
     with executor(options.jobs) as pool:
         for case in cases:
@@ -108,7 +116,7 @@ def parser() -> argparse.ArgumentParser:
     options.add_argument(
         "--shifts", type=_list_of(float), default=SHIFTS, metavar="S,T", help="such as -0.4,0.25"
     )
-    options.add_argument("--body", choices=("beam", "swimmer"), help="only this body")
+    options.add_argument("--body", choices=BODIES, help="only this body")
     options.add_argument("--candidates", type=_list_of(str), metavar="A,B", help="try only these effects")
     options.add_argument("--jobs", type=int, metavar="N", help="simulations at once (default: one per core)")
     options.add_argument("--json", type=Path, metavar="FILE", help="write the outcomes")

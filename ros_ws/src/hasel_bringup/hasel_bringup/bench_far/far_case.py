@@ -1,5 +1,6 @@
 """One case: a gross constant of a body is wrong by so much that it rings at another frequency."""
 
+from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
@@ -24,6 +25,7 @@ SIZES = {
     "spine_modulus": "spine_modulus.scale",
 }
 SHIFTS = (-0.6, -0.4, -0.25, -0.1, 0.1, 0.25, 0.4, 0.6)
+BODIES = ("beam", "swimmer")
 NOISES = (2e-5, 3e-4, 3e-3)
 _BEAM_DAMPING_S = 0.004
 _FRAMES_PER_SECOND = 100.0
@@ -47,13 +49,15 @@ class FarCase:
         return f"{self.effect}{self.shift:+g}-{self.body}-{self.noise:g}-{self.seed}"
 
 
-def far_cases(effects=tuple(SIZES), shifts=SHIFTS, noises=NOISES) -> list[FarCase]:
+def far_cases(
+    effects: Sequence[str] = tuple(SIZES), shifts: Sequence[float] = SHIFTS, bodies: Sequence[str] = BODIES
+) -> list[FarCase]:
     """All of them that a value within the effect's plausible range brings about; the noise goes round."""
     found = []
     for number, (effect, shift) in enumerate((e, s) for e in effects for s in shifts):
-        for offset, body in enumerate(("beam", "swimmer")):
-            case = FarCase(effect, shift, body, noises[(number + offset) % len(noises)])
-            if body == "beam" and effect == "spine_modulus":
+        for offset, body in enumerate(BODIES):
+            case = FarCase(effect, shift, body, NOISES[(number + offset) % len(NOISES)])
+            if body not in bodies or (body == "beam" and effect == "spine_modulus"):
                 continue
             if value_of(case) is not None:
                 found.append(case)

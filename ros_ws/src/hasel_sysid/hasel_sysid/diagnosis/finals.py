@@ -186,8 +186,12 @@ def noise_of(problem: Problem, fit: FitResult, finals: dict[str, FitResult]) -> 
 
 
 def allowed_noise(problem: Problem, noise: NoiseModel) -> NoiseModel:
-    """What a right model may leave: the noise and, where that is measured, the one discrepancy that is allowed for.
+    """What a right model may leave: the noise and the one discrepancy that is allowed for.
 
-    An upper bound of the noise is loud enough without it.
+    An upper bound of the noise, which holds some of it already, is only raised where it lies below that discrepancy.
     """
-    return noise if noise.upper_bound else noise.with_discrepancy(DISCREPANCY * problem.largest_swing)
+    discrepancy = DISCREPANCY * problem.largest_swing
+    if not noise.upper_bound:
+        return noise.with_discrepancy(discrepancy)
+    missing = discrepancy**2 - noise.standard_deviation**2
+    return noise.with_discrepancy(float(np.sqrt(missing))) if missing > 0 else noise
