@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from hasel_recording import Recording
-from hasel_sim.drive.voltage import VoltageSchedule
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model, load_model
 from hasel_sim.parallel import simulate_all
@@ -107,9 +107,7 @@ def ringing_frequency(model: Model) -> float:
     time = np.arange(0.0, 2.0, 1 / _FRAMES_PER_SECOND)
     run = Run("ringing", time, None, "static_equilibrium", 1.3)
     if model.has_muscles:
-        run = Run(
-            "ringing", time, VoltageSchedule(np.array([0.0, 0.1]), np.array([[5000.0, 0.0], [0.0, 0.0]]))
-        )
+        run = Run("ringing", time, DriveSchedule(np.array([0.0, 0.1]), np.array([[5000.0, 0.0], [0.0, 0.0]])))
     series = simulate(model, run).sin_theta
     swing = fit_swing(time[15:], series[15:])
     return np.nan if swing is None else swing.frequency
@@ -140,7 +138,7 @@ def _boxes() -> list[Run]:
         time = np.arange(0.0, 2 / frequency, 1 / _FRAMES_PER_SECOND)
         switches = np.arange(4) / (2 * frequency)
         upper = np.arange(4) % 2 == 0
-        drive = VoltageSchedule(switches, np.where(np.stack([upper, ~upper], axis=1), voltage, 0.0))
+        drive = DriveSchedule(switches, np.where(np.stack([upper, ~upper], axis=1), voltage, 0.0))
         runs.append(Run(f"{voltage:g} V, {frequency:g} Hz", time, drive))
     return runs
 

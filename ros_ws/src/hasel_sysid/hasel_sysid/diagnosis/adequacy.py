@@ -67,7 +67,7 @@ class Adequacy:
 def adequacy(evaluation: Evaluation, allowed: NoiseModel) -> Adequacy:
     """Lack of fit against what a right model may leave, overall and per regime (Benjamini and Hochberg 1995).
 
-    allowed: noise, with what is allowed for discrepancy. Regimes: run, voltage, frequency, side, quarter of the cycle.
+    allowed: noise, with what is allowed for discrepancy. Regimes: run, largest drive, frequency, side, quarter of a cycle.
     """
     basis = orthonormal(evaluation.jacobian)
     draws = allowed.sample(evaluation.runs, _DRAWS, np.random.default_rng(2))
@@ -110,12 +110,14 @@ def _labels(evaluation: Evaluation) -> dict[str, list[str]]:
         level = "" if run.schedule is None else f"{np.abs(run.schedule.signal).max(initial=0.0):.5g} {unit}"
         side = [""] * count
         if voltage is not None:
-            side = [{1: "upper", -1: "lower", 0: ""}[s] for s in driven_side(voltage)]
+            first, *others = run.schedule.channels
+            names = {1: first, -1: " or ".join(others), 0: ""}
+            side = [names[s] for s in driven_side(voltage)]
         part = [""] * count
         if cycle is not None:
             part = [f"{int(_QUARTERS * p) + 1} of {_QUARTERS}" for p in cycle.phase(time)]
         labels["run"] += [run.name] * count
-        labels[""] += [level] * count
+        labels["drive up to"] += [level] * count
         labels["frequency"] += [f"{1 / cycle.period:.3g} Hz" if cycle else ""] * count
         labels["side"] += side
         labels["part of the cycle"] += part

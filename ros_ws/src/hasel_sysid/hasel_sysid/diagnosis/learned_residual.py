@@ -33,7 +33,8 @@ def _features(time: np.ndarray, angle: np.ndarray, contraction: np.ndarray) -> n
     rate = np.gradient(angle, time)
     acceleration = np.gradient(rate, time)
     contraction = np.nan_to_num(contraction, nan=0.0)
-    difference, together = contraction[:, 0] - contraction[:, 1], contraction.sum(axis=1)
+    together = contraction.sum(axis=1)
+    difference = 2 * contraction[:, 0] - together if contraction.shape[1] else together
     elapsed = time - time[0]
     lagged = [np.interp(time - lag, time, difference, left=0.0) for lag in _LAGS_S]
     return np.stack(

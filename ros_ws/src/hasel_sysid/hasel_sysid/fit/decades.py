@@ -5,16 +5,22 @@ from hasel_sim.model import Model
 
 
 def decades(model: Model, name: str) -> list[float]:
-    """Values of a parameter over the decades of its plausible range; none for a range that is not known."""
+    """Values of an effect's size or of a constant of the model file over the decades of its plausible range.
+
+    None for a range that is not known, and for muscles, whose amplitudes and times follow from the first swing.
+    """
     parameter = model.parameters[name]
     for effect in model.effects:
         for p in effect.parameters:
             if f"{effect.id}.{p.name}" == name:
                 return over_range(p.null, p.typical, p.lower, p.upper)
-    known = np.isfinite([parameter.lower, parameter.upper]).all() and parameter.lower > 0
-    if not known or name == "slope":
+    if "." not in name or not np.isfinite([parameter.lower, parameter.upper]).all():
         return []
-    return [float(v) for v in np.geomspace(parameter.lower, parameter.upper, 7)[1:-1]]
+    if parameter.lower > 0:
+        return [float(v) for v in np.geomspace(parameter.lower, parameter.upper, 7)[1:-1]]
+    return (
+        [float(v) for v in np.geomspace(1e-3, 1.0, 7)[:-1] * parameter.upper] if parameter.lower == 0 else []
+    )
 
 
 def over_range(null: float, typical: float, lower: float, upper: float) -> list[float]:
