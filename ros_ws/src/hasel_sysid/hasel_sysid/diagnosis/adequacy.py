@@ -67,7 +67,7 @@ class Adequacy:
 def adequacy(evaluation: Evaluation, allowed: NoiseModel) -> Adequacy:
     """Lack of fit against what a right model may leave, overall and per regime (Benjamini and Hochberg 1995).
 
-    allowed: noise, with what is allowed for discrepancy. Regimes: run, largest drive, frequency, side, quarter of a cycle.
+    allowed: noise and discrepancy. Regimes: run, largest drive, frequency, side, quarter of the cycle.
     """
     basis = orthonormal(evaluation.jacobian)
     draws = allowed.sample(evaluation.runs, _DRAWS, np.random.default_rng(2))

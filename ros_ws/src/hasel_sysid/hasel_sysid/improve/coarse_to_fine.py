@@ -10,7 +10,6 @@ from hasel_sysid.diagnosis import Diagnosis, Verdict, diagnose
 from hasel_sysid.diagnosis.context import on_own_bound
 from hasel_sysid.fit import FitResult, fit_least_squares
 from hasel_sysid.fit.opening import in_step, openings
-from hasel_sysid.improve.conclusion import near_noise
 from hasel_sysid.improve.decision import LEAST_GAIN
 from hasel_sysid.improve.exchange import with_effect
 from hasel_sysid.improve.prune import pruned
@@ -39,34 +38,38 @@ def far_start(
     """The effects that bring a model into step with all frames; None where none do.
 
     A wrong frequency puts a model out of step within a few swings, and then whatever damps its motion looks best. In
-    the opening of the runs every effect is still in step: there it is named, and more frames only refine it and show
-    what else is missing.
+    the opening of the runs every effect is still in step: there it is named. The opening then grows for as long as the
+    model keeps step, and where it loses it the next effect is looked for. What a model that is in step still lacks is
+    left to a search on all frames.
     """
     known = {effect.id for effect in model.effects}
     seen: list[Diagnosis] = []
-    first, every = None, openings(problem)[:-1]
+    every = openings(problem)
     for number, opening in enumerate(every):
-        part = _part(progress, number, len(every))
         fit = fit_least_squares(opening, model, most_evaluations=12, drafts=False)
-        for _ in range(most_effects - _count(fit, known)):
-            found = diagnose(opening, fit, only, part, decades=True)
-            seen.append(found)
-            if first is None and found.best is not None:
-                # what finer numerics change was found for the opening's frames only
-                first = replace(found, context=replace(found.context, changes={}))
-            better = _with_best(opening, fit, found, known)
+        while not in_step(fit.evaluation) and _count(fit, known) < most_effects:
+            seen.append(diagnose(opening, fit, only, _part(progress, number, len(every)), decades=True))
+            better = _with_best(opening, fit, seen[-1], known)
             if better is None:
-                break
+                return None
             fit = better
-            if near_noise(fit, found):
-                break
         model = fit.model
-    if seen and every:
-        model = _swapped(every[-1], fit, seen, known).model
-    fit = fit_least_squares(problem, model, drafts=False)
-    if first is None or _count(fit, known) == 0 or not in_step(fit.evaluation):
+    if not seen or not in_step(fit.evaluation):
         return None
+    if len(every) > 1:
+        swapped = _swapped(every[-2], model, seen, known)
+        fit = fit_least_squares(problem, swapped, drafts=False)
+    # what finer numerics change was found for the opening's frames only
+    first = replace(seen[0], groups=_groups(seen), context=replace(seen[0].context, changes={}))
     return FarStart(first, tuple(_ladder(problem, fit, known)))
+
+
+def _groups(seen: Sequence[Diagnosis]) -> list[tuple[str, ...]]:
+    """What the first diagnosis could not tell apart, and what each later one could not tell from its best effect."""
+    later = [
+        group for found in seen[1:] if found.best for group in found.groups if found.best.effect in group
+    ]
+    return list(dict.fromkeys([*seen[0].groups, *later]))
 
 
 def _with_best(opening: Problem, fit: FitResult, found: Diagnosis, known: set[str]) -> FitResult | None:
@@ -80,11 +83,12 @@ def _with_best(opening: Problem, fit: FitResult, found: Diagnosis, known: set[st
     return pruned(opening, best.fit, earlier)
 
 
-def _swapped(opening: Problem, fit: FitResult, seen: Sequence[Diagnosis], known: set[str]) -> FitResult:
-    """The fit, or a better one with one effect after the other in the place of one that looked like it before.
+def _swapped(opening: Problem, model: Model, seen: Sequence[Diagnosis], known: set[str]) -> Model:
+    """The model, or a better one with one effect after the other in the place of one that looked like it before.
 
     What one swing cannot tell apart, more of them may.
     """
+    fit = fit_least_squares(opening, model, most_evaluations=8, drafts=False)
     for effect in [e.id for e in fit.model.effects if e.id not in known]:
         rivals = {r: found for found in seen for g in found.groups if effect in g for r in g}
         for rival in sorted(set(rivals) - {e.id for e in fit.model.effects}):
@@ -96,7 +100,7 @@ def _swapped(opening: Problem, fit: FitResult, seen: Sequence[Diagnosis], known:
             better = other.evaluation.sum_of_squares < fit.evaluation.sum_of_squares
             if better and not on_own_bound(rival, other):
                 fit, effect = other, rival
-    return fit
+    return fit.model
 
 
 def _ladder(problem: Problem, fit: FitResult, known: set[str]) -> list[FitResult]:
