@@ -117,7 +117,7 @@ def _labels(evaluation: Evaluation) -> dict[str, list[str]]:
         if cycle is not None:
             part = [f"{int(_QUARTERS * p) + 1} of {_QUARTERS}" for p in cycle.phase(time)]
         labels["run"] += [run.name] * count
-        labels["drive up to"] += [level] * count
+        labels[""] += [level] * count
         labels["frequency"] += [f"{1 / cycle.period:.3g} Hz" if cycle else ""] * count
         labels["side"] += side
         labels["part of the cycle"] += part
