@@ -69,7 +69,7 @@ def _section(name: str, outcomes: Sequence[Outcome]) -> list[str]:
     failures = [o for o in outcomes if o.failure]
     return [
         f"## Truth: {name}\n",
-        f"Mesh density {numerics.mesh_density:g}, quadrature order {numerics.quadrature_order}, "
+        f"Mesh density {numerics.mesh_density:g}, layers {numerics.layers}, "
         f"{numerics.steps_per_second:g} steps/s, spectral radius {numerics.spectral_radius:g}; "
         f"{len(outcomes)} cases, {len(failures)} without an answer.\n",
         _bar_table(bars(outcomes)),
