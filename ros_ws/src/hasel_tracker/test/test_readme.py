@@ -56,7 +56,7 @@ def test_options_named_in_the_readme_exist(command, capsys):
     """Options shown beside a command on one line are options of that command."""
     name = command.__name__.rsplit(".", 1)[1]
     helps = []
-    for arguments in (["--help"], ["colour", "--help"], ["board", "--help"]):
+    for arguments in (["--help"], ["colour", "--help"], ["board", "--help"], ["distance", "--help"]):
         with pytest.raises(SystemExit):
             command.parser().parse_args(arguments if name == "calibrate" else ["--help"])
         helps.append(capsys.readouterr().out)

@@ -84,3 +84,16 @@ class CameraCalibration:
             f"Calibration at {width} × {height} px, {lens}; "
             f"the board's corners fit to {self.error_px:.3f} px rms."
         )
+
+
+def scale_calibration(
+    first_px: np.ndarray, last_px: np.ndarray, distance_m: float, image_size_px: tuple[int, int]
+) -> CameraCalibration:
+    """Calibration of a camera that looks straight down, from two points (2,) [px] a known distance apart."""
+    apart_px = float(np.linalg.norm(np.subtract(last_px, first_px)))
+    if not (apart_px > 1.0 and distance_m > 0.0):
+        raise TrackerError(
+            f"The points are {apart_px:.1f} px and {distance_m:g} m apart; expected two points and a positive distance."
+        )
+    scale = distance_m / apart_px
+    return CameraCalibration(tuple(image_size_px), np.eye(3), np.zeros(5), np.diag([scale, scale, 1.0]), 0.0)

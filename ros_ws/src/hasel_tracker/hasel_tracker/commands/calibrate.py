@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 
 from hasel_tracker.calibration.board_calibration import VIEWS_FOR_LENS, Board, calibrate_camera, find_corners
+from hasel_tracker.calibration.camera_calibration import scale_calibration
 from hasel_tracker.calibration.colour_learning import learn_colour
 from hasel_tracker.calibration.learned_picture import learned_picture
 from hasel_tracker.calibration.settings_file import save_settings
@@ -38,13 +39,25 @@ def parser() -> argparse.ArgumentParser:
     board.add_argument("--rows", type=int, default=6, help="inner corners per column (default: %(default)s)")
     board.add_argument("--square", type=float, required=True, metavar="M", help="side of a square [m]")
     board.add_argument("--output", "-o", type=Path, default=Path("camera.yaml"), help="default: %(default)s")
+    distance = kinds.add_parser("distance", help="metres per pixel from two points a known distance apart")
+    distance.add_argument(
+        "frame", type=Path, help="image, or video (its first frame), seen straight from above"
+    )
+    distance.add_argument(
+        "--between", type=point, nargs=2, required=True, metavar="X,Y", help="the two points [px]"
+    )
+    distance.add_argument("--metres", type=float, required=True, metavar="M", help="their distance [m]")
+    distance.add_argument(
+        "--output", "-o", type=Path, default=Path("camera.yaml"), help="default: %(default)s"
+    )
     return options
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns its exit code."""
     options = parser().parse_args(arguments)
-    return run_command(lambda: _colour(options) if options.kind == "colour" else _board(options))
+    work = {"colour": _colour, "board": _board, "distance": _distance}[options.kind]
+    return run_command(lambda: work(options))
 
 
 def _colour(options: argparse.Namespace) -> None:
@@ -73,6 +86,16 @@ def _board(options: argparse.Namespace) -> None:
         print(f"Perspective only: {len(images)} views, the lens needs at least {VIEWS_FOR_LENS}.")
     calibration.save(options.output)
     print(calibration)
+    print(f"Wrote {options.output}.")
+
+
+def _distance(options: argparse.Namespace) -> None:
+    image = _image(options.frame)
+    calibration = scale_calibration(*np.array(options.between), options.metres, image.shape[1::-1])
+    calibration.save(options.output)
+    print(
+        f"{1e3 * calibration.pixel_to_plane[0, 0]:.5g} mm per pixel; lens and perspective are not corrected."
+    )
     print(f"Wrote {options.output}.")
 
 

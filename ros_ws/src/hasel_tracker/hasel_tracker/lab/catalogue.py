@@ -121,7 +121,7 @@ ADVERSARIAL = (
         settings=TrackerSettings(head="right"),
     ),
     LabCase(
-        "away for over a second, back turned",
+        "all hidden for over a second",
         _one(LabScene((replace(RIGHT_WAY, hidden=AWAY, heading_rad=-0.4, bend_rad=0.5),), **LOW_RATE)),
         least_frames=68,
     ),

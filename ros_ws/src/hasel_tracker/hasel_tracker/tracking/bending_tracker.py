@@ -7,6 +7,7 @@ import numpy as np
 
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
 from hasel_tracker.errors import TrackerError
+from hasel_tracker.tracking.apriltag_tracker import AprilTagTracker
 from hasel_tracker.tracking.bending_angle import bending_angle
 from hasel_tracker.tracking.csrt_tracker import CsrtTracker
 from hasel_tracker.tracking.doubt import Doubt
@@ -152,6 +153,8 @@ class BendingTracker:
 
 
 def _method(method: str, settings: TrackerSettings, boxes: list[tuple[int, int, int, int]] | None) -> _Method:
+    if method == "apriltag":
+        return AprilTagTracker(settings)
     if method == "csrt":
         return CsrtTracker(settings, boxes)
     return MarkerTracker(settings, measure_marker if method == "moment" else measure_contour)

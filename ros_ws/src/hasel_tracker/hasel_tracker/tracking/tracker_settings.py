@@ -6,7 +6,7 @@ from hasel_tracker.errors import TrackerError
 from hasel_tracker.tracking.colour_gate import ColourRange
 from hasel_tracker.tracking.head_side import SIDES, head_word
 
-METHODS = ("contour", "moment", "csrt", "apriltag", "midline")
+METHODS = ("contour", "moment", "apriltag", "csrt")
 FEWEST_MARKERS, MOST_MARKERS = 2, 15
 
 

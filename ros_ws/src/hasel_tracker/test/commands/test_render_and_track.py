@@ -124,6 +124,19 @@ def test_colour_and_board_from_the_command_line(folder, capsys):
     assert np.abs(raw.sin_theta - truth.sin_theta).max() > 2e-2
 
 
+def test_metres_from_a_known_distance(folder, capsys):
+    """Two points a known distance apart give metres: the tracked markers come back where they were rendered."""
+    assert render(["swim.mp4", *SMALL[:4], "--duration", "0.05"]) == 0
+    between = ["--between", "100,180", "380,180", "--metres", "0.1"]
+    assert calibrate(["distance", "swim.mp4", *between]) == 0
+    assert "0.35714 mm per pixel" in capsys.readouterr().out
+    assert track(["swim.mp4", "-o", "run.csv", "--calibration", "camera.yaml"]) == 0
+    run, truth = read_recording("run.csv"), read_recording("swim_truth.csv")
+    assert run.marker_unit == "m"
+    assert np.abs(run.markers * [2800.0, -2800.0] - truth.markers).max() < 0.3
+    assert calibrate(["distance", "swim.mp4", "--between", "1,1", "1,1", "--metres", "0.1"]) == 1
+
+
 @pytest.mark.parametrize(
     ("command", "arguments", "message"),
     [
