@@ -39,11 +39,12 @@ def _drive(recording: Recording) -> Iterator[tuple[int, str, dict[str, Any]]]:
     columns = [channel.column for channel in recording.channels]
     supply = recording.channels == HASEL_PAIR
     for time, values in zip(*recording.drive(), strict=True):
-        message = _state(values.tolist()) if supply else {"channel": columns, "value": values.tolist()}
+        message = state_message(values.tolist()) if supply else {"channel": columns, "value": values.tolist()}
         yield _nanoseconds(time), STATE if supply else DRIVE, message
 
 
-def _state(voltage: list[float]) -> dict[str, Any]:
+def state_message(voltage: list[float]) -> dict[str, Any]:
+    """A supply's state of which only the commanded voltage [V] is known, as a mapping that McapRecorder writes."""
     return {
         "commanded_voltage": voltage,
         "measured_voltage": UNKNOWN_PAIR,

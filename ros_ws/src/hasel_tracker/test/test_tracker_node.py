@@ -125,9 +125,11 @@ def test_video_becomes_angles_preview_and_diagnostics(observer, start, long_vide
     assert stopped(process).count("Traceback") == 0
     assert process.returncode == 0
     truth = np.array([frame.sin_theta for frame in frames])
-    assert all(message.valid for message in observer.angles)
-    assert max(np.abs(truth - message.sin_theta).min() for message in observer.angles) < 0.01
-    assert max(message.sin_theta for message in observer.angles) > 0.3
+    valid = [message for message in observer.angles if message.valid]
+    assert all(message.doubt for message in observer.angles if not message.valid)
+    assert len(valid) > 0.7 * len(observer.angles)
+    assert max(np.abs(truth - message.sin_theta).min() for message in valid) < 0.01
+    assert max(message.sin_theta for message in valid) > 0.3
     stamps = [message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec for message in observer.angles]
     assert (np.diff(stamps) > 0).all()
     assert abs(stamps[-1] - time.time()) < 60.0

@@ -6,15 +6,13 @@ from pathlib import Path
 import numpy as np
 from hasel_recording import McapRecorder, Recording, RecordingError, RecordingWarning, write_recording
 from hasel_recording.bending_angle_message import bending_angle_message
+from hasel_recording.mcap_writer import state_message
 from hasel_recording.topics import MEASURED, STATE
 
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.offline.drive import Alignment, Drive, until_drive_ends
 from hasel_tracker.offline.tracked_run import TrackedRun
 from hasel_tracker.tracking.marker_set import marker_names
-
-ACTIVE = 2  # SupplyState.ACTIVE
-UNKNOWN = [float("nan")] * 2
 
 
 def write_run(
@@ -79,15 +77,7 @@ def _states(drive: Drive, end_s: float) -> list[tuple[float, str, dict[str, obje
     within = (drive.time_s > 0.0) & (drive.time_s <= end_s)
     times = np.concatenate([[0.0], drive.time_s[within]])
     voltages = np.vstack([drive.at(np.zeros(1)), drive.voltage[within]])
-    return [(float(when), STATE, _state(voltage)) for when, voltage in zip(times, voltages, strict=True)]
-
-
-def _state(voltage: np.ndarray) -> dict[str, object]:
-    return {
-        "commanded_voltage": voltage.tolist(),
-        "measured_voltage": UNKNOWN,
-        "current": UNKNOWN,
-        "mode": ACTIVE,
-        "fault_code": 0,
-        "fault_text": "",
-    }
+    return [
+        (float(when), STATE, state_message(voltage.tolist()))
+        for when, voltage in zip(times, voltages, strict=True)
+    ]
