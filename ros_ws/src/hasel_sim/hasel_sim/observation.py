@@ -16,7 +16,7 @@ class MarkerRows:
 
     def __init__(self, mesh: Mesh, points: np.ndarray, fixed: np.ndarray) -> None:
         count = len(points)
-        self._nodes = np.zeros((count, 8), dtype=int)
+        self.nodes = np.zeros((count, 8), dtype=int)
         self._shape, self._across = np.zeros((count, 8)), np.zeros((count, 8))
         self._offset, self._up = np.zeros((count, 2)), np.zeros((count, 2))
         for index, point in enumerate(points):
@@ -24,7 +24,7 @@ class MarkerRows:
                 self._offset[index], self._up[index] = point, (0.0, 1.0)
             else:
                 nodes, shape, gradient = mesh.point(tuple(point))
-                self._nodes[index], self._shape[index], self._across[index] = nodes, shape, gradient[:, 1]
+                self.nodes[index], self._shape[index], self._across[index] = nodes, shape, gradient[:, 1]
 
     def __call__(self, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Positions [m] and lines across [..., 3, 2] for nodal positions [..., nodes, 2]."""
@@ -36,7 +36,7 @@ class MarkerRows:
 
     def local(self, field: np.ndarray) -> np.ndarray:
         """What of a nodal field [..., nodes, 2] the markers see, [..., 3, 8, 2]: all that a series needs to keep."""
-        return field[..., self._nodes, :]
+        return field[..., self.nodes, :]
 
     def interpolated(self, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Positions [m] and lines across [..., 3, 2] from local nodal positions."""
@@ -53,7 +53,7 @@ class MarkerRows:
     def add_pulled_back(self, where: np.ndarray, across: np.ndarray, out: np.ndarray) -> None:
         """Add to out [nodes, 2] what weights of positions and lines [3, 2] mean for the nodes."""
         share = self._shape[:, :, None] * where[:, None, :] + self._across[:, :, None] * across[:, None, :]
-        np.add.at(out, self._nodes, share)
+        np.add.at(out, self.nodes, share)
 
 
 def sin_theta(markers: np.ndarray) -> np.ndarray:

@@ -4,15 +4,16 @@ import multiprocessing
 import os
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 
 from threadpoolctl import threadpool_limits
 
 from hasel_sim.errors import SimulationError
+from hasel_sim.mechanics.simd import LANES
 from hasel_sim.model import Model
 from hasel_sim.run import Run, Simulation
-from hasel_sim.simulate import simulate
+from hasel_sim.simulate import simulate_many
 
 
 class SerialExecutor(Executor):
@@ -61,6 +62,7 @@ def executor(jobs: int | None = None, scheduler: str | None = None) -> Iterator[
                 "tcp://127.0.0.1:8786: start one with 'dask scheduler'"
             ) from None
         with client, client.get_executor() as pool:
+            pool.workers = max(1, len(client.nthreads()))
             yield pool
         return
     count = worker_count(jobs)
@@ -70,6 +72,7 @@ def executor(jobs: int | None = None, scheduler: str | None = None) -> Iterator[
         return
     context = multiprocessing.get_context("forkserver")
     with ProcessPoolExecutor(count, mp_context=context, initializer=_start_worker) as pool:
+        pool.workers = count
         try:
             yield pool
         except BaseException:
@@ -80,14 +83,34 @@ def executor(jobs: int | None = None, scheduler: str | None = None) -> Iterator[
 def submit_all(
     pool: Executor, model: Model, runs: Sequence[Run], slopes_by: Sequence[str] = ()
 ) -> list["Future[Simulation]"]:
-    """Start the simulation of every run; the futures are in the order of the runs."""
-    return [pool.submit(simulate, model, run, tuple(slopes_by)) for run in runs]
+    """Start the simulation of every run, several side by side in each process; the futures are in the runs' order."""
+    futures: list[Future[Simulation]] = [Future() for _ in runs]
+    for numbers in _batches(runs, getattr(pool, "workers", 1)):
+        cases = [(model, runs[number]) for number in numbers]
+        batch = pool.submit(simulate_many, cases, tuple(slopes_by))
+        batch.add_done_callback(lambda done, numbers=numbers: _hand_on(done, [futures[n] for n in numbers]))
+    return futures
+
+
+def _batches(runs: Sequence[Run], workers: int) -> list[list[int]]:
+    """Numbers of the runs to simulate side by side: of like length, the longest first, and work for every process."""
+    order = sorted(range(len(runs)), key=lambda index: -len(runs[index].time))
+    size = min(LANES[-1], max(1, -(-len(runs) // workers)))
+    return [order[first : first + size] for first in range(0, len(order), size)]
+
+
+def _hand_on(batch: Future, futures: Sequence[Future]) -> None:
+    """Give every run of a batch its own result or error."""
+    failed = CancelledError() if batch.cancelled() else batch.exception()
+    for future, result in zip(futures, [failed] * len(futures) if failed else batch.result(), strict=True):
+        if isinstance(result, BaseException):
+            future.set_exception(result)
+        else:
+            future.set_result(result)
 
 
 def simulate_all(
     pool: Executor, model: Model, runs: Sequence[Run], slopes_by: Sequence[str] = ()
 ) -> list[Simulation]:
     """Simulate every run with one model, longest first so that all workers finish together."""
-    order = sorted(range(len(runs)), key=lambda index: -len(runs[index].time))
-    futures = dict(zip(order, submit_all(pool, model, [runs[i] for i in order], slopes_by), strict=True))
-    return [futures[index].result() for index in range(len(runs))]
+    return [future.result() for future in submit_all(pool, model, runs, slopes_by)]

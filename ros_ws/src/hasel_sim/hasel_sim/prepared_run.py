@@ -7,7 +7,9 @@ from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.schedule import no_drive
 from hasel_sim.effects.base import DriveEffect, EffectParameter, ObservationEffect
 from hasel_sim.errors import SimulationError
+from hasel_sim.mechanics.initial import initial_state
 from hasel_sim.mechanics.motion import DriveState
+from hasel_sim.mechanics.state import State, StateSlopes
 from hasel_sim.mechanics.stepper import Stepper
 from hasel_sim.mechanics.steps import StepPlan, plan_steps
 from hasel_sim.model import Model
@@ -19,12 +21,18 @@ from hasel_sim.run import Run
 class PreparedRun:
     """One run with one model; `names` are the parameters by which it will be differentiated.
 
-    nodes: moved nodes [m] [nodes, 2] in place of the model's mesh. Raises SimulationError for a run without frames
+    nodes: moved nodes [m] [nodes, 2] in place of the model's mesh; like: another run with this very model and these
+    names, whose mesh and system it shares. Raises SimulationError for a run without frames
     after its start, ModelError for an unknown parameter.
     """
 
     def __init__(
-        self, model: Model, run: Run, names: tuple[str, ...] = (), nodes: np.ndarray | None = None
+        self,
+        model: Model,
+        run: Run,
+        names: tuple[str, ...] = (),
+        nodes: np.ndarray | None = None,
+        like: "PreparedRun | None" = None,
     ) -> None:
         self.model, self.run, self.names = model, run, names
         self.parameters = [model.parameter(name) for name in names]
@@ -48,10 +56,15 @@ class PreparedRun:
         self.plan: StepPlan = plan_steps(
             frames, numerics.steps_per_second, numerics.spectral_radius, run.start, frames[-1] + ahead
         )
-        self.builder = Builder(model, nodes)
-        self.stepper = Stepper(self.builder.system(), numerics.tolerance_m)
-        self.rows = marker_rows(model, self.builder.mesh)
-        self._chain = DriveChain(model)
+        if like is None:
+            self.builder = Builder(model, nodes)
+            self.stepper = Stepper(self.builder.system(), numerics.tolerance_m)
+            self.rows = marker_rows(model, self.builder.mesh)
+            self.residual_slopes = [self.builder.residual_slope(name) for name in names]
+            self._chain, self._starts = DriveChain(model), {}
+        else:
+            self.builder, self.stepper, self.rows = like.builder, like.stepper, like.rows
+            self.residual_slopes, self._chain, self._starts = like.residual_slopes, like._chain, like._starts
         self.schedule = (run.schedule or no_drive(model.channels)).of(model.channels, run.name)
 
     @property
@@ -67,7 +80,19 @@ class PreparedRun:
     @property
     def start_drive(self) -> DriveState:
         """Nothing commanded, the muscles as contracted as they always are, at the start."""
-        return DriveState(np.zeros(self.muscles), self._chain.relaxed, self.run.start)
+        return DriveState.single(np.zeros(self.muscles), self._chain.relaxed, self.run.start)
+
+    def start(self, moves: list[int]) -> tuple[State, StateSlopes]:
+        """The first state and its derivatives by the parameters numbered in `moves`; runs alike share one."""
+        drive, shape = self.start_drive, self.held_shape
+        key = (self.load_factor, drive.time[0], tuple(moves))
+        if shape is not None or key not in self._starts:
+            slopes = [self.residual_slopes[column] for column in moves]
+            found = initial_state(self.stepper.system, drive, self.load_factor, slopes, shape)
+            if shape is not None:
+                return found
+            self._starts[key] = found
+        return self._starts[key]
 
     @property
     def muscles(self) -> int:
@@ -78,7 +103,7 @@ class PreparedRun:
         """The drive at the balance of every step, for contractions [steps, muscles]."""
         times = self.plan.balance_times
         return [
-            DriveState(*row)
+            DriveState.single(*row)
             for row in zip(self._chain.at_muscles(self.schedule.at(times)), contraction, times, strict=True)
         ]
 

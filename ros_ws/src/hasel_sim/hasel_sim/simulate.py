@@ -5,8 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from hasel_sim.build import difference_points
-from hasel_sim.mechanics.initial import initial_state
-from hasel_sim.mechanics.residual_slopes import NoSlope
+from hasel_sim.errors import HaselSimError
+from hasel_sim.lanes import Lane, Seen, moving_columns, step_together
+from hasel_sim.mechanics.simd import LANES
 from hasel_sim.model import Model
 from hasel_sim.observation import observe
 from hasel_sim.prepared_run import PreparedRun
@@ -19,45 +20,77 @@ def simulate(model: Model, run: Run, slopes_by: Sequence[str] = (), keep_shapes:
     slopes_by: names of parameters by which sin theta is differentiated, exactly to the tolerance of the steps.
     Raises SimulationError when the motion cannot be followed, ModelError for an unknown parameter.
     """
-    prepared = PreparedRun(model, run, tuple(slopes_by))
-    plan = prepared.plan
-    contraction_slopes = prepared.contraction_slopes(plan.balance_times)
-    residual_slopes = [prepared.builder.residual_slope(name) for name in prepared.names]
-    # columns that move nothing in this run cost nothing
-    moves = [
-        column
-        for column, slope in enumerate(residual_slopes)
-        if not isinstance(slope, NoSlope) or np.any(contraction_slopes[:, column])
-    ]
-    contraction_slopes, moving = contraction_slopes[:, moves], [residual_slopes[n] for n in moves]
-    stepper, rows = prepared.stepper, prepared.rows
-    state, slopes = initial_state(
-        stepper.system, prepared.start_drive, prepared.load_factor, moving, prepared.held_shape
-    )
-    seen, d_seen = [rows.local(state.position)], [rows.local(slopes.position)]
-    shapes = [state.position]
-    drives = prepared.drives(prepared.contraction(plan.balance_times))
-    for step, (drive, c) in enumerate(zip(drives, plan.coefficients, strict=True)):
-        for part in stepper.follow(state, drive, c):
-            if moves:
-                slopes = stepper.step_slopes(part, slopes, moving, contraction_slopes[step])
-            state = part.after
-        d_seen.append(rows.local(slopes.position))
-        seen.append(rows.local(state.position))
-        if keep_shapes:
-            shapes.append(state.position)
-    markers, lines = rows.interpolated(np.array(seen))
-    values = model.effect_values()
-    d_markers, d_lines = rows.interpolated_slopes(np.array(d_seen))
+    (result,) = simulate_many([(model, run)], slopes_by, keep_shapes)
+    if isinstance(result, Exception):
+        raise result
+    return result
+
+
+def simulate_many(
+    cases: Sequence[tuple[Model, Run]], slopes_by: Sequence[str] = (), keep_shapes: bool = False
+) -> list[Simulation | HaselSimError]:
+    """Simulate several runs, models or parameter values; those that share a mesh and effects go side by side.
+
+    Every result is what `simulate` gives, or the error that it raises, in the order of the cases.
+    """
+    results: list[Simulation | HaselSimError | None] = [None] * len(cases)
+    batches: dict[tuple, list[tuple[int, PreparedRun]]] = {}
+    of_model: dict[int, PreparedRun] = {}
+    for index, (model, run) in enumerate(cases):
+        try:
+            prepared = PreparedRun(model, run, tuple(slopes_by), like=of_model.get(id(model)))
+        except HaselSimError as error:
+            results[index] = error
+            continue
+        of_model.setdefault(id(model), prepared)
+        batches.setdefault(_kind(model), []).append((index, prepared))
+    for batch in batches.values():
+        batch.sort(key=lambda case: -len(case[1].plan.coefficients))
+        for first in range(0, len(batch), LANES[-1]):
+            numbers, prepared = zip(*batch[first : first + LANES[-1]], strict=True)
+            for index, result in zip(numbers, _simulate_beside(prepared, keep_shapes), strict=True):
+                results[index] = result
+    return results
+
+
+def _kind(model: Model) -> tuple:
+    """What models must have in common to be simulated side by side; their parameters' values may differ."""
+    effects = tuple(sorted(effect.source or effect.id for effect in model.effects))
+    return model.description.model_dump_json(exclude={"name"}), effects
+
+
+def _simulate_beside(prepared: Sequence[PreparedRun], keep_shapes: bool) -> list[Simulation | HaselSimError]:
+    slopes = [p.contraction_slopes(p.plan.balance_times) for p in prepared]
+    moves = sorted(set().union(*(moving_columns(p, s) for p, s in zip(prepared, slopes, strict=True))))
+    results: list[Simulation | HaselSimError | None] = [None] * len(prepared)
+    lanes: dict[int, Lane] = {}
+    for index, (p, s) in enumerate(zip(prepared, slopes, strict=True)):
+        try:
+            lanes[index] = Lane(p, moves, s)
+        except HaselSimError as error:
+            results[index] = error
+    if lanes:
+        count = next(count for count in LANES if count >= len(lanes))
+        seen, errors = step_together(list(lanes.values()), count, keep_shapes)
+        for place, ((index, lane), error) in enumerate(zip(lanes.items(), errors, strict=True)):
+            results[index] = error or _observed(lane, seen, place, moves)
+    return results
+
+
+def _observed(lane: Lane, seen: Seen, place: int, moves: list[int]) -> Simulation:
+    prepared, plan, until = lane.prepared, lane.plan, len(lane) + 1
+    markers, lines = prepared.rows.interpolated(seen.local[:until, ..., place])
+    d_markers, d_lines = prepared.rows.interpolated_slopes(seen.slopes[:until, ..., place])
     derivatives = _observed_slopes(prepared, markers, lines, d_markers, d_lines, moves)
+    values = prepared.model.effect_values()
     return Simulation(
-        run,
+        prepared.run,
         prepared.at_frames(observe(plan.boundaries, markers, lines, prepared.observed_by, values)),
         prepared.names,
         prepared.at_frames(derivatives),
         prepared.at_frames(markers),
         prepared.at_frames(prepared.contraction(plan.boundaries)),
-        prepared.at_frames(np.array(shapes)) if keep_shapes else None,
+        None if seen.shapes is None else prepared.at_frames(seen.shapes[:until, ..., place]),
     )
 
 

@@ -30,22 +30,22 @@ def gradient(trajectory: Trajectory, weights: np.ndarray, with_outline: bool) ->
     prepared = trajectory.prepared
     names, builder = prepared.names, prepared.builder
     coefficients = len(builder.mesh.outline_slope) if with_outline else 0
-    slopes: list[ResidualSlope] = [builder.residual_slope(name) for name in names]
+    slopes: list[ResidualSlope] = list(prepared.residual_slopes)
     slopes += [builder.outline_slope(index) for index in range(coefficients)]
     seen = [slope_by_observation(prepared, name, trajectory.markers, trajectory.lines) for name in names]
     totals = np.array([weights @ series for series in seen] + [0.0] * coefficients)
     where, across = reverse_observation(trajectory, weights)
 
     steps = trajectory.steps
-    contraction = np.zeros((len(steps), len(prepared.start_drive.contraction)))
+    contraction = np.zeros((len(steps), prepared.muscles))
     current = no_weights(steps[-1][-1].after if steps else trajectory.start)
     for step in range(len(steps) - 1, -1, -1):
-        prepared.rows.add_pulled_back(where[step + 1], across[step + 1], current.position)
+        prepared.rows.add_pulled_back(where[step + 1], across[step + 1], current.position[..., 0])
         for part in reversed(steps[step]):
             current, by_contraction, by_parameter = reverse_step(prepared.stepper, part, current, slopes)
             contraction[step] += by_contraction
             totals += by_parameter
-    prepared.rows.add_pulled_back(where[0], across[0], current.position)
+    prepared.rows.add_pulled_back(where[0], across[0], current.position[..., 0])
     totals += reverse_start(
         prepared.stepper.system,
         trajectory.start,

@@ -31,7 +31,7 @@ def reverse_step(
     position = weights.position
     if weights.branch is not None:
         left, gain = solid.branches.factors(c.step)
-        green = weights.green + np.tensordot(gain, weights.branch, 1)
+        green = weights.green + np.tensordot(gain[:, 0], weights.branch, 1)
         position = position + green_pulled_back(solid, after.position, green)
     reached = c.end_position * position + c.end_velocity * weights.velocity + weights.acceleration
     multiplier = -stepper.factorise(line, c).solve(reached[None], transposed=True)[0]
@@ -48,9 +48,9 @@ def reverse_step(
     if weights.branch is not None:
         history = history_pulled_back(solid, line.F, multiplier)
         kept, gained = solid.branches.factors(c.at)
-        earlier.branch = left[:, None, None, None] * weights.branch + np.multiply.outer(kept, history)
-        earlier.green = -np.tensordot(gain, weights.branch, 1) - gained.sum() * history
-    contraction = np.tensordot(line.by_contraction(drive), multiplier, 2)
+        earlier.branch = left[:, None, None, None] * weights.branch + np.multiply.outer(kept[:, 0], history)
+        earlier.green = -np.tensordot(gain[:, 0], weights.branch, 1) - gained.sum() * history
+    contraction = np.tensordot(line.by_contraction(drive), multiplier, 3)
     by_parameter = _by_parameter(parameters, motion, drive, line, before, c.at, multiplier)
     if weights.branch is not None:
         for column, parameter in enumerate(parameters):
@@ -109,11 +109,11 @@ def _by_branch_parameter(
 ) -> float:
     total = 0.0
     if isinstance(parameter, SolidSlope):
-        for solid, sign in ((parameter.more, 1.0), (parameter.less, -1.0)):
+        for solid, sign in parameter.solids:
             green = solid.green_stress(solid.gradient(after.position))
             branch = solid.branches.advance(before.branch, before.green, green, step)
             share = (weights.green * green).sum() + (weights.branch * branch).sum()
-            total += sign / parameter.width * share
+            total += sign / parameter.width[0] * share
     return total
 
 
@@ -121,7 +121,6 @@ def _by_first_green(parameter: ResidualSlope, state: State, weights: np.ndarray)
     if not isinstance(parameter, SolidSlope):
         return 0.0
     more, less = (
-        (weights * solid.green_stress(solid.gradient(state.position))).sum()
-        for solid in (parameter.more, parameter.less)
+        (weights * solid.green_stress(solid.gradient(state.position))).sum() for solid, _ in parameter.solids
     )
-    return (more - less) / parameter.width
+    return (more - less) / parameter.width[0]

@@ -38,10 +38,10 @@ def follow(prepared: PreparedRun, contraction: np.ndarray) -> Trajectory:
     state, _ = initial_state(
         stepper.system, prepared.start_drive, prepared.load_factor, [], prepared.held_shape
     )
-    positions, steps, start = [state.position], [], state
+    positions, steps, start = [state.position[..., 0]], [], state
     for drive, c in zip(drives, prepared.plan.coefficients, strict=True):
         steps.append(stepper.follow(state, drive, c))
         state = steps[-1][-1].after
-        positions.append(state.position)
+        positions.append(state.position[..., 0])
     markers, lines = prepared.rows(np.array(positions))
     return Trajectory(prepared, start, steps, markers, lines)

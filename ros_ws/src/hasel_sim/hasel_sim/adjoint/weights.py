@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hasel_sim.mechanics import compiled
 from hasel_sim.mechanics.solid import Solid
 from hasel_sim.mechanics.state import State
 
@@ -30,30 +29,32 @@ def no_weights(state: State) -> StateWeights:
 
 
 def green_pulled_back(solid: Solid, position: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """What weights of C : E [elements, points, 3] mean for the positions, [nodes, 2]."""
+    """What weights of C : E [elements, points, 3, 1] mean for the positions, [nodes, 2, 1]."""
     F = solid.gradient(position)
     shear, lame = solid.shear[:, None], solid.linear_lame[:, None]
-    trace = lame * (weights[..., 0] + weights[..., 1])
-    xx, yy = trace + 2 * shear * weights[..., 0], trace + 2 * shear * weights[..., 1]
-    return _scattered(solid, times_symmetric(F, xx, yy, shear * weights[..., 2]))
+    wxx, wyy, wxy = np.moveaxis(weights, -2, 0)
+    trace = lame * (wxx + wyy)
+    P = times_symmetric(F, trace + 2 * shear * wxx, trace + 2 * shear * wyy, shear * wxy)
+    return _scattered(solid, P, len(position))
 
 
 def history_pulled_back(solid: Solid, F: np.ndarray, multiplier: np.ndarray) -> np.ndarray:
-    """What a multiplier of the residual [nodes, 2] means for the branches' history, [elements, points, 3]."""
-    a, b, c, d = np.moveaxis(F, -1, 0)
-    m0, m1, m2, m3 = np.moveaxis(solid.gradient(multiplier), -1, 0)
-    change = np.stack([a * m0 + c * m2, b * m1 + d * m3, a * m1 + c * m3 + b * m0 + d * m2], axis=-1)
-    return solid.areas[..., None] * change
+    """What a multiplier of the residual [nodes, 2, 1] means for the branches' history, [elements, points, 3, 1]."""
+    a, b, c, d = np.moveaxis(F, -2, 0)
+    m0, m1, m2, m3 = np.moveaxis(solid.gradient(multiplier), -2, 0)
+    change = np.stack([a * m0 + c * m2, b * m1 + d * m3, a * m1 + c * m3 + b * m0 + d * m2], axis=-2)
+    return (solid.areas[..., None] * solid.stretch)[:, :, None] * change
 
 
 def times_symmetric(F: np.ndarray, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray) -> np.ndarray:
-    """F S for a symmetric S, [elements, points, 4]."""
-    a, b, c, d = np.moveaxis(F, -1, 0)
-    return np.stack([a * xx + b * xy, a * xy + b * yy, c * xx + d * xy, c * xy + d * yy], axis=-1)
+    """F S for a symmetric S, [elements, points, 4, 1]."""
+    a, b, c, d = np.moveaxis(F, -2, 0)
+    return np.stack([a * xx + b * xy, a * xy + b * yy, c * xx + d * xy, c * xy + d * yy], axis=-2)
 
 
-def _scattered(solid: Solid, weights: np.ndarray) -> np.ndarray:
-    out = np.zeros((int(solid.elements.max()) + 1, 2))
-    ones = np.ones_like(solid.areas)
-    compiled.scatter_stress(weights, solid.elements, solid.gradients, ones, out)
+def _scattered(solid: Solid, weights: np.ndarray, nodes: int) -> np.ndarray:
+    """What weights of F at the Gauss points mean for the nodes: the forces of a stress, per area."""
+    out = np.zeros((nodes, 2, 1))
+    per_area = weights / (solid.areas[..., None] * solid.stretch)[:, :, None]
+    solid.add_force(per_area, out)
     return out

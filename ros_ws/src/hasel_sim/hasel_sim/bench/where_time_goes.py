@@ -10,12 +10,10 @@ from hasel_sim.simulate import simulate
 KERNELS = {
     ("banded_lu.py", "factorise"): "factorise the band matrix",
     ("banded_lu.py", "solve"): "solve with the factors",
-    ("compiled.py", "scatter_matrix"): "assemble the matrix",
-    ("compiled.py", "moduli"): "material moduli",
-    ("compiled.py", "first_piola"): "stresses",
-    ("compiled.py", "deformation"): "deformation gradients",
-    ("compiled.py", "scatter_stress"): "nodal forces",
-    ("compiled.py", "mass_product"): "inertia forces",
+    ("newton.py", "_assembled"): "assemble the matrix",
+    ("newton.py", "_derived"): "material moduli",
+    ("newton.py", "_stressed"): "motion, strains and stresses",
+    ("newton.py", "_out_of_balance"): "nodal and inertia forces",
 }
 REST = "everything else (Python, array copies)"
 

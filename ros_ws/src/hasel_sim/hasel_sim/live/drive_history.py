@@ -32,7 +32,7 @@ class DriveHistory:
     @property
     def still(self) -> DriveState:
         """The muscles before anything is commanded."""
-        return DriveState(np.zeros(self._chain.count), self._chain.relaxed, self._start)
+        return DriveState.single(np.zeros(self._chain.count), self._chain.relaxed, self._start)
 
     def hold(self, time: float, voltage: np.ndarray) -> None:
         """Apply a voltage [V] [channels] from `time` [s] on."""

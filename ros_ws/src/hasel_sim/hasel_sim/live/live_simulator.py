@@ -68,7 +68,7 @@ class LiveSimulator:
     @property
     def position(self) -> np.ndarray:
         """Nodal positions [m] [nodes, 2] now; the reference shape before the first message."""
-        return self.mesh.nodes if self._state is None else self._state.position
+        return self.mesh.nodes if self._state is None else self._state.position[..., 0]
 
     @property
     def markers(self) -> np.ndarray:
@@ -131,7 +131,7 @@ class LiveSimulator:
         self._drive = DriveHistory(self.model, self.history, 0.0)
         self._state, _ = initial_state(self._stepper.system, self._drive.still, self.load_factor, [])
         self._angles = AngleHistory(self.model, self.history)
-        self._see(np.zeros(1), [self._state.position])
+        self._see(np.zeros(1), [self.position])
 
     def _move_to(self, stamp_ns: int) -> float:
         """Step to a stamp [ns] and return by how much [s]."""
@@ -145,9 +145,9 @@ class LiveSimulator:
             voltage, contraction = self._drive.advance(instants)
             positions = []
             for index, coefficients in enumerate(plan.coefficients):
-                drive = DriveState(voltage[index], contraction[index], instants[index])
+                drive = DriveState.single(voltage[index], contraction[index], instants[index])
                 self._state = self._stepper.follow(self._state, drive, coefficients)[-1].after
-                positions.append(self._state.position)
+                positions.append(self.position)
             self._see(plan.boundaries[1:], positions)
             self._time = time
         self._angles.expect(stamp_ns, time)
@@ -163,5 +163,5 @@ def _fit_branches(state: State, stepper: Stepper) -> None:
     count = len(solid.branches)
     if count == (0 if state.branch is None else len(state.branch)):
         return
-    state.branch = np.zeros((count, *solid.areas.shape, 3)) if count else None
+    state.branch = np.zeros((count, *solid.areas.shape, 3, 1)) if count else None
     state.green = solid.green_stress(solid.gradient(state.position)) if count else None

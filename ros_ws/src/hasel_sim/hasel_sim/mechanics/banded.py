@@ -1,64 +1,83 @@
-"""A narrow-banded matrix and its LU factors."""
+"""A narrow-banded matrix per lane and its LU factors."""
 
 import numpy as np
 
 from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics import banded_lu
+from hasel_sim.mechanics.compiled import clear_band
+from hasel_sim.mechanics.simd import lane_tuple
 
 
 class BandMatrix:
-    """Entry (i, j) is stored at [i, diagonal + j - i] of `entries`, so that `factorise` works in place.
+    """Entry (i, j) of each lane is stored at [i, diagonal + j - i] of `entries`, so that `factorise` works in place.
 
     reach: how far right and down of the diagonal anything lies, fill-in included, for every unknown [unknowns]; the
     largest is the half bandwidth. The first `held` unknowns are fixed at zero: solutions leave them out.
     """
 
-    def __init__(self, reach: np.ndarray, held: int = 0) -> None:
+    def __init__(self, reach: np.ndarray, held: int = 0, lanes: int = 1) -> None:
         half_bandwidth, unknowns = int(reach.max()), len(reach)
         self.unknowns, self.half_bandwidth, self.held, self.reach = unknowns, half_bandwidth, held, reach
         self.diagonal = banded_lu.LEFT + half_bandwidth
-        width = banded_lu.LEFT + 2 * half_bandwidth + 1 + banded_lu.RIGHT
-        self.entries = np.zeros((unknowns + half_bandwidth + 8, width))
+        # odd, lest the rows of a column share one set of the cache
+        width = (banded_lu.LEFT + 2 * half_bandwidth + 1 + banded_lu.RIGHT) | 1
+        self.entries = np.zeros((unknowns + half_bandwidth + 8, width, lanes))
+        self._spoilt = False
 
     def clear(self) -> None:
         """Set every entry to zero."""
-        self.entries.fill(0.0)
+        self.wipe()
+        clear_band(self.entries, self.reach, self.diagonal)
+
+    def wipe(self) -> None:
+        """Take out what factors that are no numbers have left beyond the band, where `clear_band` does not look."""
+        if self._spoilt:
+            self.entries.fill(0.0)
+            self._spoilt = False
 
     def factorise(self) -> "BandFactors":
         """LU factors without pivoting; the matrix itself is used up.
 
-        Raises SimulationError when it is singular.
+        Raises SimulationError when the matrix of every lane is singular; `BandFactors.singular` tells which are.
         """
+        lanes = self.entries.shape[2]
         if self.held:
             for row in range(self.held, min(self.held + self.half_bandwidth, self.unknowns)):
                 self.entries[row, : self.diagonal + self.held - row] = 0.0
         self.entries[self.unknowns :, self.diagonal] = 1.0
         inner, free = self.entries[self.held :], self.unknowns - self.held
-        reach = self.reach[self.held :]
-        bad = banded_lu.factorise(inner, free, self.half_bandwidth, reach)
-        if bad >= 0:
+        reach, bad = self.reach[self.held :], np.full(lanes, -1)
+        banded_lu.factorise(inner, free, self.half_bandwidth, reach, bad, lane_tuple(lanes))
+        self._spoilt = bool((bad >= 0).any() or not np.isfinite(inner[free - 1]).all())
+        if (bad >= 0).all():
             raise SimulationError(
-                f"the tangent matrix is singular (unknown {bad}); a body free to move has no static equilibrium, "
+                f"the tangent matrix is singular (unknown {bad[0]}); a body free to move has no static equilibrium, "
                 "and extreme parameters have none either: clamp the body or move the parameters back into range"
             )
-        return BandFactors(inner, reach, self.half_bandwidth, self.held)
+        return BandFactors(inner, reach, self.half_bandwidth, self.held, bad >= 0)
 
 
 class BandFactors:
-    """Solves with the factors of a `BandMatrix`; valid until that matrix is used again."""
+    """Solves with the factors of a `BandMatrix`; valid until that matrix is used again.
 
-    def __init__(self, factors: np.ndarray, reach: np.ndarray, half_bandwidth: int, held: int) -> None:
-        self._factors, self._reach = factors, reach
+    singular: whether each lane's matrix was, [lanes].
+    """
+
+    def __init__(
+        self, factors: np.ndarray, reach: np.ndarray, half_bandwidth: int, held: int, singular: np.ndarray
+    ) -> None:
+        self._factors, self._reach, self.singular = factors, reach, singular
         self._half_bandwidth, self._held = half_bandwidth, held
 
     def solve(self, columns: np.ndarray, transposed: bool = False) -> np.ndarray:
-        """Solution for each right-hand side [columns, nodes, 2]; held unknowns come back as zero."""
-        out = np.zeros_like(columns)
+        """Solution for each right-hand side [columns, nodes, 2, lanes]; held unknowns come back as zero."""
         k, n, held = self._half_bandwidth, len(self._reach), self._held
-        count = len(columns)
-        padded = np.zeros((count, n + k))
-        padded[:, :n] = columns.reshape(count, held + n)[:, held:]
+        count, lanes = len(columns), columns.shape[-1]
+        padded = np.empty((count, n + k, lanes))
+        padded[:, n:] = 0.0
+        padded[:, :n] = columns.reshape(count, held + n, lanes)[:, held:]
         solve = banded_lu.solve_transposed if transposed else banded_lu.solve
-        solve(self._factors, n, k, self._reach, padded)
-        out.reshape(count, held + n)[:, held:] = padded[:, :n]
-        return out
+        solve(self._factors, n, k, self._reach, padded, lane_tuple(lanes))
+        if held:
+            padded = np.concatenate([np.zeros((count, held, lanes)), padded], axis=1)
+        return padded[:, : held + n].reshape(columns.shape)

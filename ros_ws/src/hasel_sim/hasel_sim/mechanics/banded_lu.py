@@ -1,130 +1,147 @@
-"""LU factors of a banded matrix without pivoting, four pivots and four rows at a time.
+"""LU factors of a banded matrix without pivoting, four pivots and four rows at a time, in every lane.
 
 For the nearly symmetric positive definite matrices of a time step no pivoting is needed, which halves the work and
 keeps the band narrow; Newton's method and iterative refinement see to what little accuracy it may cost (Golub and Van
 Loan, Matrix Computations, sections 4.1 and 4.3).
 
 Row i is stored in one line, entry (i, j) at [i, LEFT + k + j - i] with k the half bandwidth, between paddings of zeros
-that spare the loops all questions about the band's ends. Below the n rows come at least k + 8 padding rows.
-Where the body is thin the band is narrower: `reach` says, for every unknown, how far right and down of the diagonal
-anything lies, fill-in included.
+that spare the loops all questions about the band's ends; the lanes are the last axis. Below the n rows come at least
+k + 8 padding rows. Where the body is thin the band is narrower: `reach` says, for every unknown, how far right and down
+of the diagonal anything lies, fill-in included.
 """
 
-import numpy as np
 from numba import njit
+
+from hasel_sim.mechanics.simd import load, of_lane, store, zero
 
 LEFT, RIGHT = 6, 3
 
 
 @njit(inline="always")
-def _multipliers(row, at, u, inverse):
+def _multipliers(A, at, upper, inverse, lane):
     """Multipliers of one row for four pivot rows, stored in the place of what they eliminate."""
-    f0 = row[at] * inverse[0]
-    f1 = (row[at + 1] - f0 * u[0]) * inverse[1]
-    f2 = (row[at + 2] - f0 * u[1] - f1 * u[3]) * inverse[2]
-    f3 = (row[at + 3] - f0 * u[2] - f1 * u[4] - f2 * u[5]) * inverse[3]
-    row[at], row[at + 1], row[at + 2], row[at + 3] = f0, f1, f2, f3
+    lanes = len(lane)
+    f0 = load(A, at, lane) * inverse[0]
+    f1 = (load(A, at + lanes, lane) - f0 * upper[0]) * inverse[1]
+    f2 = (load(A, at + 2 * lanes, lane) - f0 * upper[1] - f1 * upper[3]) * inverse[2]
+    f3 = (load(A, at + 3 * lanes, lane) - f0 * upper[2] - f1 * upper[4] - f2 * upper[5]) * inverse[3]
+    store(A, at, f0)
+    store(A, at + lanes, f1)
+    store(A, at + 2 * lanes, f2)
+    store(A, at + 3 * lanes, f3)
     return f0, f1, f2, f3
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def factorise(A, n, k, reach):
-    """Overwrite A with its factors (unit lower triangle, upper triangle).
+def factorise(A, n, k, reach, bad, lane):
+    """Overwrite A [rows, width, lanes] with its factors (unit lower triangle, upper triangle).
 
-    Returns the number of the first unknown whose pivot vanishes beside the matrix's own diagonal, or -1.
+    bad [lanes] takes the first unknown whose pivot vanishes beside the matrix's own diagonal; it comes in as -1.
     """
-    middle = LEFT + k
-    bad = -1
-    inverse, u, own = np.empty(4), np.empty(6), np.empty(4)
+    lanes, line = len(lane), A.shape[1] * len(lane)
     for first in range(0, n, 4):
-        for p in range(4):
-            own[p] = abs(A[first + p, middle])
-        for p in range(3):
-            pivot_row = A[first + p]
-            for d in range(1, 4 - p):
-                row = A[first + p + d]
-                f = row[middle - d] / pivot_row[middle]
-                row[middle - d] = f
-                for t in range(1, k + 1):
-                    row[middle - d + t] -= f * pivot_row[middle + t]
-        for p in range(4):
-            pivot = A[first + p, middle]
-            if bad < 0 and not abs(pivot) > 1e-13 * own[p]:
-                bad = first + p
-            inverse[p] = 1.0 / pivot
-        u[0], u[1], u[2] = A[first, middle + 1], A[first, middle + 2], A[first, middle + 3]
-        u[3], u[4] = A[first + 1, middle + 1], A[first + 1, middle + 2]
-        u[5] = A[first + 2, middle + 1]
         m = reach[min(first + 3, n - 1)]
-        r0 = A[first, middle + 4 : middle + 4 + m]
-        r1 = A[first + 1, middle + 3 : middle + 3 + m]
-        r2 = A[first + 2, middle + 2 : middle + 2 + m]
-        r3 = A[first + 3, middle + 1 : middle + 1 + m]
+        d0 = first * line + (LEFT + k) * lanes
+        d1, d2, d3 = d0 + line, d0 + 2 * line, d0 + 3 * line
+        own = load(A, d0, lane), load(A, d1, lane), load(A, d2, lane), load(A, d3, lane)
+        for p in range(3):
+            pivot = d0 + p * line
+            inverse = 1.0 / load(A, pivot, lane)
+            for d in range(1, 4 - p):
+                row = pivot + d * (line - lanes)
+                f = load(A, row, lane) * inverse
+                store(A, row, f)
+                for t in range(lanes, (m + 4 - p) * lanes, lanes):
+                    store(A, row + t, load(A, row + t, lane) - f * load(A, pivot + t, lane))
+        pivots = load(A, d0, lane), load(A, d1, lane), load(A, d2, lane), load(A, d3, lane)
+        for n_lane in range(lanes):
+            for p in range(4):
+                pivot_size, own_size = abs(of_lane(pivots[p], n_lane)), abs(of_lane(own[p], n_lane))
+                if bad[n_lane] < 0 and not pivot_size > 1e-13 * own_size:
+                    bad[n_lane] = first + p
+        inverses = 1.0 / pivots[0], 1.0 / pivots[1], 1.0 / pivots[2], 1.0 / pivots[3]
+        upper = (
+            load(A, d0 + lanes, lane),
+            load(A, d0 + 2 * lanes, lane),
+            load(A, d0 + 3 * lanes, lane),
+            load(A, d1 + lanes, lane),
+            load(A, d1 + 2 * lanes, lane),
+            load(A, d2 + lanes, lane),
+        )
+        q0, q1, q2, q3 = d0 + 4 * lanes, d1 + 3 * lanes, d2 + 2 * lanes, d3 + lanes
         for i in range(first + 4, first + 4 + m, 4):
-            at = middle + first - i
-            a0, a1, a2, a3 = _multipliers(A[i], at, u, inverse)
-            b0, b1, b2, b3 = _multipliers(A[i + 1], at - 1, u, inverse)
-            c0, c1, c2, c3 = _multipliers(A[i + 2], at - 2, u, inverse)
-            d0, d1, d2, d3 = _multipliers(A[i + 3], at - 3, u, inverse)
-            s0 = A[i, at + 4 : at + 4 + m]
-            s1 = A[i + 1, at + 3 : at + 3 + m]
-            s2 = A[i + 2, at + 2 : at + 2 + m]
-            s3 = A[i + 3, at + 1 : at + 1 + m]
-            for t in range(m):
-                x, y, z, w = r0[t], r1[t], r2[t], r3[t]
-                s0[t] -= a0 * x + a1 * y + a2 * z + a3 * w
-                s1[t] -= b0 * x + b1 * y + b2 * z + b3 * w
-                s2[t] -= c0 * x + c1 * y + c2 * z + c3 * w
-                s3[t] -= d0 * x + d1 * y + d2 * z + d3 * w
-    return bad
+            s0 = i * line + (LEFT + k + first - i) * lanes
+            s1, s2, s3 = s0 + line - lanes, s0 + 2 * (line - lanes), s0 + 3 * (line - lanes)
+            a0, a1, a2, a3 = _multipliers(A, s0, upper, inverses, lane)
+            b0, b1, b2, b3 = _multipliers(A, s1, upper, inverses, lane)
+            c0, c1, c2, c3 = _multipliers(A, s2, upper, inverses, lane)
+            e0, e1, e2, e3 = _multipliers(A, s3, upper, inverses, lane)
+            s0, s1, s2, s3 = s0 + 4 * lanes, s1 + 4 * lanes, s2 + 4 * lanes, s3 + 4 * lanes
+            for t in range(0, m * lanes, lanes):
+                x, y = load(A, q0 + t, lane), load(A, q1 + t, lane)
+                z, w = load(A, q2 + t, lane), load(A, q3 + t, lane)
+                store(A, s0 + t, load(A, s0 + t, lane) - (a0 * x + a1 * y + a2 * z + a3 * w))
+                store(A, s1 + t, load(A, s1 + t, lane) - (b0 * x + b1 * y + b2 * z + b3 * w))
+                store(A, s2 + t, load(A, s2 + t, lane) - (c0 * x + c1 * y + c2 * z + c3 * w))
+                store(A, s3 + t, load(A, s3 + t, lane) - (e0 * x + e1 * y + e2 * z + e3 * w))
 
 
-@njit(cache=True, fastmath=True)
-def solve(A, n, k, reach, x):
-    """Solve in place for every right-hand side in x [columns, n + k], which ends with k zeros."""
-    middle = LEFT + k
-    columns = x.shape[0]
+@njit(inline="always")
+def _product(A, row, x, place, count, lane):
+    """Sum of `count` entries of a row times as many of x, in four sums so that none waits for the last."""
+    lanes = len(lane)
+    s0, s1, s2, s3 = zero(lane), zero(lane), zero(lane), zero(lane)
+    whole = count - count % 4
+    for t in range(0, whole * lanes, 4 * lanes):
+        s0 = s0 + load(A, row + t, lane) * load(x, place + t, lane)
+        s1 = s1 + load(A, row + t + lanes, lane) * load(x, place + t + lanes, lane)
+        s2 = s2 + load(A, row + t + 2 * lanes, lane) * load(x, place + t + 2 * lanes, lane)
+        s3 = s3 + load(A, row + t + 3 * lanes, lane) * load(x, place + t + 3 * lanes, lane)
+    for t in range(whole * lanes, count * lanes, lanes):
+        s0 = s0 + load(A, row + t, lane) * load(x, place + t, lane)
+    return (s0 + s1) + (s2 + s3)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def solve(A, n, k, reach, x, lane):
+    """Solve in place for every right-hand side in x [columns, n + k, lanes], which ends with k zeros."""
+    lanes, line, middle = len(lane), A.shape[1] * len(lane), LEFT + k
+    columns, height = x.shape[0], x.shape[1] * len(lane)
     first = 0
     for i in range(n):
         while first + reach[first] < i:
             first += 1
-        lower = A[i, middle - (i - first) : middle]
+        lower = i * line + (middle - i + first) * lanes
         for c in range(columns):
-            before = x[c, first:i]
-            total = 0.0
-            for t in range(i - first):
-                total += lower[t] * before[t]
-            x[c, i] -= total
+            total = _product(A, lower, x, c * height + first * lanes, i - first, lane)
+            at = c * height + i * lanes
+            store(x, at, load(x, at, lane) - total)
     for i in range(n - 1, -1, -1):
-        m = reach[i]
-        upper = A[i, middle + 1 : middle + 1 + m]
-        inverse = 1.0 / A[i, middle]
+        upper = i * line + (middle + 1) * lanes
+        inverse = 1.0 / load(A, i * line + middle * lanes, lane)
         for c in range(columns):
-            behind = x[c, i + 1 : i + 1 + m]
-            total = 0.0
-            for t in range(m):
-                total += upper[t] * behind[t]
-            x[c, i] = (x[c, i] - total) * inverse
+            at = c * height + i * lanes
+            total = _product(A, upper, x, at + lanes, reach[i], lane)
+            store(x, at, (load(x, at, lane) - total) * inverse)
 
 
-@njit(cache=True, fastmath=True)
-def solve_transposed(A, n, k, reach, x):
+@njit(cache=True, fastmath=True, error_model="numpy")
+def solve_transposed(A, n, k, reach, x, lane):
     """The same with the transposed matrix."""
-    middle = LEFT + k
+    lanes, line, middle = len(lane), A.shape[1] * len(lane), LEFT + k
+    columns, height = x.shape[0], x.shape[1] * len(lane)
     for i in range(n):
-        m = reach[i]
-        upper = A[i, middle + 1 : middle + 1 + m]
-        for c in range(x.shape[0]):
-            value = x[c, i] / A[i, middle]
-            x[c, i] = value
-            behind = x[c, i + 1 : i + 1 + m]
-            for t in range(m):
-                behind[t] -= upper[t] * value
+        diagonal = i * line + middle * lanes
+        for c in range(columns):
+            at = c * height + i * lanes
+            value = load(x, at, lane) / load(A, diagonal, lane)
+            store(x, at, value)
+            for t in range(lanes, (reach[i] + 1) * lanes, lanes):
+                store(x, at + t, load(x, at + t, lane) - load(A, diagonal + t, lane) * value)
     for i in range(n - 1, -1, -1):
-        m = min(i, k)
-        lower = A[i, middle - m : middle]
-        for c in range(x.shape[0]):
-            value = x[c, i]
-            before = x[c, i - m : i]
-            for t in range(m):
-                before[t] -= lower[t] * value
+        diagonal = i * line + middle * lanes
+        for c in range(columns):
+            at = c * height + i * lanes
+            value = load(x, at, lane)
+            for t in range(lanes, (min(i, k) + 1) * lanes, lanes):
+                store(x, at - t, load(x, at - t, lane) - load(A, diagonal - t, lane) * value)

@@ -1,8 +1,10 @@
 """Compiled loops over elements and Gauss points: internal force, moduli, banded assembly, directional derivatives.
 
-Indices of a deformation gradient run 00, 01, 10, 11 (row-major). Coefficients per element, in this order:
-shear modulus and Lamé's first parameter of the neo-Hookean solid [Pa], the same two of the viscous stress [Pa s], the
-same two of the elastic stress that internal branches add within a step [Pa], fibre stiffness [Pa].
+Every array has the lanes as its last axis (see `simd.py`) but those that describe the mesh: elements, gradients and
+areas. Indices of a deformation gradient run 00, 01, 10, 11 (row-major). `stretch` is that of the stress-free shape
+along the body: gradients by x shrink with it, areas grow. Coefficients per element, in this order: shear modulus and
+Lamé's first parameter of the neo-Hookean solid [Pa], the same two of the viscous stress [Pa s], the same two of the
+elastic stress that internal branches add within a step [Pa], fibre stiffness [Pa].
 
 Neo-Hookean, W = mu/2 (I1 - 2 - 2 ln J) + lambda/2 (ln J)^2: P = mu (F - F^-T) + lambda ln J F^-T (Bonet and Wood,
 Nonlinear Continuum Mechanics for Finite Element Analysis, section 6.4). Kelvin-Voigt:
@@ -14,28 +16,30 @@ A trial shape with an element of no area gives infinities, which end that trial,
 import numpy as np
 from numba import njit
 
+from hasel_sim.mechanics.simd import load, logarithm, of_lane, square_root, store, with_lane, zero
+
 COEFFICIENTS = 7
 SHEAR, LAME, VISCOUS_SHEAR, VISCOUS_LAME, BRANCH_SHEAR, BRANCH_LAME, FIBRE = range(COEFFICIENTS)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def deformation(field, elements, gradients, out):
-    """Gradient of a nodal field [nodes, 2] at every Gauss point, into out [elements, points, 4]."""
+def deformation(field, elements, gradients, stretch, out, lane):
+    """Gradient of a nodal field [nodes, 2, lanes] at every Gauss point, into out [elements, points, 4, lanes]."""
+    lanes, points = len(lane), gradients.shape[1]
     for e in range(elements.shape[0]):
-        for g in range(gradients.shape[1]):
-            f00 = f01 = f10 = f11 = 0.0
+        for g in range(points):
+            point = e * points + g
+            f00, f01, f10, f11 = zero(lane), zero(lane), zero(lane), zero(lane)
             for a in range(8):
-                node = elements[e, a]
-                x, y = field[node, 0], field[node, 1]
+                at = 2 * lanes * elements[e, a]
+                x, y = load(field, at, lane), load(field, at + lanes, lane)
                 dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
-                f00 += x * dx
-                f01 += x * dy
-                f10 += y * dx
-                f11 += y * dy
-            out[e, g, 0] = f00
-            out[e, g, 1] = f01
-            out[e, g, 2] = f10
-            out[e, g, 3] = f11
+                f00, f01, f10, f11 = f00 + x * dx, f01 + x * dy, f10 + y * dx, f11 + y * dy
+            along, at = load(stretch, point * lanes, lane), 4 * lanes * point
+            store(out, at, f00 / along)
+            store(out, at + lanes, f01)
+            store(out, at + 2 * lanes, f10 / along)
+            store(out, at + 3 * lanes, f11)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -50,331 +54,459 @@ def through_thickness_stretch(shear, lame, area_ratio):
     return f
 
 
+@njit(inline="always")
+def _thickness(shear, lame, area_ratio, lane):
+    """The same in every lane."""
+    out = zero(lane)
+    for n in range(len(lane)):
+        out = with_lane(
+            out, n, through_thickness_stretch(of_lane(shear, n), of_lane(lame, n), of_lane(area_ratio, n))
+        )
+    return out
+
+
+@njit(inline="always")
+def _four(array, at, lane):
+    lanes = len(lane)
+    return (
+        load(array, at, lane),
+        load(array, at + lanes, lane),
+        load(array, at + 2 * lanes, lane),
+        load(array, at + 3 * lanes, lane),
+    )
+
+
+@njit(inline="always")
+def _three(array, at, lane):
+    lanes = len(lane)
+    return load(array, at, lane), load(array, at + lanes, lane), load(array, at + 2 * lanes, lane)
+
+
+@njit(inline="always")
+def _add(array, at, value, lane):
+    store(array, at, load(array, at, lane) + value)
+
+
 @njit(cache=True, fastmath=True, error_model="numpy")
-def first_piola(F, rate, coefficients, muscle, contraction, history, plane_stress, P):
+def first_piola(F, rate, coefficients, muscle, contraction, history, plane_stress, P, lane):
     """First Piola stress [Pa] at every Gauss point.
 
-    F, rate: deformation gradient and its rate, P: result, all [elements, points, 4]; contraction: [1 + muscles] with 0
-    first; history: second Piola stress of the internal branches from earlier steps [elements, points, 3] (xx, yy, xy).
+    F, rate: deformation gradient and its rate, P: result, all [elements, points, 4, lanes]; contraction:
+    [1 + muscles, lanes] with 0 first; history: second Piola stress of the internal branches from earlier steps
+    [elements, points, 3, lanes] (xx, yy, xy).
     """
+    lanes, points = len(lane), F.shape[1]
     for e in range(F.shape[0]):
-        mu, lam = coefficients[e, 0], coefficients[e, 1]
-        muv, lamv = coefficients[e, 2], coefficients[e, 3]
-        mub, lamb = coefficients[e, 4], coefficients[e, 5]
-        w = coefficients[e, 6]
-        rest = 1.0 - contraction[muscle[e]]
-        for g in range(F.shape[1]):
-            a, b, c, d = F[e, g, 0], F[e, g, 1], F[e, g, 2], F[e, g, 3]
-            ra, rb, rc, rd = rate[e, g, 0], rate[e, g, 1], rate[e, g, 2], rate[e, g, 3]
+        own = COEFFICIENTS * lanes * e
+        mu, lam, muv, lamv = _four(coefficients, own, lane)
+        mub, lamb, w = _three(coefficients, own + 4 * lanes, lane)
+        rest = 1.0 - load(contraction, muscle[e] * lanes, lane)
+        for g in range(points):
+            at = 4 * lanes * (e * points + g)
+            a, b, c, d = _four(F, at, lane)
+            ra, rb, rc, rd = _four(rate, at, lane)
+            hxx, hyy, hxy = _three(history, 3 * lanes * (e * points + g), lane)
             J = a * d - b * c
             volume = J
             if plane_stress:
-                volume = J * through_thickness_stretch(mu, lam, J)
-            q = (lam * np.log(volume) - mu) / J
+                volume = J * _thickness(mu, lam, J, lane)
+            q = (lam * logarithm(volume) - mu) / J
             exx, eyy, exy = a * ra + c * rc, b * rb + d * rd, 0.5 * (a * rb + b * ra + c * rd + d * rc)
-            sxx = lamv * (exx + eyy) + 2.0 * muv * exx + history[e, g, 0]
-            syy = lamv * (exx + eyy) + 2.0 * muv * eyy + history[e, g, 1]
-            sxy = 2.0 * muv * exy + history[e, g, 2]
-            if mub != 0.0:
-                gxx, gyy = 0.5 * (a * a + c * c - 1.0), 0.5 * (b * b + d * d - 1.0)
-                sxx += lamb * (gxx + gyy) + 2.0 * mub * gxx
-                syy += lamb * (gxx + gyy) + 2.0 * mub * gyy
-                sxy += mub * (a * b + c * d)
+            gxx, gyy = 0.5 * (a * a + c * c - 1.0), 0.5 * (b * b + d * d - 1.0)
+            trace = lamv * (exx + eyy) + lamb * (gxx + gyy)
+            sxx = trace + 2.0 * (muv * exx + mub * gxx) + hxx
+            syy = trace + 2.0 * (muv * eyy + mub * gyy) + hyy
+            sxy = 2.0 * muv * exy + mub * (a * b + c * d) + hxy
             p0 = mu * a + q * d + a * sxx + b * sxy
-            p1 = mu * b - q * c + a * sxy + b * syy
             p2 = mu * c - q * b + c * sxx + d * sxy
-            p3 = mu * d + q * a + c * sxy + d * syy
-            if w != 0.0:
-                tension = w * (1.0 - rest / np.sqrt(a * a + c * c))
-                p0 += tension * a
-                p2 += tension * c
-            P[e, g, 0] = p0
-            P[e, g, 1] = p1
-            P[e, g, 2] = p2
-            P[e, g, 3] = p3
+            if muscle[e] != 0:
+                tension = w * (1.0 - rest / square_root(a * a + c * c))
+                p0, p2 = p0 + tension * a, p2 + tension * c
+            store(P, at, p0)
+            store(P, at + lanes, mu * b - q * c + a * sxy + b * syy)
+            store(P, at + 2 * lanes, p2)
+            store(P, at + 3 * lanes, mu * d + q * a + c * sxy + d * syy)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def moduli(F, rate, coefficients, muscle, contraction, history, plane_stress, elastic, viscous):
-    """Derivatives of the first Piola stress by F (elastic) and by its rate (viscous), [elements, points, 4, 4]."""
-    inverse = np.empty((2, 2))
-    deform = np.empty((2, 2))
-    speed = np.empty((2, 2))
-    S = np.empty((2, 2))
+def moduli(F, rate, coefficients, muscle, contraction, history, plane_stress, elastic, viscous, lane):
+    """Derivatives of the first Piola stress by F (elastic) and its rate (viscous), [elements, points, 4, 4, lanes]."""
+    lanes, points = len(lane), F.shape[1]
+    none = zero(lane)
     for e in range(F.shape[0]):
-        mu, lam = coefficients[e, 0], coefficients[e, 1]
-        muv, lamv = coefficients[e, 2], coefficients[e, 3]
-        mub, lamb = coefficients[e, 4], coefficients[e, 5]
-        w = coefficients[e, 6]
-        rest = 1.0 - contraction[muscle[e]]
-        for g in range(F.shape[1]):
-            a, b, c, d = F[e, g, 0], F[e, g, 1], F[e, g, 2], F[e, g, 3]
-            ra, rb, rc, rd = rate[e, g, 0], rate[e, g, 1], rate[e, g, 2], rate[e, g, 3]
-            deform[0, 0], deform[0, 1], deform[1, 0], deform[1, 1] = a, b, c, d
-            speed[0, 0], speed[0, 1], speed[1, 0], speed[1, 1] = ra, rb, rc, rd
+        own = COEFFICIENTS * lanes * e
+        mu, lam, muv, lamv = _four(coefficients, own, lane)
+        mub, lamb, w = _three(coefficients, own + 4 * lanes, lane)
+        rest = 1.0 - load(contraction, muscle[e] * lanes, lane)
+        for g in range(points):
+            point = e * points + g
+            at = 4 * lanes * point
+            a, b, c, d = _four(F, at, lane)
+            ra, rb, rc, rd = _four(rate, at, lane)
+            S00, S11, S01 = _three(history, 3 * lanes * point, lane)
+            deform, speed = ((a, b), (c, d)), ((ra, rb), (rc, rd))
             J = a * d - b * c
-            inverse[0, 0], inverse[0, 1], inverse[1, 0], inverse[1, 1] = d / J, -b / J, -c / J, a / J
-            log_volume, bulk = np.log(J), lam
+            inverse = ((d / J, (0.0 - b) / J), ((0.0 - c) / J, a / J))
+            log_volume, bulk = none, lam
             if plane_stress:
-                f = through_thickness_stretch(mu, lam, J)
-                log_volume, bulk = np.log(J * f), lam * 2.0 * mu * f * f / (2.0 * mu * f * f + lam)
+                f = _thickness(mu, lam, J, lane)
+                log_volume, bulk = logarithm(J * f), lam * 2.0 * mu * f * f / (2.0 * mu * f * f + lam)
+            else:
+                log_volume = logarithm(J)
             exx, eyy, exy = a * ra + c * rc, b * rb + d * rd, 0.5 * (a * rb + b * ra + c * rd + d * rc)
             gxx, gyy = 0.5 * (a * a + c * c - 1.0), 0.5 * (b * b + d * d - 1.0)
-            S[0, 0] = (
-                lamv * (exx + eyy) + 2.0 * muv * exx + lamb * (gxx + gyy) + 2.0 * mub * gxx + history[e, g, 0]
-            )
-            S[1, 1] = (
-                lamv * (exx + eyy) + 2.0 * muv * eyy + lamb * (gxx + gyy) + 2.0 * mub * gyy + history[e, g, 1]
-            )
-            S[0, 1] = 2.0 * muv * exy + mub * (a * b + c * d) + history[e, g, 2]
-            S[1, 0] = S[0, 1]
+            trace = lamv * (exx + eyy) + lamb * (gxx + gyy)
+            S00 = S00 + trace + 2.0 * (muv * exx + mub * gxx)
+            S11 = S11 + trace + 2.0 * (muv * eyy + mub * gyy)
+            S01 = S01 + 2.0 * muv * exy + mub * (a * b + c * d)
+            S = ((S00, S01), (S01, S11))
             pull = mu - lam * log_volume
             for k in range(2):
                 for L in range(2):
                     # variation of F (and of its rate) by the unit tensor e_k (x) e_L
-                    dxx = speed[k, 0] if L == 0 else 0.0
-                    dyy = speed[k, 1] if L == 1 else 0.0
-                    dxy = 0.5 * speed[k, 1 - L]
-                    hxx = deform[k, 0] if L == 0 else 0.0
-                    hyy = deform[k, 1] if L == 1 else 0.0
-                    hxy = 0.5 * deform[k, 1 - L]
-                    exx_ = lamv * (dxx + dyy) + 2.0 * muv * dxx + lamb * (hxx + hyy) + 2.0 * mub * hxx
-                    eyy_ = lamv * (dxx + dyy) + 2.0 * muv * dyy + lamb * (hxx + hyy) + 2.0 * mub * hyy
-                    exy_ = 2.0 * muv * dxy + 2.0 * mub * hxy
+                    dxx, dyy, dxy = none, none, 0.5 * speed[k][1 - L]
+                    hxx, hyy, hxy = none, none, 0.5 * deform[k][1 - L]
+                    if L == 0:
+                        dxx, hxx = speed[k][0], deform[k][0]
+                    else:
+                        dyy, hyy = speed[k][1], deform[k][1]
+                    both = lamv * (dxx + dyy) + lamb * (hxx + hyy)
+                    txx = both + 2.0 * (muv * dxx + mub * hxx)
+                    tyy = both + 2.0 * (muv * dyy + mub * hyy)
+                    txy = 2.0 * (muv * dxy + mub * hxy)
                     vxx = lamv * (hxx + hyy) + 2.0 * muv * hxx
                     vyy = lamv * (hxx + hyy) + 2.0 * muv * hyy
                     vxy = 2.0 * muv * hxy
-                    column = 2 * k + L
                     for i in range(2):
-                        fx, fy = deform[i, 0], deform[i, 1]
-                        viscous[e, g, 2 * i, column] = fx * vxx + fy * vxy
-                        viscous[e, g, 2 * i + 1, column] = fx * vxy + fy * vyy
+                        fx, fy = deform[i][0], deform[i][1]
+                        here = (16 * point + 8 * i + 2 * k + L) * lanes
+                        store(viscous, here, fx * vxx + fy * vxy)
+                        store(viscous, here + 4 * lanes, fx * vxy + fy * vyy)
                         for j in range(2):
                             value = (
-                                pull * inverse[j, k] * inverse[L, i] + bulk * inverse[j, i] * inverse[L, k]
+                                pull * inverse[j][k] * inverse[L][i] + bulk * inverse[j][i] * inverse[L][k]
                             )
                             if i == k:
-                                value += S[L, j]
+                                value = value + S[L][j]
                                 if j == L:
-                                    value += mu
-                            elastic[e, g, 2 * i + j, column] = value
-                        elastic[e, g, 2 * i, column] += fx * exx_ + fy * exy_
-                        elastic[e, g, 2 * i + 1, column] += fx * exy_ + fy * eyy_
-            if w != 0.0:
-                stretch = np.sqrt(a * a + c * c)
-                tension, slope = w * (1.0 - rest / stretch), w * rest / stretch**3
-                elastic[e, g, 0, 0] += tension + slope * a * a
-                elastic[e, g, 0, 2] += slope * a * c
-                elastic[e, g, 2, 0] += slope * a * c
-                elastic[e, g, 2, 2] += tension + slope * c * c
+                                    value = value + mu
+                            if j == 0:
+                                value = value + fx * txx + fy * txy
+                            else:
+                                value = value + fx * txy + fy * tyy
+                            store(elastic, here + 4 * j * lanes, value)
+            if muscle[e] != 0:
+                stretch = square_root(a * a + c * c)
+                tension = w * (1.0 - rest / stretch)
+                slope = w * rest / (stretch * stretch * stretch)
+                here = 16 * point * lanes
+                _add(elastic, here, tension + slope * a * a, lane)
+                _add(elastic, here + 2 * lanes, slope * a * c, lane)
+                _add(elastic, here + 8 * lanes, slope * a * c, lane)
+                _add(elastic, here + 10 * lanes, tension + slope * c * c, lane)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def scatter_stress(P, elements, gradients, areas, force):
-    """Add the nodal forces of a stress field [elements, points, 4] to force [nodes, 2]."""
-    local = np.empty((8, 2))
+def scatter_stress(P, elements, gradients, areas, stretch, force, lane):
+    """Add the nodal forces of a stress field [elements, points, 4, lanes] to force [nodes, 2, lanes]."""
+    lanes, points = len(lane), areas.shape[1]
+    local = np.empty(16 * lanes)
     for e in range(elements.shape[0]):
         local[:] = 0.0
-        for g in range(P.shape[1]):
+        for g in range(points):
+            point = e * points + g
+            p0, p1, p2, p3 = _four(P, 4 * lanes * point, lane)
             s = areas[e, g]
-            p0, p1, p2, p3 = s * P[e, g, 0], s * P[e, g, 1], s * P[e, g, 2], s * P[e, g, 3]
+            wide = s * load(stretch, point * lanes, lane)
+            p0, p1, p2, p3 = s * p0, wide * p1, s * p2, wide * p3
             for a in range(8):
                 dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
-                local[a, 0] += p0 * dx + p1 * dy
-                local[a, 1] += p2 * dx + p3 * dy
+                _add(local, 2 * a * lanes, p0 * dx + p1 * dy, lane)
+                _add(local, (2 * a + 1) * lanes, p2 * dx + p3 * dy, lane)
         for a in range(8):
-            force[elements[e, a], 0] += local[a, 0]
-            force[elements[e, a], 1] += local[a, 1]
+            at = 2 * lanes * elements[e, a]
+            _add(force, at, load(local, 2 * a * lanes, lane), lane)
+            _add(force, at + lanes, load(local, (2 * a + 1) * lanes, lane), lane)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def scatter_matrix(elastic, viscous, masses, weights, elements, gradients, areas, band, diagonal):
+def scatter_matrix(
+    elastic, viscous, masses, weights, elements, gradients, areas, stretch, band, diagonal, lane
+):
     """Add weights[0] K + weights[1] C + weights[2] M to a band matrix, entry (i, j) at [i, diagonal + j - i].
 
-    elastic, viscous: moduli [elements, points, 4, 4]; masses: [elements, 8, 8].
+    elastic, viscous: moduli [elements, points, 4, 4, lanes]; masses: [elements, 8, 8, lanes]; weights: [3, lanes].
     """
-    local = np.empty((16, 16))
-    half = np.empty((4, 16))
-    by_position, by_velocity, by_acceleration = weights[0], weights[1], weights[2]
+    lanes, points, width = len(lane), areas.shape[1], band.shape[1]
+    half = np.empty(64 * points * lanes)
+    by_position, by_velocity, by_acceleration = _three(weights, 0, lane)
+    none = zero(lane)
     for e in range(elements.shape[0]):
-        for a in range(8):
-            for b in range(8):
-                mass = by_acceleration * masses[e, a, b]
-                local[2 * a, 2 * b], local[2 * a, 2 * b + 1] = mass, 0.0
-                local[2 * a + 1, 2 * b], local[2 * a + 1, 2 * b + 1] = 0.0, mass
-        for g in range(elastic.shape[1]):
-            s = by_position * areas[e, g]
-            v = by_velocity * areas[e, g]
+        for g in range(points):
+            point = e * points + g
+            along = load(stretch, point * lanes, lane)
             for row in range(4):
-                m0 = s * elastic[e, g, row, 0] + v * viscous[e, g, row, 0]
-                m1 = s * elastic[e, g, row, 1] + v * viscous[e, g, row, 1]
-                m2 = s * elastic[e, g, row, 2] + v * viscous[e, g, row, 2]
-                m3 = s * elastic[e, g, row, 3] + v * viscous[e, g, row, 3]
+                at = (16 * point + 4 * row) * lanes
+                k0, k1, k2, k3 = _four(elastic, at, lane)
+                v0, v1, v2, v3 = _four(viscous, at, lane)
+                s = areas[e, g] / along if row % 2 == 0 else areas[e, g] + none
+                m0, m1 = by_position * k0 + by_velocity * v0, along * (by_position * k1 + by_velocity * v1)
+                m2, m3 = by_position * k2 + by_velocity * v2, along * (by_position * k3 + by_velocity * v3)
+                m0, m1, m2, m3 = s * m0, s * m1, s * m2, s * m3
                 for b in range(8):
                     dx, dy = gradients[e, g, b, 0], gradients[e, g, b, 1]
-                    half[row, 2 * b] = m0 * dx + m1 * dy
-                    half[row, 2 * b + 1] = m2 * dx + m3 * dy
-            for a in range(8):
-                dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
-                for column in range(16):
-                    local[2 * a, column] += dx * half[0, column] + dy * half[1, column]
-                    local[2 * a + 1, column] += dx * half[2, column] + dy * half[3, column]
-        for a in range(8):
-            for i in range(2):
-                row = 2 * elements[e, a] + i
-                for b in range(8):
-                    j = diagonal + 2 * elements[e, b] - row
-                    band[row, j] += local[2 * a + i, 2 * b]
-                    band[row, j + 1] += local[2 * a + i, 2 * b + 1]
+                    at = (2 * b * points + g) * 4 * lanes + row * lanes
+                    store(half, at, m0 * dx + m1 * dy)
+                    store(half, at + 4 * points * lanes, m2 * dx + m3 * dy)
+        for column in range(16):
+            b, j = column // 2, column % 2
+            for a in range(0, 8, 2):
+                at = (64 * e + 8 * a + b) * lanes
+                x0, x1 = (
+                    by_acceleration * load(masses, at, lane),
+                    by_acceleration * load(masses, at + 8 * lanes, lane),
+                )
+                y0, y1 = none, none
+                if j == 1:
+                    x0, x1, y0, y1 = none, none, x0, x1
+                for g in range(points):
+                    h0, h1, h2, h3 = _four(half, (column * points + g) * 4 * lanes, lane)
+                    dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
+                    x0, y0 = x0 + dx * h0 + dy * h1, y0 + dx * h2 + dy * h3
+                    dx, dy = gradients[e, g, a + 1, 0], gradients[e, g, a + 1, 1]
+                    x1, y1 = x1 + dx * h0 + dy * h1, y1 + dx * h2 + dy * h3
+                row, to = 2 * elements[e, a], 2 * elements[e, b] + j
+                at = (row * (width - 1) + diagonal + to) * lanes
+                _add(band, at, x0, lane)
+                _add(band, at + (width - 1) * lanes, y0, lane)
+                row = 2 * elements[e, a + 1]
+                at = (row * (width - 1) + diagonal + to) * lanes
+                _add(band, at, x1, lane)
+                _add(band, at + (width - 1) * lanes, y1, lane)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def scatter_directions(moduli, stress, elements, gradients, areas, directions, force):
-    """Add to force [columns, nodes, 2] the change of the nodal forces along many directions at once.
+def scatter_directions(moduli, stress, elements, gradients, areas, stretch, directions, force, lane):
+    """Add to force [columns, nodes, 2, lanes] the change of the nodal forces along many directions at once.
 
-    moduli: [elements, points, 4, 4], by F or by its rate; directions: of the nodal positions or velocities
-    [columns, nodes, 2]; stress: change of the first Piola stress that does not come from them,
-    [columns, elements, points, 4], or an empty first axis for none.
+    moduli: [elements, points, 4, 4, lanes], by F or by its rate; directions: of the nodal positions or velocities
+    [columns, nodes, 2, lanes]; stress: change of the first Piola stress that does not come from them,
+    [columns, elements, points, 4, lanes], or an empty first axis for none.
     """
-    local, here = np.empty((8, 2)), np.empty((8, 2))
-    for e in range(elements.shape[0]):
-        for c in range(directions.shape[0]):
+    lanes, points, count = len(lane), areas.shape[1], elements.shape[0]
+    nodes = directions.shape[1]
+    local, here = np.empty(16 * lanes), np.empty(16 * lanes)
+    for e in range(count):
+        for column in range(directions.shape[0]):
             local[:] = 0.0
             for a in range(8):
-                here[a, 0], here[a, 1] = directions[c, elements[e, a], 0], directions[c, elements[e, a], 1]
-            for g in range(moduli.shape[1]):
-                d0 = d1 = d2 = d3 = 0.0
+                at = 2 * lanes * (column * nodes + elements[e, a])
+                store(here, 2 * a * lanes, load(directions, at, lane))
+                store(here, (2 * a + 1) * lanes, load(directions, at + lanes, lane))
+            for g in range(points):
+                point = e * points + g
+                d0, d1, d2, d3 = zero(lane), zero(lane), zero(lane), zero(lane)
                 for a in range(8):
                     dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
-                    d0 += here[a, 0] * dx
-                    d1 += here[a, 0] * dy
-                    d2 += here[a, 1] * dx
-                    d3 += here[a, 1] * dy
-                A, s = moduli[e, g], areas[e, g]
-                p0 = A[0, 0] * d0 + A[0, 1] * d1 + A[0, 2] * d2 + A[0, 3] * d3
-                p1 = A[1, 0] * d0 + A[1, 1] * d1 + A[1, 2] * d2 + A[1, 3] * d3
-                p2 = A[2, 0] * d0 + A[2, 1] * d1 + A[2, 2] * d2 + A[2, 3] * d3
-                p3 = A[3, 0] * d0 + A[3, 1] * d1 + A[3, 2] * d2 + A[3, 3] * d3
+                    x, y = load(here, 2 * a * lanes, lane), load(here, (2 * a + 1) * lanes, lane)
+                    d0, d1, d2, d3 = d0 + x * dx, d1 + x * dy, d2 + y * dx, d3 + y * dy
+                along = load(stretch, point * lanes, lane)
+                d0, d2 = d0 / along, d2 / along
+                at = 16 * point * lanes
+                a0, a1, a2, a3 = _four(moduli, at, lane)
+                p0 = a0 * d0 + a1 * d1 + a2 * d2 + a3 * d3
+                a0, a1, a2, a3 = _four(moduli, at + 4 * lanes, lane)
+                p1 = a0 * d0 + a1 * d1 + a2 * d2 + a3 * d3
+                a0, a1, a2, a3 = _four(moduli, at + 8 * lanes, lane)
+                p2 = a0 * d0 + a1 * d1 + a2 * d2 + a3 * d3
+                a0, a1, a2, a3 = _four(moduli, at + 12 * lanes, lane)
+                p3 = a0 * d0 + a1 * d1 + a2 * d2 + a3 * d3
                 if stress.shape[0] > 0:
-                    p0 += stress[c, e, g, 0]
-                    p1 += stress[c, e, g, 1]
-                    p2 += stress[c, e, g, 2]
-                    p3 += stress[c, e, g, 3]
+                    s0, s1, s2, s3 = _four(stress, 4 * lanes * (column * count * points + point), lane)
+                    p0, p1, p2, p3 = p0 + s0, p1 + s1, p2 + s2, p3 + s3
+                s = areas[e, g]
+                wide = s * along
+                p0, p1, p2, p3 = s * p0, wide * p1, s * p2, wide * p3
                 for a in range(8):
-                    dx, dy = s * gradients[e, g, a, 0], s * gradients[e, g, a, 1]
-                    local[a, 0] += p0 * dx + p1 * dy
-                    local[a, 1] += p2 * dx + p3 * dy
+                    dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
+                    _add(local, 2 * a * lanes, p0 * dx + p1 * dy, lane)
+                    _add(local, (2 * a + 1) * lanes, p2 * dx + p3 * dy, lane)
             for a in range(8):
-                node = elements[e, a]
-                force[c, node, 0] += local[a, 0]
-                force[c, node, 1] += local[a, 1]
+                at = 2 * lanes * (column * nodes + elements[e, a])
+                _add(force, at, load(local, 2 * a * lanes, lane), lane)
+                _add(force, at + lanes, load(local, (2 * a + 1) * lanes, lane), lane)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def scatter_pulled_back(elastic, viscous, elements, gradients, areas, weights, force):
-    """Add to force [2, nodes, 2] the transposed stiffness and damping times nodal weights [nodes, 2]."""
-    local = np.empty((2, 8, 2))
-    for e in range(elements.shape[0]):
-        local[:] = 0.0
-        for g in range(elastic.shape[1]):
-            d0 = d1 = d2 = d3 = 0.0
-            for a in range(8):
-                node = elements[e, a]
-                dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
-                d0 += weights[node, 0] * dx
-                d1 += weights[node, 0] * dy
-                d2 += weights[node, 1] * dx
-                d3 += weights[node, 1] * dy
-            A, B, s = elastic[e, g], viscous[e, g], areas[e, g]
-            p0 = s * (A[0, 0] * d0 + A[1, 0] * d1 + A[2, 0] * d2 + A[3, 0] * d3)
-            p1 = s * (A[0, 1] * d0 + A[1, 1] * d1 + A[2, 1] * d2 + A[3, 1] * d3)
-            p2 = s * (A[0, 2] * d0 + A[1, 2] * d1 + A[2, 2] * d2 + A[3, 2] * d3)
-            p3 = s * (A[0, 3] * d0 + A[1, 3] * d1 + A[2, 3] * d2 + A[3, 3] * d3)
-            q0 = s * (B[0, 0] * d0 + B[1, 0] * d1 + B[2, 0] * d2 + B[3, 0] * d3)
-            q1 = s * (B[0, 1] * d0 + B[1, 1] * d1 + B[2, 1] * d2 + B[3, 1] * d3)
-            q2 = s * (B[0, 2] * d0 + B[1, 2] * d1 + B[2, 2] * d2 + B[3, 2] * d3)
-            q3 = s * (B[0, 3] * d0 + B[1, 3] * d1 + B[2, 3] * d2 + B[3, 3] * d3)
-            for a in range(8):
-                dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
-                local[0, a, 0] += p0 * dx + p1 * dy
-                local[0, a, 1] += p2 * dx + p3 * dy
-                local[1, a, 0] += q0 * dx + q1 * dy
-                local[1, a, 1] += q2 * dx + q3 * dy
-        for a in range(8):
-            node = elements[e, a]
-            for row in range(2):
-                force[row, node, 0] += local[row, a, 0]
-                force[row, node, 1] += local[row, a, 1]
+def transpose_moduli(moduli, out, lane):
+    """Exchange the rows and columns of moduli [elements, points, 4, 4, lanes]."""
+    lanes = len(lane)
+    for point in range(moduli.shape[0] * moduli.shape[1]):
+        for i in range(4):
+            for j in range(4):
+                store(
+                    out,
+                    (16 * point + 4 * i + j) * lanes,
+                    load(moduli, (16 * point + 4 * j + i) * lanes, lane),
+                )
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def contraction_force(F, coefficients, muscle, elements, gradients, areas, force):
-    """Derivative of the internal force by the contraction of each muscle, into force [muscles, nodes, 2]."""
+def contraction_force(F, coefficients, muscle, elements, gradients, areas, force, lane):
+    """Derivative of the internal force by the contraction of each muscle, into force [muscles, nodes, 2, lanes]."""
+    lanes, points, nodes = len(lane), areas.shape[1], force.shape[1]
     force[:] = 0.0
     for e in range(elements.shape[0]):
         if muscle[e] == 0:
             continue
-        for g in range(F.shape[1]):
-            a, c = F[e, g, 0], F[e, g, 2]
-            pull = coefficients[e, 6] * areas[e, g] / np.sqrt(a * a + c * c)
+        w = load(coefficients, (COEFFICIENTS * e + FIBRE) * lanes, lane)
+        for g in range(points):
+            at = 4 * lanes * (e * points + g)
+            a, c = load(F, at, lane), load(F, at + 2 * lanes, lane)
+            pull = areas[e, g] * w / square_root(a * a + c * c)
             for n in range(8):
                 dx = gradients[e, g, n, 0]
-                force[muscle[e] - 1, elements[e, n], 0] += pull * a * dx
-                force[muscle[e] - 1, elements[e, n], 1] += pull * c * dx
+                at = 2 * lanes * ((muscle[e] - 1) * nodes + elements[e, n])
+                _add(force, at, pull * a * dx, lane)
+                _add(force, at + lanes, pull * c * dx, lane)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def mass_product(masses, elements, columns, out):
-    """Add to out [columns, nodes, 2] the element masses [elements, 8, 8] times the nodal vectors."""
+def mass_product(masses, elements, columns, out, lane):
+    """Add to out [columns, nodes, 2, lanes] the element masses [elements, 8, 8, lanes] times the nodal vectors."""
+    lanes, nodes = len(lane), columns.shape[1]
     for e in range(elements.shape[0]):
-        for c in range(columns.shape[0]):
+        for column in range(columns.shape[0]):
             for a in range(8):
-                x = y = 0.0
+                x, y = zero(lane), zero(lane)
                 for b in range(8):
-                    x += masses[e, a, b] * columns[c, elements[e, b], 0]
-                    y += masses[e, a, b] * columns[c, elements[e, b], 1]
-                out[c, elements[e, a], 0] += x
-                out[c, elements[e, a], 1] += y
+                    mass = load(masses, (64 * e + 8 * a + b) * lanes, lane)
+                    at = 2 * lanes * (column * nodes + elements[e, b])
+                    x, y = x + mass * load(columns, at, lane), y + mass * load(columns, at + lanes, lane)
+                at = 2 * lanes * (column * nodes + elements[e, a])
+                _add(out, at, x, lane)
+                _add(out, at + lanes, y, lane)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def scatter_sites(direct, along, nodes, shape, slope, measure, band, diagonal):
-    """Add site matrices [n, 2, 2], for values (direct) and tangents (along) of the field, to a band matrix."""
+def scatter_sites(direct, along, nodes, shape, slope, measure, band, diagonal, lane):
+    """Add site matrices [n, 2, 2, lanes], for values (direct) and tangents (along) of the field, to a band matrix."""
+    lanes, width = len(lane), band.shape[1]
     for s in range(nodes.shape[0]):
-        for a in range(nodes.shape[1]):
-            weight = measure[s] * shape[s, a]
-            for i in range(2):
+        for i in range(2):
+            at = (4 * s + 2 * i) * lanes
+            d0, d1 = load(direct, at, lane), load(direct, at + lanes, lane)
+            t0, t1 = load(along, at, lane), load(along, at + lanes, lane)
+            for a in range(nodes.shape[1]):
+                weight = measure[s] * shape[s, a]
                 row = 2 * nodes[s, a] + i
-                d0, d1 = weight * direct[s, i, 0], weight * direct[s, i, 1]
-                t0, t1 = weight * along[s, i, 0], weight * along[s, i, 1]
                 for b in range(nodes.shape[1]):
-                    j = diagonal + 2 * nodes[s, b] - row
-                    band[row, j] += d0 * shape[s, b] + t0 * slope[s, b]
-                    band[row, j + 1] += d1 * shape[s, b] + t1 * slope[s, b]
+                    by_value, by_slope = weight * shape[s, b], weight * slope[s, b]
+                    at = (row * width + diagonal + 2 * nodes[s, b] - row) * lanes
+                    _add(band, at, by_value * d0 + by_slope * t0, lane)
+                    _add(band, at + lanes, by_value * d1 + by_slope * t1, lane)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def second_piola(F, P, S):
-    """Symmetric second Piola stress (xx, yy, xy) F^-1 P [elements, points, 3] of a first Piola stress."""
-    for e in range(F.shape[0]):
-        for g in range(F.shape[1]):
-            a, b, c, d = F[e, g, 0], F[e, g, 1], F[e, g, 2], F[e, g, 3]
-            J = a * d - b * c
-            S[e, g, 0] = (d * P[e, g, 0] - b * P[e, g, 2]) / J
-            S[e, g, 1] = (a * P[e, g, 3] - c * P[e, g, 1]) / J
-            S[e, g, 2] = 0.5 * (d * P[e, g, 1] - b * P[e, g, 3] + a * P[e, g, 2] - c * P[e, g, 0]) / J
+def second_piola(F, P, S, lane):
+    """Symmetric second Piola stress (xx, yy, xy) F^-1 P [elements, points, 3, lanes] of a first Piola stress."""
+    lanes = len(lane)
+    for point in range(F.shape[0] * F.shape[1]):
+        a, b, c, d = _four(F, 4 * point * lanes, lane)
+        p0, p1, p2, p3 = _four(P, 4 * point * lanes, lane)
+        J, at = a * d - b * c, 3 * point * lanes
+        store(S, at, (d * p0 - b * p2) / J)
+        store(S, at + lanes, (a * p3 - c * p1) / J)
+        store(S, at + 2 * lanes, 0.5 * (d * p1 - b * p3 + a * p2 - c * p0) / J)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def exchange_initial_stress(elastic, old, new):
+def exchange_initial_stress(elastic, old, new, lane):
     """Replace the second Piola stress (xx, yy, xy) whose geometric stiffness is in the moduli, in place."""
-    for e in range(elastic.shape[0]):
-        for g in range(elastic.shape[1]):
-            xx = new[e, g, 0] - old[e, g, 0]
-            yy = new[e, g, 1] - old[e, g, 1]
-            xy = new[e, g, 2] - old[e, g, 2]
-            for i in (0, 2):
-                elastic[e, g, i, i] += xx
-                elastic[e, g, i + 1, i + 1] += yy
-                elastic[e, g, i, i + 1] += xy
-                elastic[e, g, i + 1, i] += xy
+    lanes = len(lane)
+    for point in range(elastic.shape[0] * elastic.shape[1]):
+        at = 3 * point * lanes
+        xx = load(new, at, lane) - load(old, at, lane)
+        yy = load(new, at + lanes, lane) - load(old, at + lanes, lane)
+        xy = load(new, at + 2 * lanes, lane) - load(old, at + 2 * lanes, lane)
+        for i in (0, 2):
+            here = (16 * point + 5 * i) * lanes
+            _add(elastic, here, xx, lane)
+            _add(elastic, here + lanes, xy, lane)
+            _add(elastic, here + 4 * lanes, xy, lane)
+            _add(elastic, here + 5 * lanes, yy, lane)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def green_stress(F, shear, lame, out, lane):
+    """C : E (xx, yy, xy) of the Green strain at every Gauss point, into out [elements, points, 3, lanes]."""
+    lanes, points = len(lane), F.shape[1]
+    for e in range(F.shape[0]):
+        mu, lam = load(shear, e * lanes, lane), load(lame, e * lanes, lane)
+        for g in range(points):
+            a, b, c, d = _four(F, 4 * lanes * (e * points + g), lane)
+            xx, yy = 0.5 * (a * a + c * c - 1.0), 0.5 * (b * b + d * d - 1.0)
+            at = 3 * lanes * (e * points + g)
+            store(out, at, lam * (xx + yy) + 2.0 * mu * xx)
+            store(out, at + lanes, lam * (xx + yy) + 2.0 * mu * yy)
+            store(out, at + 2 * lanes, mu * (a * b + c * d))
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def green_stress_direction(F, change, shear, lame, out, lane):
+    """Change of C : E along a change of F [elements, points, 4, lanes], into out [elements, points, 3, lanes]."""
+    lanes, points = len(lane), F.shape[1]
+    for e in range(F.shape[0]):
+        mu, lam = load(shear, e * lanes, lane), load(lame, e * lanes, lane)
+        for g in range(points):
+            a, b, c, d = _four(F, 4 * lanes * (e * points + g), lane)
+            p, q, r, s = _four(change, 4 * lanes * (e * points + g), lane)
+            xx, yy = a * p + c * r, b * q + d * s
+            at = 3 * lanes * (e * points + g)
+            store(out, at, lam * (xx + yy) + 2.0 * mu * xx)
+            store(out, at + lanes, lam * (xx + yy) + 2.0 * mu * yy)
+            store(out, at + 2 * lanes, mu * (a * q + b * p + c * s + d * r))
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def combine(position, velocity, acceleration, new, weights, x, v, a, lane):
+    """Weighted sums of nodal vectors [nodes, 2, lanes], as a time step needs them, into x, v and a.
+
+    weights [8, lanes]: of the velocity, acceleration and new acceleration in x; of the two accelerations in v and in a;
+    one more is not used.
+    """
+    lanes = len(lane)
+    xv, xa, xn, va = _four(weights, 0, lane)
+    vn, aa, an, _ = _four(weights, 4 * lanes, lane)
+    for at in range(0, position.size, lanes):
+        speed, old, now = load(velocity, at, lane), load(acceleration, at, lane), load(new, at, lane)
+        store(x, at, load(position, at, lane) + xv * speed + xa * old + xn * now)
+        store(v, at, speed + va * old + vn * now)
+        store(a, at, aa * old + an * now)
+
+
+@njit(cache=True)
+def corrected(acceleration, correction, wanted, out, largest):
+    """Subtract a correction [nodes, 2, lanes] in the lanes wanted, into out; the largest of each lane's comes back."""
+    lanes = len(wanted)
+    largest[:] = 0.0
+    for node in range(acceleration.shape[0]):
+        for component in range(2):
+            for n in range(lanes):
+                change = correction[node, component, n]
+                if not abs(change) <= largest[n]:
+                    largest[n] = abs(change)
+                out[node, component, n] = acceleration[node, component, n]
+                if wanted[n]:
+                    out[node, component, n] -= change
+
+
+@njit(cache=True)
+def clear_band(band, reach, diagonal):
+    """Set to zero what lies within reach of the diagonal; the rest of a band matrix always is."""
+    first = 0
+    for row in range(len(reach)):
+        while first + reach[first] < row:
+            first += 1
+        band[row, diagonal - (row - first) - 4 : diagonal + reach[row] + 5] = 0.0
+    band[len(reach) :] = 0.0

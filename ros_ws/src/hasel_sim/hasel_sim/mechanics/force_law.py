@@ -1,21 +1,25 @@
 """A force effect with its values, bound to a mesh: forces, their derivatives, and their places in the matrix."""
 
-from dataclasses import replace
+from collections.abc import Sequence
+from copy import copy
 from types import SimpleNamespace
 
 import numpy as np
 
 from hasel_sim.effects.base import ForceEffect, SiteState, normal
 from hasel_sim.mechanics.compiled import scatter_sites
+from hasel_sim.mechanics.laws import by_group, grouped, one_by_one, watched
 from hasel_sim.mechanics.motion import DriveState, Motion
+from hasel_sim.mechanics.simd import lane_tuple
 from hasel_sim.mesh.sites import Sites
 
 _CONTRACTION_DIFFERENCE = 1e-6
 _DIFFERENCE = {"position": 1e-7, "velocity": 1e-7, "acceleration": 1e-4, "tangent": 1e-6}
+_WatchedState = watched(SiteState)
 
 
 class ForceLaw:
-    """One force effect at its sites.
+    """One force effect at its sites, of one lane; more by `beside`.
 
     `linearise` differentiates the effect at every site by central differences in the two components of each quantity it
     depends on, all in one call, so that an effect never writes a derivative.
@@ -29,122 +33,151 @@ class ForceLaw:
         reference: np.ndarray,
         gravity: tuple[float, float] = (0.0, 0.0),
     ) -> None:
-        self.effect, self.values, self.sites = effect, values, sites
+        self.effect, self.sites = effect, sites
         self._gravity = np.array(gravity)
-        self._reference = sites.value(reference)
+        self._reference = sites.value(reference[..., None])[..., 0]
         on_skin = effect.sites == "skin"
-        self._rest_normal = normal(sites.tangent(reference)) if on_skin else np.zeros_like(self._reference)
+        self._rest_normal = (
+            normal(sites.tangent(reference[..., None])[..., 0]) if on_skin else np.zeros_like(self._reference)
+        )
         self._moved_by = tuple(name for name in effect.depends_on if name != "contraction")
-        self._copies = 4 * len(self._moved_by)
-        self._unmoved = {
-            "reference": repeated(self._reference, self._copies),
-            "rest_normal": repeated(self._rest_normal, self._copies),
-            "measure": repeated(sites.measure, self._copies),
-        }
+        self._use_lanes([values])
+
+    def _use_lanes(self, values: list[SimpleNamespace | None]) -> None:
+        self.values, self._groups = values, grouped(values)
         self._slopes: dict[str, np.ndarray] = {}
-        self._by_contraction = np.zeros((0, *self._reference.shape))
-        self._last: tuple[Motion, DriveState, SiteState] | None = None
+        self._by_contraction: np.ndarray | None = None
+        self._last: tuple[Motion, dict[str, np.ndarray]] | None = None
 
-    def state(self, motion: Motion, drive: DriveState) -> SiteState:
-        """Motion and drive at the sites; kept for the last motion, which is asked for several times."""
-        if self._last is None or self._last[0] is not motion or self._last[1] is not drive:
-            self._last = motion, drive, self._state(motion, drive)
-        return self._last[2]
+    @staticmethod
+    def beside(each: Sequence["ForceLaw"]) -> list["ForceLaw"]:
+        """Those of several bodies, one lane after the other: one law for all lanes with the same sites."""
+        kinds: list[ForceLaw] = []
+        for law in each:
+            if not any(law.sites.same_as(kind.sites) for kind in kinds):
+                kinds.append(law)
+        out = []
+        for kind in kinds:
+            out.append(copy(kind))
+            out[-1]._use_lanes([law.values[0] if law.sites.same_as(kind.sites) else None for law in each])
+        return out
 
-    def _state(self, motion: Motion, drive: DriveState) -> SiteState:
-        depends = self.effect.depends_on
-        nothing = np.zeros_like(self._reference)
-        return SiteState(
-            position=self.sites.value(motion.position),
-            velocity=self.sites.value(motion.velocity) if "velocity" in depends else nothing,
-            acceleration=self.sites.value(motion.acceleration) if "acceleration" in depends else nothing,
-            tangent=self.sites.tangent(motion.position) if self.effect.sites == "skin" else nothing,
-            reference=self._reference,
-            rest_normal=self._rest_normal,
-            measure=self.sites.measure,
-            voltage=drive.voltage,
-            contraction=drive.contraction,
-            time=drive.time,
-            gravity=self._gravity,
+    def _moved(self, motion: Motion) -> dict[str, np.ndarray]:
+        """Motion at the sites [n, 2, lanes]; kept for the last motion, which is asked for several times."""
+        if self._last is None or self._last[0] is not motion:
+            depends, skin = self.effect.depends_on, self.effect.sites == "skin"
+            fields = {"position": self.sites.value(motion.position)}
+            nothing = np.zeros_like(fields["position"])
+            fields["velocity"] = self.sites.value(motion.velocity) if "velocity" in depends else nothing
+            fields["acceleration"] = (
+                self.sites.value(motion.acceleration) if "acceleration" in depends else nothing
+            )
+            fields["tangent"] = self.sites.tangent(motion.position) if skin else nothing
+            self._last = motion, fields
+        return self._last[1]
+
+    def _force(self, fields: dict[str, np.ndarray], drive: DriveState, values=None) -> np.ndarray:
+        """The effect's force at fields [copies, n, 2, lanes], in the same shape; values: others than its own."""
+        return by_group(
+            self._groups if values is None else grouped(values),
+            fields,
+            lambda rows, lanes, own: self._called(rows, lanes, own, drive),
         )
 
-    def add_force(self, motion: Motion, drive: DriveState, out: np.ndarray, factor: float = 1.0) -> None:
-        """Add factor times the nodal forces to out [nodes, 2]."""
-        self.sites.scatter(factor * self.effect.force(self.state(motion, drive), self.values), out)
+    def _called(
+        self, rows: dict[str, np.ndarray], lanes: np.ndarray, values, drive: DriveState
+    ) -> np.ndarray:
+        n = len(self._reference)
+        times = len(rows["position"]) // n
+        unmoved = {
+            "reference": repeated(self._reference, times),
+            "rest_normal": repeated(self._rest_normal, times),
+            "measure": repeated(self.sites.measure, times),
+            "gravity": self._gravity,
+        }
+        state = (SiteState if len(lanes) == 1 else _WatchedState)(
+            **rows, **unmoved, **drive.of_lane(int(lanes[0]))
+        )
+        force = np.asarray(self.effect.force(state, values))
+        if len(lanes) == 1 or not state.looked:
+            return force
+        self._groups = one_by_one(self._groups)
+        shape = (-1, len(lanes), n, 2)
+        parts = []
+        for place, lane in enumerate(lanes):
+            own = {name: field.reshape(shape)[:, place].reshape(-1, 2) for name, field in rows.items()}
+            parts.append(self._called(own, np.array([lane]), values, drive).reshape(-1, n, 2))
+        return np.stack(parts, axis=1)
+
+    def add_force(
+        self, motion: Motion, drive: DriveState, out: np.ndarray, factor: float | np.ndarray = 1.0
+    ) -> None:
+        """Add factor times the nodal forces to out [nodes, 2, lanes]."""
+        here = {name: field[None] for name, field in self._moved(motion).items()}
+        self.sites.scatter(factor * self._force(here, drive)[0], out)
 
     def add_excess(
-        self, other: "ForceLaw", motion: Motion, drive: DriveState, out: np.ndarray, factor: float
+        self,
+        other: "ForceLaw",
+        motion: Motion,
+        drive: DriveState,
+        out: np.ndarray,
+        factor: float | np.ndarray,
     ) -> None:
         """Add factor times the nodal forces that this law has more than another of the same effect and sites."""
-        at = self.state(motion, drive)
-        excess = self.effect.force(at, self.values) - self.effect.force(at, other.values)
-        self.sites.scatter(factor * excess, out)
+        here = {name: field[None] for name, field in self._moved(motion).items()}
+        excess = self._force(here, drive) - self._force(here, drive, other.values)
+        self.sites.scatter(factor * excess[0], out)
 
     def linearise(self, motion: Motion, drive: DriveState) -> None:
-        """Keep the derivatives at this state: one [n, 2, 2] array per quantity the effect depends on."""
-        if not self.effect.depends_on:
-            return
-        state = self.state(motion, drive)
+        """Keep the derivatives at this state: one [n, 2, 2, lanes] array per quantity the effect depends on."""
         if "contraction" in self.effect.depends_on:
-            self._by_contraction = self._contraction_slope(state)
+            self._by_contraction = self._contraction_slope(motion, drive)
         if self._moved_by:
-            self._differentiate(state)
+            self._differentiate(self._moved(motion), drive)
 
-    def _contraction_slope(self, state: SiteState) -> np.ndarray:
-        count = len(state.contraction)
-        out = np.empty((count, *self._reference.shape))
-        for muscle, step in enumerate(_CONTRACTION_DIFFERENCE * np.eye(count)):
+    def _contraction_slope(self, motion: Motion, drive: DriveState) -> np.ndarray:
+        here = {name: field[None] for name, field in self._moved(motion).items()}
+        out = np.empty((len(drive.contraction), *here["position"].shape[1:]))
+        for muscle, step in enumerate(_CONTRACTION_DIFFERENCE * np.eye(len(drive.contraction))):
             more, less = (
-                self.effect.force(replace(state, contraction=contraction), self.values)
-                for contraction in (state.contraction + step, state.contraction - step)
+                self._force(here, drive.with_contraction(drive.contraction + sign * step[:, None]))[0]
+                for sign in (1.0, -1.0)
             )
             out[muscle] = (more - less) / (2 * _CONTRACTION_DIFFERENCE)
         return out
 
-    def _differentiate(self, state: SiteState) -> None:
+    def _differentiate(self, at: dict[str, np.ndarray], drive: DriveState) -> None:
         names = self._moved_by
-        n = len(self._reference)
-        fields = {name: repeated(getattr(state, name), self._copies) for name in _DIFFERENCE}
+        copies = 4 * len(names)
+        fields = {name: np.repeat(field[None], copies, axis=0) for name, field in at.items()}
         for index, name in enumerate(names):
             for component in range(2):
-                start = (4 * index + 2 * component) * n
-                fields[name][start : start + n, component] += _DIFFERENCE[name]
-                fields[name][start + n : start + 2 * n, component] -= _DIFFERENCE[name]
-        batch = SiteState(
-            **fields,
-            **self._unmoved,
-            voltage=state.voltage,
-            contraction=state.contraction,
-            time=state.time,
-            gravity=state.gravity,
-        )
-        force = self.effect.force(batch, self.values).reshape(len(names), 2, 2, n, 2)
+                first = 4 * index + 2 * component
+                fields[name][first, :, component] += _DIFFERENCE[name]
+                fields[name][first + 1, :, component] -= _DIFFERENCE[name]
+        force = self._force(fields, drive)
+        force = force.reshape(len(names), 2, 2, *force.shape[1:])
         for index, name in enumerate(names):
             change = (force[index, :, 0] - force[index, :, 1]) / (2 * _DIFFERENCE[name])
-            self._slopes[name] = np.ascontiguousarray(change.transpose(1, 2, 0))
+            self._slopes[name] = np.ascontiguousarray(change.transpose(1, 2, 0, 3))
 
-    def _slope(self, name: str) -> np.ndarray:
-        return self._slopes.get(name, np.zeros((len(self._reference), 2, 2)))
-
-    def add_matrix(
-        self, position: float, velocity: float, acceleration: float, band: np.ndarray, diagonal: int
-    ) -> None:
-        """Subtract the weighted derivatives from a band matrix (the force stands on the right-hand side)."""
-        direct = -(
-            position * self._slope("position")
-            + velocity * self._slope("velocity")
-            + acceleration * self._slope("acceleration")
-        )
-        along = -position * self._slope("tangent")
+    def add_matrix(self, position, velocity, acceleration, band: np.ndarray, diagonal: int) -> None:
+        """Subtract the derivatives, weighted per lane, from a band matrix (the force stands on the right-hand side)."""
+        if not self._moved_by:
+            return
+        shares = {"position": position, "velocity": velocity, "acceleration": acceleration}
+        nothing = np.zeros_like(self._slopes[self._moved_by[0]])
+        direct = nothing - sum(shares[name] * slope for name, slope in self._slopes.items() if name in shares)
+        along = -position * self._slopes["tangent"] if "tangent" in self._slopes else nothing
         s = self.sites
-        scatter_sites(direct, along, s.nodes, s.shape, s.slope, s.measure, band, diagonal)
+        places = s.nodes, s.shape, s.slope, s.measure
+        scatter_sites(direct, along, *places, band, diagonal, lane_tuple(band.shape[-1]))
 
     def add_directions(
         self, shift: np.ndarray, rate: np.ndarray, acceleration: np.ndarray, out: np.ndarray
     ) -> None:
-        """Subtract the change of the nodal forces along many directions [columns, nodes, 2] from out."""
-        if not self._moved_by:
-            return
+        """Subtract the change of the nodal forces along many directions [columns, nodes, 2, lanes] from out."""
         moved = {
             "position": lambda: self.sites.value(shift),
             "velocity": lambda: self.sites.value(rate),
@@ -153,15 +186,17 @@ class ForceLaw:
         }
         for name in self._moved_by:
             slope, change = self._slopes[name], moved[name]()
-            self.sites.scatter(-(slope[:, :, 0] * change[..., :1] + slope[:, :, 1] * change[..., 1:]), out)
+            self.sites.scatter(
+                -(slope[:, :, 0] * change[..., :1, :] + slope[:, :, 1] * change[..., 1:, :]), out
+            )
 
     def add_pulled_back(self, weights: np.ndarray, out: np.ndarray) -> None:
-        """Subtract the transposed derivatives times weights [nodes, 2] from out [3, nodes, 2].
+        """Subtract the transposed derivatives times weights [nodes, 2, lanes] from out [3, nodes, 2, lanes].
 
         The first axis of out: by position, velocity and acceleration.
         """
         s = self.sites
-        here = s.measure[:, None] * s.value(weights)
+        here = s.measure[:, None, None] * s.value(weights)
         places = {
             "position": (0, s.shape),
             "velocity": (1, s.shape),
@@ -170,12 +205,12 @@ class ForceLaw:
         }
         for name in self._moved_by:
             row, interpolation = places[name]
-            pulled = np.einsum("nij,ni->nj", self._slopes[name], here)
-            np.subtract.at(out[row], s.nodes, interpolation[:, :, None] * pulled[:, None, :])
+            pulled = np.einsum("nijl,nil->njl", self._slopes[name], here)
+            np.subtract.at(out[row], s.nodes, interpolation[:, :, None, None] * pulled[:, None])
 
     def add_contraction(self, out: np.ndarray) -> None:
-        """Subtract the change of the nodal forces by the contraction of each muscle from out [muscles, nodes, 2]."""
-        if len(self._by_contraction):
+        """Subtract the change of the nodal forces by each muscle's contraction from out [muscles, nodes, 2, lanes]."""
+        if self._by_contraction is not None:
             self.sites.scatter(-self._by_contraction, out)
 
 

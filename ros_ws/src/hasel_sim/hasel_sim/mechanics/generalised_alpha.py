@@ -5,7 +5,11 @@ mid-point"); rho = 1 is the implicit mid-point rule, which keeps momentum and an
 J. Chung, G. M. Hulbert, J. Appl. Mech. 60 (1993) 371.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+
+import numpy as np
 
 
 @dataclass(frozen=True)
@@ -30,10 +34,51 @@ class StepCoefficients:
     end_velocity_a: float
     end_velocity: float
 
+    @cached_property
+    def to_balance(self) -> np.ndarray:
+        """Weights for `compiled.combine` that lead to where forces are balanced, [8, lanes]."""
+        return _weights(
+            self.position_v,
+            self.position_a,
+            self.position,
+            self.velocity_a,
+            self.velocity,
+            self.acceleration_a,
+            self.acceleration,
+        )
+
+    @cached_property
+    def matrix_weights(self) -> np.ndarray:
+        """Weights of stiffness, damping and mass in the matrix of a step, [3, lanes]."""
+        return _weights(self.position, self.velocity, self.acceleration)[:3].copy()
+
+    @cached_property
+    def to_end(self) -> np.ndarray:
+        """Weights for `compiled.combine` that lead to the end of the step, [8, lanes]."""
+        return _weights(
+            self.step,
+            self.end_position_a,
+            self.end_position,
+            self.end_velocity_a,
+            self.end_velocity,
+            0.0,
+            1.0,
+        )
+
+    @staticmethod
+    def beside(each: Sequence["StepCoefficients"]) -> "StepCoefficients":
+        """Those of several lanes, whose steps may differ in length: every coefficient an array [lanes]."""
+        names = (field.name for field in fields(StepCoefficients))
+        return StepCoefficients(**{name: np.array([getattr(c, name) for c in each]) for name in names})
+
     def halved(self) -> "StepCoefficients":
         """Those of a step of half the length."""
         half = {name: 0.5 * getattr(self, name) for name in _LIKE_THE_STEP}
         return replace(self, **half, **{name: 0.25 * getattr(self, name) for name in _LIKE_ITS_SQUARE})
+
+
+def _weights(*each: float | np.ndarray) -> np.ndarray:
+    return np.array(np.broadcast_arrays(*map(np.atleast_1d, (*each, 0.0))), dtype=float)
 
 
 _LIKE_THE_STEP = ("step", "at", "position_v", "velocity_a", "velocity", "end_velocity_a", "end_velocity")

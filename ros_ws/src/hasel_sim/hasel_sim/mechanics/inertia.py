@@ -1,8 +1,12 @@
 """Mass of the body: consistent (banded) and lumped."""
 
+from collections.abc import Sequence
+from copy import copy
+
 import numpy as np
 
 from hasel_sim.mechanics.compiled import mass_product
+from hasel_sim.mechanics.simd import lane_tuple
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.mesh.serendipity import reference_gradients
 
@@ -33,17 +37,29 @@ def add_tip_plate(masses: np.ndarray, mesh: Mesh, mass: float, rotary_inertia: f
 
 
 class Mass:
-    """Consistent mass of a mesh: of its elements [kg per m depth] [elements, 8, 8] and as a product with vectors."""
+    """Consistent mass of a mesh: of its elements [kg per m depth] [elements, 8, 8, lanes], and times vectors.
+
+    masses: of one lane, [elements, 8, 8].
+    """
 
     def __init__(self, mesh: Mesh, masses: np.ndarray) -> None:
-        self._elements, self.masses = mesh.elements, np.ascontiguousarray(masses)
+        self._elements, self.masses = mesh.elements, np.ascontiguousarray(masses[..., None])
         self.lumped = _lumped(mesh, masses)
         """Mass of every node [kg per m depth], by scaling the diagonal (Hinton, Rock, Zienkiewicz 1976), [nodes]."""
 
+    @staticmethod
+    def beside(each: Sequence["Mass"]) -> "Mass":
+        """Those of several bodies, one lane after the other."""
+        out = copy(each[0])
+        out.masses = np.concatenate([mass.masses for mass in each], axis=-1)
+        return out
+
     def product(self, columns: np.ndarray) -> np.ndarray:
-        """Mass times each of the vectors [columns, nodes, 2]; the same shape comes back."""
+        """Mass times each of the vectors [columns, nodes, 2, lanes]; the same shape comes back."""
         out = np.zeros(columns.shape)
-        mass_product(self.masses, self._elements, columns, out)
+        mass_product(
+            self.masses, self._elements, np.ascontiguousarray(columns), out, lane_tuple(columns.shape[-1])
+        )
         return out
 
 

@@ -4,7 +4,6 @@ import numpy as np
 
 from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.banded import BandFactors
-from hasel_sim.mechanics.branches import green_stress_direction
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.residual_slopes import ResidualSlope, SolidSlope
 from hasel_sim.mechanics.state import State, StateSlopes
@@ -23,8 +22,8 @@ def initial_state(
 ) -> tuple[State, StateSlopes]:
     """At rest in equilibrium under load_factor times all loads, or in a held shape [m] [nodes, 2], about to move.
 
-    The derivatives have one column per parameter. Raises SimulationError when there is no equilibrium, or for a shape
-    of another mesh.
+    Of one lane, whose axis is the last of every array. The derivatives have one column per parameter. Raises
+    SimulationError when there is no equilibrium, or for a shape of another mesh.
     """
     if held_shape is None:
         position, line = equilibrium(system, drive, load_factor, _EQUILIBRIUM_TOLERANCE)
@@ -34,7 +33,7 @@ def initial_state(
     state = State(position, still.copy(), still.copy())
     branches = system.solid.branches
     if len(branches):
-        state.branch = np.zeros((len(branches), *system.solid.areas.shape, 3))
+        state.branch = np.zeros((len(branches), *system.solid.areas.shape, 3, 1))
         state.green = system.solid.green_stress(system.solid.gradient(position))
     motion = Motion(position, still, still)
     right = _residual_slopes(parameters, motion, drive, line, state, load_factor)
@@ -70,8 +69,8 @@ def _held(system: System, drive: DriveState, shape: np.ndarray) -> tuple[np.ndar
             f"the initial shape has the size {shape.shape}; expected {system.nodes.shape}, one position per node: take "
             "it from a simulation with the same body and mesh density"
         )
-    position = shape.copy()
-    position[: system.held] = system.nodes[: system.held]
+    position = shape[..., None].copy()
+    position[: system.held, :, 0] = system.nodes[: system.held]
     still = np.zeros_like(position)
     return position, system.linearise(Motion(position, still, still), drive, Memory())
 
@@ -99,9 +98,9 @@ def _branch_slopes(
     slopes.green = np.zeros((len(parameters), *state.green.shape))
     for column, parameter in enumerate(parameters):
         change = solid.gradient(slopes.position[column])
-        green_stress_direction(F, change, solid.shear, solid.linear_lame, slopes.green[column])
+        slopes.green[column] = solid.green_stress_along(F, change)
         if isinstance(parameter, SolidSlope):
-            for other, sign in ((parameter.more, 1.0), (parameter.less, -1.0)):
+            for other, sign in parameter.solids:
                 slopes.green[column] += (
                     sign / parameter.width * other.green_stress(other.gradient(state.position))
                 )

@@ -1,5 +1,6 @@
 """Derivative of the residual by one parameter at a fixed motion, by central differences of only what it changes."""
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -13,7 +14,7 @@ from hasel_sim.mechanics.system import Linearisation, System
 
 
 class ResidualSlope(Protocol):
-    """What the stepper asks of a parameter."""
+    """What the stepper asks of a parameter, in one lane or, by `beside`, in several."""
 
     def add(
         self,
@@ -21,14 +22,18 @@ class ResidualSlope(Protocol):
         drive: DriveState,
         line: Linearisation,
         state: State,
-        at: float,
+        at: float | np.ndarray,
         out: np.ndarray,
         load_factor: float = 1.0,
     ) -> None:
-        """Add the derivative of the residual, under a share of all loads, to out [nodes, 2].
+        """Add the derivative of the residual, under a share of all loads, to out [nodes, 2, lanes].
 
         state: that of the step's start; at: how far into the step forces balance [s]; 0 for statics.
         """
+
+    @staticmethod
+    def beside(each: Sequence["ResidualSlope"]) -> "ResidualSlope":
+        """The same parameter of several bodies, one lane after the other."""
 
 
 class NoSlope:
@@ -36,6 +41,11 @@ class NoSlope:
 
     def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
         """Add nothing."""
+
+    @staticmethod
+    def beside(each: Sequence["NoSlope"]) -> "NoSlope":
+        """None of the bodies sees it."""
+        return each[0]
 
 
 class ContractionSlope:
@@ -48,68 +58,114 @@ class ContractionSlope:
         """Add the derivative of the residual by this muscle's contraction."""
         out += line.by_contraction(drive)[self._muscle]
 
+    @staticmethod
+    def beside(each: Sequence["ContractionSlope"]) -> "ContractionSlope":
+        """The same muscle of every body."""
+        return each[0]
+
 
 class ForceSlope:
     """A parameter of one force effect."""
 
     def __init__(self, more: ForceLaw, less: ForceLaw, width: float) -> None:
-        self._more, self._less, self._width = more, less, width
-        self._same_sites = more.sites.same_as(less.sites)
+        self._use([more], [less], np.array([width]))
+
+    def _use(self, more: list[ForceLaw], less: list[ForceLaw], width: np.ndarray) -> None:
+        self._more, self._less, self.width = more, less, width
+        self._same_sites = len(more) == len(less) == 1 and more[0].sites.same_as(less[0].sites)
+
+    @staticmethod
+    def beside(each: Sequence["ForceSlope"]) -> "ForceSlope":
+        """Those of several bodies, one lane after the other."""
+        out = ForceSlope.__new__(ForceSlope)
+        more, less = (
+            ForceLaw.beside([getattr(slope, name)[0] for slope in each]) for name in ("_more", "_less")
+        )
+        out._use(more, less, np.concatenate([slope.width for slope in each]))
+        return out
 
     def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
         """Subtract the derivative of the force, which stands on the right-hand side."""
-        factor = -load_factor / self._width
+        factor = -load_factor / self.width
         if self._same_sites:
-            self._more.add_excess(self._less, motion, drive, out, factor)
-        else:
-            self._more.add_force(motion, drive, out, factor)
-            self._less.add_force(motion, drive, out, -factor)
+            self._more[0].add_excess(self._less[0], motion, drive, out, factor)
+            return
+        for laws, sign in ((self._more, 1.0), (self._less, -1.0)):
+            for law in laws:
+                law.add_force(motion, drive, out, sign * factor)
 
 
-class StressSlope:
+class _Difference:
+    """Two of a kind, for a little more and a little less of a parameter, and the width between [lanes]."""
+
+    kind: type
+
+    def __init__(self, more, less, width: float | np.ndarray) -> None:
+        self.more, self.less, self.width = more, less, np.atleast_1d(width)
+
+    @classmethod
+    def beside(cls, each: Sequence["_Difference"]) -> "_Difference":
+        """Those of several bodies, one lane after the other."""
+        more, less = (cls.kind.beside([getattr(slope, name) for slope in each]) for name in ("more", "less"))
+        return cls(more, less, np.concatenate([slope.width for slope in each]))
+
+
+class StressSlope(_Difference):
     """A parameter of one additional stress."""
 
-    def __init__(self, more: StressLaw, less: StressLaw, width: float) -> None:
-        self._more, self._less, self._width = more, less, width
+    kind = StressLaw
 
     def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
         """Add the nodal forces of the stress's derivative."""
         P = np.zeros_like(line.F)
-        change = self._more.stress(line.F, line.rate, drive) - self._less.stress(line.F, line.rate, drive)
-        P[self._more.elements] = change / self._width
+        change = self.more.stress(line.F, line.rate, drive) - self.less.stress(line.F, line.rate, drive)
+        P[self.more.elements] = change / self.width
         line.system.solid.add_force(P, out)
 
 
-class SolidSlope:
+class SolidSlope(_Difference):
     """A parameter of the solid's constants, rest shape or branches."""
 
-    def __init__(self, more: Solid, less: Solid, width: float) -> None:
-        self.more, self.less, self.width = more, less, width
-        self._same_shape = np.array_equal(more.gradients, less.gradients)
+    kind = Solid
+
+    def __init__(self, more: Solid, less: Solid, width: float | np.ndarray) -> None:
+        super().__init__(more, less, width)
+        self._same_shape = more.same_shape(less)
+
+    @property
+    def solids(self) -> tuple[tuple[Solid, float], tuple[Solid, float]]:
+        """The two solids with their signs in the difference."""
+        return (self.more, 1.0), (self.less, -1.0)
 
     def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
         """Add the derivative of the internal force."""
-        for solid, sign in ((self.more, 1.0), (self.less, -1.0)):
+        for solid, sign in self.solids:
             F = line.F if self._same_shape else solid.gradient(motion.position)
             rate = line.rate if self._same_shape else solid.gradient(motion.velocity)
             P = solid.stress(F, rate, drive.contraction, self._history(solid, state, at), at)
             solid.add_force((sign / self.width) * P, out)
 
     @staticmethod
-    def _history(solid: Solid, state: State, at: float) -> np.ndarray | None:
-        relaxed = len(solid.branches) == 0 or at == 0.0
+    def _history(solid: Solid, state: State, at: float | np.ndarray) -> np.ndarray | None:
+        relaxed = len(solid.branches) == 0 or not np.any(at)
         return None if relaxed else solid.branches.history(state.branch, state.green, at)
 
 
 class SystemSlope(SolidSlope):
     """A parameter that changes everything, such as the outline."""
 
-    def __init__(self, more: System, less: System, width: float) -> None:
-        super().__init__(more.solid, less.solid, width)
-        self._systems = more, less
+    kind = System
+
+    def __init__(self, more: System, less: System, width: float | np.ndarray) -> None:
+        _Difference.__init__(self, more, less, width)
+
+    @property
+    def solids(self) -> tuple[tuple[Solid, float], tuple[Solid, float]]:
+        """The two solids with their signs in the difference."""
+        return (self.more.solid, 1.0), (self.less.solid, -1.0)
 
     def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
         """Add the derivative of the whole residual."""
-        for system, sign in zip(self._systems, (1.0, -1.0), strict=True):
+        for system, sign in ((self.more, 1.0), (self.less, -1.0)):
             memory = Memory(self._history(system.solid, state, at), at)
             out += (sign / self.width) * system.residual(motion, drive, memory, load_factor)

@@ -1,10 +1,14 @@
 """The solid: constants at the Gauss points, internal force and its derivatives."""
 
+from collections.abc import Sequence
+from copy import copy
+
 import numpy as np
 
 from hasel_sim.effects.base import Coefficients
 from hasel_sim.mechanics import compiled
-from hasel_sim.mechanics.branches import Branches, green_stress, kept
+from hasel_sim.mechanics.branches import Branches
+from hasel_sim.mechanics.simd import lane_tuple
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.mesh.serendipity import reference_gradients
 
@@ -16,10 +20,10 @@ def lame_constants(youngs_modulus: float, poissons_ratio: float) -> tuple[float,
 
 
 class Solid:
-    """Elastic, viscous and fibre stresses of a mesh with given constants.
+    """Elastic, viscous and fibre stresses of a mesh with given constants, of one lane; more by `beside`.
 
     plane_stress: no stress through the depth, instead of no strain. Arrays over Gauss points are
-    [elements, quadrature_order**2, ...].
+    [elements, quadrature_order**2, ..., lanes].
     """
 
     def __init__(
@@ -34,89 +38,113 @@ class Solid:
         self.elements, self.plane_stress, self.branches = mesh.elements, plane_stress, branches
         self.muscle, self._muscles = mesh.muscle, int(mesh.muscle.max(initial=0))
         _, gradients, areas = reference_gradients(nodes[mesh.elements], quadrature_order)
-        # The stress-free shape is stretched along x: gradients are taken with respect to it, and so are areas.
-        self.gradients = np.ascontiguousarray(gradients)
-        self.gradients[..., 0] /= material.rest_stretch[..., None]
-        self.areas = np.ascontiguousarray(areas * material.rest_stretch)
+        self._nodes = len(nodes)
+        self.gradients, self.areas = np.ascontiguousarray(gradients), np.ascontiguousarray(areas)
+        self.stretch = np.ascontiguousarray(np.broadcast_to(material.rest_stretch, areas.shape)[..., None])
         lame = material.lame
         if plane_stress:
             lame = 2 * material.shear * lame / (lame + 2 * material.shear)
-        self.shear, self.linear_lame = np.ascontiguousarray(material.shear), np.ascontiguousarray(lame)
-        self._table = np.zeros((len(mesh.elements), compiled.COEFFICIENTS))
-        self._table[:, compiled.SHEAR] = material.equilibrium * material.shear
-        self._table[:, compiled.LAME] = material.equilibrium * material.lame
-        self._table[:, compiled.VISCOUS_SHEAR] = material.retardation * material.shear
-        self._table[:, compiled.VISCOUS_LAME] = material.retardation * lame
-        self._table[:, compiled.FIBRE] = np.where(self.muscle > 0, material.fibre, 0.0)
-        self._tables: dict[float, np.ndarray] = {}
-        self._no_history = np.zeros((*areas.shape, 3))
+        self.shear, self.linear_lame = material.shear[:, None].copy(), lame[:, None].copy()
+        self._table = np.zeros((len(mesh.elements), compiled.COEFFICIENTS, 1))
+        self._table[:, compiled.SHEAR, 0] = material.equilibrium * material.shear
+        self._table[:, compiled.LAME, 0] = material.equilibrium * material.lame
+        self._table[:, compiled.VISCOUS_SHEAR, 0] = material.retardation * material.shear
+        self._table[:, compiled.VISCOUS_LAME, 0] = material.retardation * lame
+        self._table[:, compiled.FIBRE, 0] = np.where(self.muscle > 0, material.fibre, 0.0)
+        self._use_lanes()
 
-    def gradient(self, field: np.ndarray) -> np.ndarray:
-        """Gradient of a nodal field [nodes, 2] at the Gauss points, [elements, points, 4]."""
-        out = np.empty((*self.areas.shape, 4))
-        compiled.deformation(field, self.elements, self.gradients, out)
+    def _use_lanes(self) -> None:
+        lanes = self._table.shape[-1]
+        self._lane, self._shape = lane_tuple(lanes), (*self.areas.shape, 4, lanes)
+        self.no_history = np.zeros((*self.areas.shape, 3, lanes))
+        self.kept_moduli = np.empty((2, *self.areas.shape, 4, 4, lanes))
+
+    @staticmethod
+    def beside(each: Sequence["Solid"]) -> "Solid":
+        """Those of several bodies with one mesh, one lane after the other."""
+        out = copy(each[0])
+        for name in ("stretch", "shear", "linear_lame", "_table"):
+            setattr(out, name, np.concatenate([getattr(solid, name) for solid in each], axis=-1))
+        out.branches = Branches.beside([solid.branches for solid in each])
+        out._use_lanes()
         return out
 
-    def table(self, step: float) -> np.ndarray:
+    def same_shape(self, other: "Solid") -> bool:
+        """Whether another one has the same stress-free shape."""
+        return np.array_equal(self.gradients, other.gradients) and np.array_equal(self.stretch, other.stretch)
+
+    @property
+    def places(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """What the compiled loops know of the mesh: elements, gradients, areas and stretch of the stress-free shape."""
+        return self.elements, self.gradients, self.areas, self.stretch
+
+    def gradient(self, field: np.ndarray) -> np.ndarray:
+        """Gradient of a nodal field [nodes, 2, lanes] at the Gauss points, [elements, points, 4, lanes]."""
+        if field.shape != (self._nodes, 2, self._shape[-1]):
+            raise ValueError(
+                f"a field has the shape {field.shape}; expected {(self._nodes, 2, self._shape[-1])}"
+            )
+        out = np.empty(self._shape)
+        compiled.deformation(
+            np.ascontiguousarray(field), self.elements, self.gradients, self.stretch, out, self._lane
+        )
+        return out
+
+    def table(self, step: float | np.ndarray) -> np.ndarray:
         """Coefficients for the compiled loops when the branches have run for `step` [s] since the last known state.
 
         A step of 0 means at rest for ever: the branches have relaxed.
         """
-        if len(self.branches) == 0 or step == 0.0:
+        if len(self.branches) == 0 or not np.any(step):
             return self._table
-        return kept(self._tables, step, self._table_after)
-
-    def _table_after(self, step: float) -> np.ndarray:
-        table, gain = self._table.copy(), self.branches.factors(step)[1].sum()
+        table, gain = self._table.copy(), self.branches.factors(step)[1].sum(axis=0)
         table[:, compiled.BRANCH_SHEAR] = gain * self.shear
         table[:, compiled.BRANCH_LAME] = gain * self.linear_lame
         return table
 
     def green_stress(self, F: np.ndarray) -> np.ndarray:
-        """C : E at the Gauss points (xx, yy, xy), [elements, points, 3]."""
-        out = np.empty((*self.areas.shape, 3))
-        green_stress(F, self.shear, self.linear_lame, out)
+        """C : E at the Gauss points (xx, yy, xy), [elements, points, 3, lanes]."""
+        out = np.empty((*self.areas.shape, 3, F.shape[-1]))
+        compiled.green_stress(F, self.shear, self.linear_lame, out, self._lane)
         return out
 
-    def stress(self, F, rate, contraction: np.ndarray, history: np.ndarray | None, step: float) -> np.ndarray:
-        """First Piola stress; history: `Branches.history` or None; contraction: [muscles]."""
-        P = np.empty_like(F)
-        compiled.first_piola(
+    def green_stress_along(self, F: np.ndarray, change: np.ndarray) -> np.ndarray:
+        """Change of C : E along a change of F."""
+        out = np.empty((*self.areas.shape, 3, F.shape[-1]))
+        compiled.green_stress_direction(F, change, self.shear, self.linear_lame, out, self._lane)
+        return out
+
+    def _at(self, F, rate, contraction: np.ndarray, history: np.ndarray | None, step) -> tuple:
+        rest = np.zeros((1, contraction.shape[-1]))
+        return (
             F,
             rate,
             self.table(step),
             self.muscle,
-            np.array([0.0, *contraction]),
-            self._no_history if history is None else history,
+            np.concatenate([rest, contraction]),
+            self.no_history if history is None else history,
             self.plane_stress,
-            P,
         )
+
+    def stress(self, F, rate, contraction: np.ndarray, history: np.ndarray | None, step) -> np.ndarray:
+        """First Piola stress; history: `Branches.history` or None; contraction: [muscles, lanes]."""
+        P = np.empty_like(F)
+        compiled.first_piola(*self._at(F, rate, contraction, history, step), P, self._lane)
         return P
 
-    def moduli(self, F, rate, contraction, history, step: float) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives of `stress` by F and by its rate, [elements, points, 4, 4]."""
-        elastic, viscous = np.empty((*F.shape, 4)), np.empty((*F.shape, 4))
-        compiled.moduli(
-            F,
-            rate,
-            self.table(step),
-            self.muscle,
-            np.array([0.0, *contraction]),
-            self._no_history if history is None else history,
-            self.plane_stress,
-            elastic,
-            viscous,
-        )
+    def moduli(self, F, rate, contraction, history, step) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives of `stress` by F and by its rate, [elements, points, 4, 4, lanes]; valid until the next call."""
+        elastic, viscous = self.kept_moduli
+        compiled.moduli(*self._at(F, rate, contraction, history, step), elastic, viscous, self._lane)
         return elastic, viscous
 
     def add_force(self, P: np.ndarray, out: np.ndarray) -> None:
-        """Add the nodal forces of a stress to out [nodes, 2]."""
-        compiled.scatter_stress(P, self.elements, self.gradients, self.areas, out)
+        """Add the nodal forces of a stress to out [nodes, 2, lanes]."""
+        compiled.scatter_stress(P, *self.places, out, self._lane)
 
     def contraction_force(self, F: np.ndarray) -> np.ndarray:
-        """Derivative of the internal force by each muscle's contraction, [muscles, nodes, 2]."""
-        out = np.empty((self._muscles, int(self.elements.max()) + 1, 2))
-        compiled.contraction_force(
-            F, self._table, self.muscle, self.elements, self.gradients, self.areas, out
-        )
+        """Derivative of the internal force by each muscle's contraction, [muscles, nodes, 2, lanes]."""
+        out = np.empty((self._muscles, self._nodes, 2, F.shape[-1]))
+        mesh = self.elements, self.gradients, self.areas
+        compiled.contraction_force(F, self._table, self.muscle, *mesh, out, self._lane)
         return out

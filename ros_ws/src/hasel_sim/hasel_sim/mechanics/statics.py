@@ -19,11 +19,12 @@ _MOST_ITERATIONS = 15
 def equilibrium(
     system: System, drive: DriveState, load_factor: float, tolerance: float
 ) -> tuple[np.ndarray, Linearisation]:
-    """Nodal positions [m] [nodes, 2] at rest under load_factor times all loads, and the derivatives there.
+    """Nodal positions [m] [nodes, 2, 1] at rest under load_factor times all loads, and the derivatives there.
 
-    tolerance: largest last correction [m]. Raises SimulationError when no equilibrium is found.
+    system: of one lane, as everywhere here; tolerance: largest last correction [m]. Raises SimulationError when no
+    equilibrium is found.
     """
-    position = system.nodes.copy()
+    position = system.nodes[..., None].copy()
     still = np.zeros_like(position)
 
     def linearised(at: np.ndarray) -> tuple[np.ndarray, Linearisation]:
@@ -71,7 +72,7 @@ def _balanced(
 
 
 def equilibrium_slope(line: Linearisation, residual_slope: np.ndarray) -> np.ndarray:
-    """Change of the equilibrium along parameters whose residual slopes are given, [columns, nodes, 2]."""
+    """Change of the equilibrium along parameters whose residual slopes are given, [columns, nodes, 2, 1]."""
     factors, still = StaticFactors(line, _inertia_of_unheld_motions(line)), np.zeros_like(residual_slope)
     change = -factors.solve(residual_slope)
     for _ in range(2):
@@ -80,7 +81,7 @@ def equilibrium_slope(line: Linearisation, residual_slope: np.ndarray) -> np.nda
 
 
 def equilibrium_multiplier(line: Linearisation, weights: np.ndarray) -> np.ndarray:
-    """What a change of the residual [N/m] does to a sum of the equilibrium's positions with weights [nodes, 2]."""
+    """What a change of the residual [N/m] does to a sum of the equilibrium's positions with weights [nodes, 2, 1]."""
     factors = StaticFactors(line, _inertia_of_unheld_motions(line))
     multiplier = -factors.solve(weights[None], transposed=True)
     for _ in range(2):
@@ -92,7 +93,7 @@ def equilibrium_multiplier(line: Linearisation, weights: np.ndarray) -> np.ndarr
 class StaticFactors:
     """Solves K x + B a = b with B' x = 0: a body whose unheld rigid motions are held by their inertia B.
 
-    inertia: B [motions, nodes, 2]. The band matrix of a free body is pinned at three unknowns to be regular; a small
+    inertia: B [motions, nodes, 2, 1]. The band matrix of a free body is pinned at three unknowns to be regular; a small
     dense system takes the pins out again (Sherman, Morrison and Woodbury).
     """
 
@@ -101,16 +102,16 @@ class StaticFactors:
         self._pins, self._inertia = [], inertia
         if line.system.held == 0:
             self._pins = [0, 1, 2 * int(np.argmax(np.abs(nodes[:, 0] - nodes[0, 0]))) + 1]
-        stiffness = matrix.entries[self._pins, matrix.diagonal].copy()
-        matrix.entries[self._pins, matrix.diagonal] += stiffness
+        stiffness = matrix.entries[self._pins, matrix.diagonal, 0].copy()
+        matrix.entries[self._pins, matrix.diagonal, 0] += stiffness
         self._factors = matrix.factorise()
-        self._columns = np.zeros((len(self._pins) + len(inertia), *nodes.shape))
+        self._columns = np.zeros((len(self._pins) + len(inertia), *nodes.shape, 1))
         for column, (pin, strength) in enumerate(zip(self._pins, stiffness, strict=True)):
             self._columns[column].flat[pin] = -strength
         self._columns[len(self._pins) :] = inertia
 
     def solve(self, right: np.ndarray, transposed: bool = False) -> np.ndarray:
-        """Solution for each right-hand side [columns, nodes, 2]."""
+        """Solution for each right-hand side [columns, nodes, 2, 1]."""
         out = self._factors.solve(right, transposed)
         if len(self._columns):
             answers = self._factors.solve(self._columns, transposed)
@@ -125,22 +126,22 @@ class StaticFactors:
         return out
 
     def _seen(self, fields: np.ndarray) -> np.ndarray:
-        """The pinned unknowns and the weighted rigid motions of fields [columns, nodes, 2], [columns, conditions]."""
-        pinned = [fields[:, pin // 2, pin % 2] for pin in self._pins]
-        return np.stack([*pinned, *(np.tensordot(fields, motion, 2) for motion in self._inertia)], axis=1)
+        """The pinned unknowns and the weighted rigid motions of fields, [columns, conditions]."""
+        pinned = [fields[:, pin // 2, pin % 2, 0] for pin in self._pins]
+        return np.stack([*pinned, *(np.tensordot(fields, motion, 3) for motion in self._inertia)], axis=1)
 
 
 def _inertia_of_unheld_motions(line: Linearisation) -> np.ndarray:
-    """Mass times those rigid motions of a free body that no force of the surroundings resists, [motions, nodes, 2]."""
+    """Mass times those rigid motions of a free body that no force around it resists, [motions, nodes, 2, 1]."""
     system = line.system
     if system.held:
-        return np.zeros((0, *system.nodes.shape))
+        return np.zeros((0, *system.nodes.shape, 1))
     lumped = system.mass.lumped
     arm = system.nodes - lumped @ system.nodes / lumped.sum()
     radius = np.sqrt(lumped @ (arm**2).sum(axis=1) / lumped.sum())
     turn = np.stack([-arm[:, 1], arm[:, 0]], axis=1) / radius
-    motions = np.stack([np.ones_like(arm) * [1.0, 0.0], np.ones_like(arm) * [0.0, 1.0], turn])
-    stiffness = np.einsum("ind,jnd->ij", motions, line.force_along(motions)) / lumped.sum()
+    motions = np.stack([np.ones_like(arm) * [1.0, 0.0], np.ones_like(arm) * [0.0, 1.0], turn])[..., None]
+    stiffness = np.einsum("indl,jndl->ij", motions, line.force_along(motions)) / lumped.sum()
     unheld = []
     for motion in range(3):
         own = stiffness[motion, motion]

@@ -32,10 +32,11 @@ def plan_steps(
     """
     marks = np.unique(np.concatenate([[start], frame_times, [max(end, frame_times[-1])]]))
     counts = np.maximum(1, np.ceil(np.diff(marks) * steps_per_second - 0.1).astype(int))
-    pieces = [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(marks[:-1], marks[1:], counts, strict=True)]
-    boundaries = np.concatenate([marks[:1], *pieces])
-    frames = np.concatenate([[0], np.cumsum(counts)])[np.searchsorted(marks, frame_times)]
+    ends = np.cumsum(counts)
+    frames = np.concatenate([[0], ends])[np.searchsorted(marks, frame_times)]
     lengths = np.repeat(np.diff(marks) / counts, counts)
+    back = np.repeat(ends, counts) - np.arange(1, counts.sum() + 1)
+    boundaries = np.concatenate([marks[:1], np.repeat(marks[1:], counts) - back * lengths])
     rounded = np.round(lengths, 10).tolist()
     by_length = {length: step_coefficients(length, rho) for length in set(rounded)}
     return StepPlan(boundaries, frames, [by_length[length] for length in rounded])

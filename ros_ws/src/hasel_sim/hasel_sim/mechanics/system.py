@@ -1,5 +1,8 @@
 """The mechanical system: solid, inertia, loads and force effects, as one residual with its derivatives."""
 
+from collections.abc import Sequence
+from copy import copy
+
 import numpy as np
 
 from hasel_sim.mechanics import compiled
@@ -7,13 +10,17 @@ from hasel_sim.mechanics.banded import BandMatrix
 from hasel_sim.mechanics.force_law import ForceLaw
 from hasel_sim.mechanics.inertia import Mass
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
+from hasel_sim.mechanics.simd import lane_tuple
 from hasel_sim.mechanics.solid import Solid
 from hasel_sim.mechanics.stress_law import StressLaw
 from hasel_sim.mesh.mesh import Mesh
 
 
 class System:
-    """Residual M a + internal - external and its derivatives; held nodes come first and never move."""
+    """Residual M a + internal - external and its derivatives; held nodes come first and never move.
+
+    Of one lane; more by `beside`. Nodal vectors are [nodes, 2, lanes], but `nodes`, the reference positions [nodes, 2].
+    """
 
     def __init__(
         self,
@@ -28,15 +35,36 @@ class System:
         self.mesh, self.nodes, self.solid = mesh, nodes, solid
         self.mass = mass
         self.forces, self.stresses = forces, stresses
-        self.weight = mass.product(np.broadcast_to(gravity, (1, *nodes.shape)).copy())[0]
+        self.weight = mass.product(np.broadcast_to(gravity[:, None], (1, *nodes.shape, 1)))[0]
         self.held = len(mesh.clamped)
+        self._forget()
+
+    def _forget(self) -> None:
         self._last_strain: tuple[Motion, np.ndarray, np.ndarray] | None = None
         self._last_stress: tuple[Motion, DriveState, Memory, np.ndarray] | None = None
+
+    @staticmethod
+    def beside(each: Sequence["System"]) -> "System":
+        """Several bodies with one mesh and the same effects, one lane after the other."""
+        out = copy(each[0])
+        out.solid, out.mass = Solid.beside([s.solid for s in each]), Mass.beside([s.mass for s in each])
+        out.weight = np.concatenate([system.weight for system in each], axis=-1)
+        out.forces = [
+            law for laws in zip(*(s.forces for s in each), strict=True) for law in ForceLaw.beside(laws)
+        ]
+        out.stresses = [StressLaw.beside(laws) for laws in zip(*(s.stresses for s in each), strict=True)]
+        out._forget()
+        return out
+
+    @property
+    def lanes(self) -> int:
+        """How many bodies move side by side."""
+        return self.weight.shape[-1]
 
     def residual(
         self, motion: Motion, drive: DriveState, memory: Memory, load_factor: float = 1.0
     ) -> np.ndarray:
-        """Out-of-balance nodal force [N per m depth], [nodes, 2]; zero at held nodes."""
+        """Out-of-balance nodal force [N per m depth], [nodes, 2, lanes]; zero at held nodes."""
         out = self.mass.product(motion.acceleration[None])[0]
         out -= load_factor * self.weight
         self.solid.add_force(self._first_piola(motion, drive, memory)[1], out)
@@ -66,10 +94,10 @@ class System:
         return F, self._last_stress[3]
 
     def second_piola(self, motion: Motion, drive: DriveState, memory: Memory) -> np.ndarray:
-        """Second Piola stress [Pa] (xx, yy, xy) at the Gauss points, [elements, points, 3]."""
+        """Second Piola stress [Pa] (xx, yy, xy) at the Gauss points, [elements, points, 3, lanes]."""
         F, P = self._first_piola(motion, drive, memory)
-        out = np.empty((*P.shape[:2], 3))
-        compiled.second_piola(F, P, out)
+        out = np.empty((*P.shape[:2], 3, self.lanes))
+        compiled.second_piola(F, P, out, lane_tuple(self.lanes))
         return out
 
     def linearise(
@@ -85,7 +113,7 @@ class System:
         return Linearisation(self, elastic, viscous, F, rate, load_factor)
 
     def held_to_zero(self, columns: np.ndarray) -> np.ndarray:
-        """Set the held nodes of [columns, nodes, 2] to zero in place, and return it."""
+        """Set the held nodes of [columns, nodes, 2, lanes] to zero in place, and return it."""
         columns[:, : self.held] = 0.0
         return columns
 
@@ -106,24 +134,29 @@ class Linearisation:
         self._load_factor = load_factor
 
     def matrix(
-        self, position: float, velocity: float, acceleration: float, out: BandMatrix | None = None
+        self,
+        position: float | np.ndarray,
+        velocity: float | np.ndarray,
+        acceleration: float | np.ndarray,
+        out: BandMatrix | None = None,
     ) -> BandMatrix:
-        """position K + velocity C + acceleration M; into `out`, whose factors are then lost, where given."""
-        s = self.system.solid
+        """position K + velocity C + acceleration M, weighted per lane; into `out`, whose factors are then lost."""
+        lanes = self.system.lanes
         if out is None:
-            out = BandMatrix(self.system.mesh.reach, 2 * self.system.held)
+            out = BandMatrix(self.system.mesh.reach, 2 * self.system.held, lanes)
         else:
             out.clear()
+        weights = np.empty((3, lanes))
+        weights[0], weights[1], weights[2] = position, velocity, acceleration
         compiled.scatter_matrix(
             self.elastic,
             self.viscous,
             self.system.mass.masses,
-            np.array([position, velocity, acceleration]),
-            s.elements,
-            s.gradients,
-            s.areas,
+            weights,
+            *self.system.solid.places,
             out.entries,
             out.diagonal,
+            lane_tuple(lanes),
         )
         share = self._load_factor
         for law in self.system.forces:
@@ -133,12 +166,12 @@ class Linearisation:
         return out
 
     def with_initial_stress(self, found: np.ndarray, expected: np.ndarray) -> "Linearisation":
-        """The same with the geometric stiffness of another second Piola stress, both [elements, points, 3].
+        """The same with the geometric stiffness of another second Piola stress, both [elements, points, 3, lanes].
 
         A guessed motion stretches thin parts a little, and the compression this brings would make the matrix
         indefinite; the stress of the last balance is the better guess (Magisano, Leonetti, Garcea 2017).
         """
-        compiled.exchange_initial_stress(self.elastic, found, expected)
+        compiled.exchange_initial_stress(self.elastic, found, expected, lane_tuple(self.system.lanes))
         return self
 
     def along(
@@ -148,46 +181,49 @@ class Linearisation:
         acceleration: np.ndarray,
         stress: np.ndarray | None = None,
     ) -> np.ndarray:
-        """Change of the residual along directions of the motion, all [columns, nodes, 2].
+        """Change of the residual along directions of the motion, all [columns, nodes, 2, lanes].
 
         shift: None for no change of the positions; stress: a further change of the first Piola stress,
-        [columns, elements, points, 4].
+        [columns, elements, points, 4, lanes].
         """
-        s = self.system.solid
+        if rate.shape[1:] != (*self.system.nodes.shape, self.system.lanes):
+            raise ValueError(f"directions have the shape {rate.shape}; expected [columns, nodes, 2, lanes]")
         out = self.system.mass.product(acceleration)
-        none = np.empty((0, *self.elastic.shape[:3]))
+        none = np.empty((0, *self.F.shape))
         further = none if stress is None else stress
-        places = s.elements, s.gradients, s.areas
-        compiled.scatter_directions(self.viscous, further, *places, rate, out)
+        places, lane = self.system.solid.places, lane_tuple(self.system.lanes)
+        compiled.scatter_directions(self.viscous, further, *places, np.ascontiguousarray(rate), out, lane)
         if shift is None:
             shift = np.zeros_like(rate)
         else:
-            compiled.scatter_directions(self.elastic, none, *places, shift, out)
+            compiled.scatter_directions(self.elastic, none, *places, np.ascontiguousarray(shift), out, lane)
         share = self._load_factor
         for law in self.system.forces:
             law.add_directions(share * shift, share * rate, share * acceleration, out)
         return self.system.held_to_zero(out)
 
     def force_along(self, shift: np.ndarray) -> np.ndarray:
-        """How the surroundings resist displacements [columns, nodes, 2]: less the change of the force effects."""
+        """How the surroundings resist displacements [columns, nodes, 2, lanes]: less what changes in their forces."""
         out, still = np.zeros_like(shift), np.zeros_like(shift)
         for law in self.system.forces:
             law.add_directions(self._load_factor * shift, still, still, out)
         return out
 
     def pulled_back(self, weights: np.ndarray) -> np.ndarray:
-        """Transposed derivatives by position, velocity and acceleration times weights [nodes, 2], [3, nodes, 2]."""
-        s, nothing = self.system.solid, np.zeros_like(weights)
+        """Transposed derivatives by position, velocity and acceleration times weights [nodes, 2, lanes], [3, ...]."""
+        nothing = np.zeros_like(weights)
         out = np.stack([nothing, nothing, self.system.mass.product(weights[None])[0]])
-        compiled.scatter_pulled_back(
-            self.elastic, self.viscous, s.elements, s.gradients, s.areas, weights, out[:2]
-        )
+        none, transposed = np.empty((0, *self.F.shape)), np.empty_like(self.elastic)
+        places, lane = self.system.solid.places, lane_tuple(self.system.lanes)
+        for row, moduli in enumerate((self.elastic, self.viscous)):
+            compiled.transpose_moduli(moduli, transposed, lane)
+            compiled.scatter_directions(transposed, none, *places, weights[None], out[row : row + 1], lane)
         for law in self.system.forces:
             law.add_pulled_back(self._load_factor * weights, out)
         return self.system.held_to_zero(out)
 
     def by_contraction(self, drive: DriveState) -> np.ndarray:
-        """Derivative of the residual by the contraction of every muscle, [muscles, nodes, 2]."""
+        """Derivative of the residual by the contraction of every muscle, [muscles, nodes, 2, lanes]."""
         out = self.system.solid.contraction_force(self.F)
         for law in self.system.stresses:
             if law.concerns_muscles:

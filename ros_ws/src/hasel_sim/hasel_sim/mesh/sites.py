@@ -28,24 +28,26 @@ class Sites:
         return all(np.array_equal(mine, theirs) for mine, theirs in pairs)
 
     def value(self, field: np.ndarray) -> np.ndarray:
-        """A nodal field [..., nodes, 2] at the sites, [..., n, 2]."""
+        """A nodal field [..., nodes, 2, lanes] at the sites, [..., n, 2, lanes]."""
         return self._interpolated(self.shape, field)
 
     def tangent(self, position: np.ndarray) -> np.ndarray:
-        """Derivative of a nodal field along the skin, [..., n, 2]."""
+        """Derivative of a nodal field along the skin, [..., n, 2, lanes]."""
         return self._interpolated(self.slope, position)
 
     def _interpolated(self, weights: np.ndarray, field: np.ndarray) -> np.ndarray:
-        out = np.empty((*field.shape[:-2], len(self.nodes), 2))
-        columns = np.ascontiguousarray(field).reshape(-1, *field.shape[-2:])
-        _gather(columns, self.nodes, weights, out.reshape(-1, *out.shape[-2:]))
-        return out
+        nodes, width = field.shape[-3], 2 * field.shape[-1]
+        columns = np.ascontiguousarray(field).reshape(-1, nodes, width)
+        out = np.zeros((len(columns), len(self.nodes), width))
+        _gather(columns, self.nodes, weights, out)
+        return out.reshape(*field.shape[:-3], len(self.nodes), *field.shape[-2:])
 
     def scatter(self, force: np.ndarray, out: np.ndarray) -> None:
-        """Add forces at the sites [..., n, 2], times the measure, to the nodes in out [..., nodes, 2] (contiguous)."""
+        """Add forces at the sites [..., n, 2, lanes], times the measure, to out [..., nodes, 2, lanes] (contiguous)."""
+        width = 2 * out.shape[-1]
         columns = out.view()
-        columns.shape = (-1, *out.shape[-2:])
-        force = np.ascontiguousarray(force, dtype=float).reshape(-1, *force.shape[-2:])
+        columns.shape = (-1, out.shape[-3], width)
+        force = np.ascontiguousarray(force, dtype=float).reshape(-1, len(self.nodes), width)
         _spread(force, self.nodes, self.shape * self.measure[:, None], columns)
 
 
@@ -53,12 +55,9 @@ class Sites:
 def _gather(field, nodes, weights, out):
     for c in range(field.shape[0]):
         for s in range(nodes.shape[0]):
-            x = y = 0.0
             for k in range(nodes.shape[1]):
-                x += weights[s, k] * field[c, nodes[s, k], 0]
-                y += weights[s, k] * field[c, nodes[s, k], 1]
-            out[c, s, 0] = x
-            out[c, s, 1] = y
+                for w in range(field.shape[2]):
+                    out[c, s, w] += weights[s, k] * field[c, nodes[s, k], w]
 
 
 @njit(cache=True)
@@ -66,8 +65,8 @@ def _spread(force, nodes, weights, out):
     for c in range(force.shape[0]):
         for s in range(nodes.shape[0]):
             for k in range(nodes.shape[1]):
-                out[c, nodes[s, k], 0] += weights[s, k] * force[c, s, 0]
-                out[c, nodes[s, k], 1] += weights[s, k] * force[c, s, 1]
+                for w in range(force.shape[2]):
+                    out[c, nodes[s, k], w] += weights[s, k] * force[c, s, w]
 
 
 def body_sites(mesh: Mesh, nodes: np.ndarray, density: np.ndarray) -> Sites:

@@ -150,7 +150,8 @@ class Cantilever:
         model = self._rectangle(
             length=self.length, height=self.height, effects=(pull,), values=values, mesh_density=0.5
         )
-        return equilibrium(Builder(model).system(), DriveState(np.zeros(2), np.zeros(2), 0.0), 1.0, 1e-11)[0]
+        still = DriveState.single(np.zeros(2), np.zeros(2), 0.0)
+        return equilibrium(Builder(model).system(), still, 1.0, 1e-11)[0][..., 0]
 
     def ring_down(
         self, duration: float, identity: str | None = None, tip: float = 0.004, frames=240.0, **values

@@ -287,7 +287,7 @@ def test_an_own_drive_effect_is_no_slower_than_three_built_in_ones():
 
 def test_an_own_force_effect_is_no_slower_than_three_built_in_ones(written):
     """Residual and derivatives take at most 3 times as long with a user's drag as with the built-in one."""
-    drive = DriveState(np.zeros(2), np.zeros(2), 0.0)
+    drive = DriveState.single(np.zeros(2), np.zeros(2), 0.0)
     taken = []
     for name, parameter, value in (
         ("quadratic_drag", "quadratic_drag.coefficient", 0.3),
@@ -295,7 +295,7 @@ def test_an_own_force_effect_is_no_slower_than_three_built_in_ones(written):
     ):
         model = load_model("swimmer").with_effects(name).with_values({parameter: value})
         builder = Builder(model)
-        system, nodes = builder.system(), builder.mesh.nodes
+        system, nodes = builder.system(), builder.mesh.nodes[..., None]
         motion = Motion(nodes, 0.1 * np.ones_like(nodes), np.zeros_like(nodes))
 
         def force_and_derivatives(system=system, motion=motion):

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from hasel_sim.build import model_mesh
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
@@ -11,9 +10,10 @@ DIRECTED = {"tether": "holds the body back sideways only"}
 
 
 def turned_angle(model, run, degrees: float) -> np.ndarray:
-    """sin theta of a run that starts with the whole body turned."""
+    """sin theta of a run that starts at rest with the whole body turned."""
     cos, sin = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    shape = model_mesh(model).nodes @ np.array([[cos, sin], [-sin, cos]])
+    rest = simulate(model, Run("rest", run.time[:2]), keep_shapes=True).shapes[0]
+    shape = rest @ np.array([[cos, sin], [-sin, cos]])
     turned = Run(run.name, run.time, run.schedule, "held_shape", initial_shape=shape)
     return simulate(model, turned).sin_theta
 

@@ -16,15 +16,16 @@ def _dense(band) -> np.ndarray:
     out = np.zeros((n, n))
     for row in range(n):
         low, high = max(0, row - k), min(n, row + k + 1)
-        out[row, low:high] = band.entries[row, band.diagonal + low - row : band.diagonal + high - row]
+        out[row, low:high] = band.entries[row, band.diagonal + low - row : band.diagonal + high - row, 0]
     return out[band.held :, band.held :]
 
 
 def _frequencies(model, still) -> np.ndarray:
     """Circular frequencies [rad/s], ascending, without the rigid motions."""
     system = Builder(model).system()
-    zero = np.zeros_like(system.nodes)
-    line = system.linearise(Motion(system.nodes, zero, zero), still, Memory())
+    nodes = system.nodes[..., None]
+    zero = np.zeros_like(nodes)
+    line = system.linearise(Motion(nodes, zero, zero), still, Memory())
     stiffness, mass = _dense(line.matrix(1.0, 0.0, 0.0)), _dense(line.matrix(0.0, 0.0, 1.0))
     squares = eigh(stiffness, mass, eigvals_only=True, subset_by_index=[0, 7])
     return np.sqrt(squares[squares > 1e-3])

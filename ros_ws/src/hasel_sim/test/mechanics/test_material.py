@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from hasel_sim.mechanics import compiled
-from hasel_sim.mechanics.branches import Branches, green_stress, green_stress_direction
+from hasel_sim.mechanics.branches import Branches
+from hasel_sim.mechanics.simd import lane_tuple
 from scipy.optimize import minimize_scalar
 
 SHEAR, LAME, VISCOUS_SHEAR, VISCOUS_LAME, FIBRE = 22e3, 200e3, 440.0, 4000.0, 65e3
@@ -11,6 +12,7 @@ CONTRACTION = 0.1
 F = np.array([1.15, 0.2, -0.1, 0.95])
 RATE = np.array([0.3, -0.5, 0.8, -0.2])
 STEP = 1e-6
+ONE = lane_tuple(1)
 
 
 def _energy(f: np.ndarray, plane_stress: bool) -> float:
@@ -28,18 +30,19 @@ def _energy(f: np.ndarray, plane_stress: bool) -> float:
 
 
 def _point(values) -> np.ndarray:
-    return np.ascontiguousarray(np.broadcast_to(values, (1, 1, len(values))), dtype=float)
+    return np.array(values, dtype=float)[None, None, :, None]
 
 
 def _arguments(viscous: bool, plane_stress: bool, history=(0.0, 0.0, 0.0), branch=(0.0, 0.0)):
     table = np.array([[SHEAR, LAME, VISCOUS_SHEAR * viscous, VISCOUS_LAME * viscous, *branch, FIBRE]])
-    return table, np.array([1]), np.array([0.0, CONTRACTION, 0.0]), _point(history), plane_stress
+    contraction = np.array([[0.0], [CONTRACTION], [0.0]])
+    return table[..., None], np.array([1]), contraction, _point(history), plane_stress
 
 
 def _stress(f, rate, arguments) -> np.ndarray:
-    out = np.empty((1, 1, 4))
-    compiled.first_piola(_point(f), _point(rate), *arguments, out)
-    return out[0, 0]
+    out = np.empty((1, 1, 4, 1))
+    compiled.first_piola(_point(f), _point(rate), *arguments, out, ONE)
+    return out[0, 0, :, 0]
 
 
 def _difference(function, at) -> np.ndarray:
@@ -69,12 +72,12 @@ def test_viscous_stress_is_that_of_kelvin_and_voigt():
 def test_moduli_are_the_derivatives_of_the_stress(plane_stress):
     """By F and by its rate, with damping, fibres, branches and their history."""
     arguments = _arguments(True, plane_stress, (300.0, -200.0, 100.0), (5e3, 4e4))
-    elastic, viscous = np.empty((1, 1, 4, 4)), np.empty((1, 1, 4, 4))
-    compiled.moduli(_point(F), _point(RATE), *arguments, elastic, viscous)
+    elastic, viscous = np.empty((1, 1, 4, 4, 1)), np.empty((1, 1, 4, 4, 1))
+    compiled.moduli(_point(F), _point(RATE), *arguments, elastic, viscous, ONE)
     by_deformation = _difference(lambda f: _stress(f, RATE, arguments), F)
     by_rate = _difference(lambda r: _stress(F, r, arguments), RATE)
-    assert elastic[0, 0] == pytest.approx(by_deformation, rel=1e-6, abs=1e-3)
-    assert viscous[0, 0] == pytest.approx(by_rate, rel=1e-6, abs=1e-3)
+    assert elastic[0, 0, ..., 0] == pytest.approx(by_deformation, rel=1e-6, abs=1e-3)
+    assert viscous[0, 0, ..., 0] == pytest.approx(by_rate, rel=1e-6, abs=1e-3)
 
 
 @pytest.mark.parametrize("plane", ["strain", "stress"])
@@ -97,24 +100,24 @@ def test_a_pulled_bar_has_the_stiffness_and_contraction_of_theory(plane, rectang
 
 def test_green_stress_and_its_direction_agree():
     """The directional derivative of C : E against central differences."""
-    shear, lame = np.array([SHEAR]), np.array([LAME])
+    shear, lame = np.array([[SHEAR]]), np.array([[LAME]])
 
     def value(f):
-        out = np.empty((1, 1, 3))
-        green_stress(_point(f), shear, lame, out)
-        return out[0, 0]
+        out = np.empty((1, 1, 3, 1))
+        compiled.green_stress(_point(f), shear, lame, out, ONE)
+        return out[0, 0, :, 0]
 
-    out = np.empty((1, 1, 3))
-    green_stress_direction(_point(F), _point(RATE), shear, lame, out)
+    out = np.empty((1, 1, 3, 1))
+    compiled.green_stress_direction(_point(F), _point(RATE), shear, lame, out, ONE)
     expected = (value(F + STEP * RATE) - value(F - STEP * RATE)) / (2 * STEP)
-    assert out[0, 0] == pytest.approx(expected, rel=1e-7)
+    assert out[0, 0, :, 0] == pytest.approx(expected, rel=1e-7)
 
 
 def test_a_branch_relaxes_as_maxwell_says():
     """A strain held after a ramp leaves g C : E phi(ramp / tau) exp(-t / tau), whatever the steps."""
     branches = Branches([(0.5, 0.2)])
-    strain = np.array([1.0, -0.4, 0.2])[None, None]
-    stress = np.zeros((1, 1, 1, 3))
+    strain = np.array([1.0, -0.4, 0.2])[None, None, :, None]
+    stress = np.zeros((1, 1, 1, 3, 1))
     for step in range(4):
         stress = branches.advance(stress, strain * step / 4, strain * (step + 1) / 4, 0.025)
     for _ in range(3):

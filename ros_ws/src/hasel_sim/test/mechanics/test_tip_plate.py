@@ -24,9 +24,10 @@ def _with_plate(model, mass: float, inertia: float):
 def _frequency(model) -> float:
     """First angular frequency [rad/s], from stiffness and mass at rest."""
     builder = Builder(model)
-    system, still = builder.system(), np.zeros_like(builder.nodes)
+    system, nodes = builder.system(), builder.nodes[..., None]
+    still = np.zeros_like(nodes)
     line = system.linearise(
-        Motion(builder.nodes, still, still), DriveState(np.zeros(0), np.zeros(0), 0.0), Memory()
+        Motion(nodes, still, still), DriveState.single(np.zeros(0), np.zeros(0), 0.0), Memory()
     )
     columns = np.eye(2 * len(still)).reshape(-1, *still.shape)
     stiffness = line.along(columns, np.zeros_like(columns), np.zeros_like(columns)).reshape(len(columns), -1)

@@ -11,8 +11,8 @@ def _bending_energy(model, still, curvature: float) -> float:
     builder = Builder(model)
     system, (x, y) = builder.system(), builder.mesh.nodes.T
     poisson = 0.45 / 0.55
-    shift = curvature * np.stack([-x * y, 0.5 * x**2 + 0.5 * poisson * y**2], axis=1)[None]
-    rest = Motion(builder.mesh.nodes, 0 * shift[0], 0 * shift[0])
+    shift = curvature * np.stack([-x * y, 0.5 * x**2 + 0.5 * poisson * y**2], axis=1)[None, ..., None]
+    rest = Motion(builder.mesh.nodes[..., None], 0 * shift[0], 0 * shift[0])
     force = system.linearise(rest, still, Memory()).along(shift, 0 * shift, 0 * shift)
     return 0.5 * float(np.sum(force * shift))
 

@@ -1,0 +1,169 @@
+"""One number per lane as a single value of the compiled loops: a vector of the processor, with the usual operators.
+
+Arrays of the mechanics have the lanes (runs that are simulated side by side) as their last axis. `load` and `store`
+move the lanes that start at a flat index of such an array; `lane`, a tuple as long as there are lanes, tells the
+compiler how many, so that every number of lanes has loops of its own. Plain numbers mix with lanes.
+"""
+
+import operator
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.core.errors import TypingError
+from numba.extending import intrinsic, models, overload, register_model
+
+LANES = (1, 4)
+"""How many lanes the loops are compiled for; four doubles fill a vector, and their matrix the cache."""
+
+
+def lane_tuple(lanes: int) -> tuple[int, ...]:
+    """What tells the compiled loops the number of lanes."""
+    return (0,) * lanes
+
+
+class Lanes(types.Type):
+    """Numba's type of one double per lane."""
+
+    def __init__(self, count: int) -> None:
+        self.count = count
+        super().__init__(name=f"Lanes({count})")
+
+
+@register_model(Lanes)
+class _LanesModel(models.PrimitiveModel):
+    def __init__(self, manager, kind) -> None:
+        super().__init__(manager, kind, _vector(kind.count))
+
+
+def _vector(count: int) -> ir.VectorType:
+    return ir.VectorType(ir.DoubleType(), count)
+
+
+def _check(array) -> None:
+    if array.layout != "C" or array.dtype != types.float64:
+        raise TypingError(f"found {array}; expected a contiguous array of doubles")
+
+
+def _address(context, builder, signature, array, index, count):
+    data = context.make_array(signature.args[0])(context, builder, array).data
+    return builder.bitcast(builder.gep(data, [index]), _vector(count).as_pointer())
+
+
+@intrinsic
+def load(typing_context, array, index, lane):
+    """The lanes that start at a flat index of a contiguous array."""
+    _check(array)
+    kind = Lanes(len(lane))
+
+    def build(context, builder, signature, arguments):
+        address = _address(context, builder, signature, arguments[0], arguments[1], kind.count)
+        return builder.load(address, align=8)
+
+    return kind(array, types.intp, lane), build
+
+
+@intrinsic
+def store(typing_context, array, index, value):
+    """Write lanes to where a flat index of a contiguous array says."""
+    _check(array)
+
+    def build(context, builder, signature, arguments):
+        address = _address(context, builder, signature, arguments[0], arguments[1], value.count)
+        builder.store(arguments[2], address, align=8)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, value), build
+
+
+@intrinsic
+def zero(typing_context, lane):
+    """Zero in every lane."""
+    kind = Lanes(len(lane))
+
+    def build(context, builder, signature, arguments):
+        return ir.Constant(_vector(kind.count), [0.0] * kind.count)
+
+    return kind(lane), build
+
+
+def _widened(builder, value, kind, count: int):
+    if isinstance(kind, Lanes):
+        return value
+    one = ir.IntType(32)
+    undefined = ir.Constant(_vector(count), ir.Undefined)
+    first = builder.insert_element(undefined, value, ir.Constant(one, 0))
+    return builder.shuffle_vector(first, undefined, ir.Constant(ir.VectorType(one, count), [0] * count))
+
+
+def _operation(name: str):
+    @intrinsic
+    def operation(typing_context, a, b):
+        kind = a if isinstance(a, Lanes) else b
+        kinds = [x if isinstance(x, Lanes) else types.float64 for x in (a, b)]
+
+        def build(context, builder, signature, arguments):
+            wide = [
+                _widened(builder, x, k, kind.count) for x, k in zip(arguments, signature.args, strict=True)
+            ]
+            return getattr(builder, name)(*wide, flags=("fast",))
+
+        return kind(*kinds), build
+
+    return operation
+
+
+def _overload_binary(python_operator, name: str) -> None:
+    operation = _operation(name)
+
+    @overload(python_operator)
+    def _typed(a, b):
+        if isinstance(a, Lanes) or isinstance(b, Lanes):
+            return lambda a, b: operation(a, b)
+        return None
+
+
+for _operator, _name in (
+    (operator.add, "fadd"),
+    (operator.sub, "fsub"),
+    (operator.mul, "fmul"),
+    (operator.truediv, "fdiv"),
+):
+    _overload_binary(_operator, _name)
+
+
+def _function(function_name: str):
+    @intrinsic
+    def function(typing_context, value):
+        def build(context, builder, signature, arguments):
+            kind = ir.FunctionType(_vector(value.count), [_vector(value.count)])
+            name = f"llvm.{function_name}.v{value.count}f64"
+            callee = cgutils.get_or_insert_function(builder.module, kind, name)
+            return builder.call(callee, arguments, fastmath=("fast",))
+
+        return value(value), build
+
+    return function
+
+
+square_root, logarithm = _function("sqrt"), _function("log")
+
+
+@intrinsic
+def of_lane(typing_context, value, index):
+    """The number in one lane."""
+
+    def build(context, builder, signature, arguments):
+        return builder.extract_element(*arguments)
+
+    return types.float64(value, types.intp), build
+
+
+@intrinsic
+def with_lane(typing_context, value, index, number):
+    """The lanes with another number in one of them."""
+
+    def build(context, builder, signature, arguments):
+        return builder.insert_element(arguments[0], arguments[2], arguments[1])
+
+    return value(value, types.intp, types.float64), build
