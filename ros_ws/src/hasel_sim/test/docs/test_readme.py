@@ -37,9 +37,14 @@ def test_the_first_program_simulates_differentiates_and_saves(programs, tmp_path
     assert load_model(tmp_path / "dragged.yaml").values["quadratic_drag.coefficient"] == 0.25
 
 
+def test_the_program_side_by_side_continues_the_first(programs, tmp_path):
+    """One largest angle per model."""
+    assert len(re.findall(r"^0\.\d{3}$", _run(programs[0] + programs[1], tmp_path), re.MULTILINE)) == 2
+
+
 def test_the_adjoint_program_continues_the_first(programs, tmp_path):
     """It prints one gradient per step and muscle, and one per outline coefficient."""
-    output = _run(programs[0] + programs[2], tmp_path)
+    output = _run(programs[0] + programs[3], tmp_path)
     assert "torch.Size([240, 2])" in output
     assert "tensor([" in output
 
