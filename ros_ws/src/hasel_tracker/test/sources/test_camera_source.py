@@ -93,3 +93,12 @@ def test_absent_camera_is_explained():
     """A camera that cannot be opened gives one sentence with what to check."""
     with pytest.raises(TrackerError, match="camera 7 cannot be opened; check that it is plugged in"):
         CameraSource(7, capture=FakeCapture(opened=False))
+
+
+def test_a_rate_that_a_driver_rounds_is_no_complaint():
+    """119.98 frames/s for 120 is what was asked for; 100 is not."""
+    camera = CameraSource(0, CameraFormat(640, 480, 30.0), capture=FakeCapture())
+    camera.asked, camera.given = CameraFormat(), CameraFormat(frame_rate_hz=119.98)
+    assert camera.complaint == ""
+    camera.given = CameraFormat(frame_rate_hz=100.0)
+    assert "it gives" in camera.complaint
