@@ -16,7 +16,7 @@ def test_skin_sites_add_up_to_the_circumference(rectangle):
 def test_tangents_of_the_skin_have_unit_length_at_rest(swimmer):
     """The derivative of the position along the undeformed skin."""
     mesh = Builder(swimmer).mesh
-    tangent = skin_sites(mesh).tangent(mesh.nodes)
+    tangent = skin_sites(mesh).tangent(mesh.nodes[..., None])[..., 0]
     assert np.linalg.norm(tangent, axis=1) == pytest.approx(np.ones(len(tangent)))
 
 
@@ -24,8 +24,8 @@ def test_a_uniform_pressure_on_the_closed_skin_has_no_resultant(swimmer):
     """Forces along the normals, scattered to the nodes, sum to zero."""
     mesh = Builder(swimmer).mesh
     sites = skin_sites(mesh)
-    tangent = sites.tangent(mesh.nodes)
-    out = np.zeros_like(mesh.nodes)
+    tangent = sites.tangent(mesh.nodes[..., None])
+    out = np.zeros((*mesh.nodes.shape, 1))
     sites.scatter(np.stack([tangent[:, 1], -tangent[:, 0]], axis=1), out)
     assert np.abs(out.sum(axis=0)).max() < 1e-6 * np.abs(out).sum()
 
@@ -41,7 +41,8 @@ def test_body_sites_stand_for_the_whole_mass(rectangle):
 def test_a_force_on_a_point_keeps_its_sum_and_moment(swimmer):
     """Scattered to the nodes around it."""
     mesh = Builder(swimmer).mesh
-    out = np.zeros_like(mesh.nodes)
-    point_sites(mesh, np.array([[0.1, 0.0]])).scatter(np.array([[0.0, 2.0]]), out)
+    out = np.zeros((*mesh.nodes.shape, 1))
+    point_sites(mesh, np.array([[0.1, 0.0]])).scatter(np.array([[[0.0], [2.0]]]), out)
+    out = out[..., 0]
     assert out.sum(axis=0) == pytest.approx([0.0, 2.0], abs=1e-12)
     assert (mesh.nodes[:, 0] * out[:, 1]).sum() == pytest.approx(0.2)

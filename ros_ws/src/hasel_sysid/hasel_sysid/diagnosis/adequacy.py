@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import gammaincc
 
 from hasel_sysid.diagnosis.explained import NEAR_NOISE
 from hasel_sysid.drive_match import drive_unit
@@ -78,10 +78,8 @@ def adequacy(evaluation: Evaluation, allowed: NoiseModel) -> Adequacy:
         if frames.sum() < _FEWEST_FRAMES:
             continue
         own, expected = squares[frames].mean(), by_noise[frames].mean(axis=0)
-        spread = float(expected.std())
-        # a normal tail beyond the draws, so that a regime far out is not limited by their number
         found.append(Misfit(name, float(np.sqrt(own / expected.mean()))))
-        chances.append((own - expected.mean()) / spread if spread > 0 else 0.0)
+        chances.append(_chance(own, expected))
     rejected = _beyond_chance(np.array(chances))
     misfits = [m for m, beyond in zip(found, rejected, strict=True) if beyond and m.times > _MATTERS]
     times = evaluation.mean_absolute_error / allowed.mean_absolute
@@ -124,15 +122,27 @@ def _labels(evaluation: Evaluation) -> dict[str, list[str]]:
     return labels
 
 
-def _beyond_chance(scores: np.ndarray) -> np.ndarray:
-    """Which of many standard scores are too large, with few false ones among them."""
-    if len(scores) == 0:
+def _chance(own: float, drawn: np.ndarray) -> float:
+    """Chance of a mean square of at least this size, from draws of it by noise alone.
+
+    A scaled chi-square with the draws' mean and variance (Satterthwaite, Biometrics 2 (1946) 110): of noise that
+    neighbouring frames share few are independent, and a normal tail would be too thin.
+    """
+    variance = float(drawn.var())
+    if not variance > 0:
+        return 1.0
+    half_freedom = drawn.mean() ** 2 / variance
+    return float(gammaincc(half_freedom, half_freedom * own / drawn.mean()))
+
+
+def _beyond_chance(chance: np.ndarray) -> np.ndarray:
+    """Which of many chances are too small, with few false ones among them."""
+    if len(chance) == 0:
         return np.zeros(0, dtype=bool)
-    chance = norm.sf(scores)
     order = np.argsort(chance)
-    line = _FALSE_DISCOVERIES * np.arange(1, len(scores) + 1) / len(scores)
+    line = _FALSE_DISCOVERIES * np.arange(1, len(chance) + 1) / len(chance)
     below = np.flatnonzero(chance[order] <= line)
-    rejected = np.zeros(len(scores), dtype=bool)
+    rejected = np.zeros(len(chance), dtype=bool)
     if len(below):
         rejected[order[: below[-1] + 1]] = True
     return rejected
