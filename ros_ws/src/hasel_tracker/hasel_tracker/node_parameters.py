@@ -5,6 +5,7 @@ from typing import Any
 
 from hasel_tracker.calibration.settings_file import COLOUR_KEYS, SEARCH_KEYS, flat
 from hasel_tracker.tracking.bending_tracker import DEFAULT_METHOD
+from hasel_tracker.tracking.silhouette import BODY_KINDS
 from hasel_tracker.tracking.tracker_settings import METHODS, TrackerSettings
 
 
@@ -64,6 +65,11 @@ PARAMETERS = (
         "of two markers: where the straight body points, anticlockwise from right [°]",
         -180.0,
         180.0,
+    ),
+    _search("body", "of midline: light or dark against the ground, or auto", choices=tuple(BODY_KINDS)),
+    _search(
+        "points",
+        "of midline: shares of the length from head to tail, such as 0.05,0.5,1; empty for the markers'",
     ),
     _search("minimum_quality", "below it a marker counts as lost", 0.0, 1.0),
 )

@@ -13,6 +13,7 @@ from hasel_tracker.bench.robustness import CASES, Robustness, measure_robustness
 from hasel_tracker.bench.speed import Speed, measure_speed
 from hasel_tracker.lab.catalogue import ADVERSARIAL, SEVERAL_SEEDS
 from hasel_tracker.lab.catalogue import CASES as LAB_CASES
+from hasel_tracker.lab.midline_catalogue import MIDLINE
 from hasel_tracker.lab.wrong_while_valid import Honesty, measure_honesty
 
 CSRT_FRAMES = 12
@@ -145,7 +146,7 @@ def run_bench(frames: int, told: Callable[[str], None]) -> BenchReport:
         robustness.append(measure_robustness(case, frames))
         told(str(robustness[-1]))
     honesty = []
-    for case in LAB_CASES:
+    for case in (*LAB_CASES, *MIDLINE):
         seeds = LAB_SEEDS if case in ADVERSARIAL and case.name in SEVERAL_SEEDS else 1
         honesty.append(measure_honesty(case, max(case.least_frames, frames // 3), seeds))
         told(str(honesty[-1]))

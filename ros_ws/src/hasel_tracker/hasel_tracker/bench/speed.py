@@ -7,6 +7,8 @@ import cv2
 import numpy as np
 
 from hasel_tracker.bench.accuracy import CONDITIONS, FRAME_RATE_HZ, renderer_for
+from hasel_tracker.lab.lab_scene import LabScene
+from hasel_tracker.lab.lab_swimmer import DARK, LabSwimmer
 from hasel_tracker.sources.frame import Frame
 from hasel_tracker.tracking.bending_tracker import DEFAULT_METHOD, BendingTracker
 from hasel_tracker.tracking.trust import AGREEING_FRAMES
@@ -22,13 +24,14 @@ class Speed:
     tracking_hz: float
     with_decoding_hz: float
     csrt_hz: float
+    midline_hz: float
 
     def __str__(self) -> str:
         return (
             f"{self.tracking_hz:.0f} frames/s without decoding, {self.with_decoding_hz:.0f} frames/s with "
             f"JPEG "
             f"decoding; CSRT {self.csrt_hz:.1f} frames/s ({self.tracking_hz / self.csrt_hz:.0f} times "
-            f"slower)."
+            f"slower), midline {self.midline_hz:.1f} frames/s."
         )
 
 
@@ -46,9 +49,17 @@ def measure_speed(frames: int = 24, repeats: int = 8, csrt_frames: int = 8) -> S
             _rate(plain, DEFAULT_METHOD, repeats),
             _rate(coded, DEFAULT_METHOD, repeats),
             _rate(plain[: csrt_frames + 1], "csrt", 1),
+            _rate(_bare_frames(csrt_frames), "midline", 1),
         )
     finally:
         cv2.setNumThreads(threads)
+
+
+def _bare_frames(count: int) -> list[Frame]:
+    """A swimmer without dots at 1080p, its body 1000 px long."""
+    swimmer = LabSwimmer(1000.0, (460.0, 540.0), marked=False, body_colour=DARK, half_width_px=50.0)
+    scene = LabScene((swimmer,), size_px=(1920, 1080), exposure_s=0.0)
+    return [Frame(i, each.time_s, image=each.image) for i, each in enumerate(scene.frames(count))]
 
 
 def _rate(frames: list[Frame], method: str, repeats: int) -> float:

@@ -1,22 +1,25 @@
-"""`calibrate colour FRAME`, `calibrate board IMAGE…`: learn the markers' colour, the lens and perspective."""
+"""`calibrate colour|body|board|distance`: the markers' colour, how a body stands out, lens and scale."""
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import cv2
 import numpy as np
 
 from hasel_tracker.calibration.board_calibration import VIEWS_FOR_LENS, Board, calibrate_camera, find_corners
+from hasel_tracker.calibration.body_learning import body_picture, learn_body
 from hasel_tracker.calibration.camera_calibration import scale_calibration
 from hasel_tracker.calibration.colour_learning import learn_colour
 from hasel_tracker.calibration.learned_picture import learned_picture
 from hasel_tracker.calibration.settings_file import save_settings
-from hasel_tracker.commands.command import point, run_command
+from hasel_tracker.commands.command import point, region, run_command
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.sources.folder_source import IMAGE_SUFFIXES
 from hasel_tracker.sources.video_source import VideoSource
+from hasel_tracker.tracking.bending_tracker import within
+from hasel_tracker.tracking.silhouette import BODY_KINDS
 
 
 def parser() -> argparse.ArgumentParser:
@@ -30,6 +33,14 @@ def parser() -> argparse.ArgumentParser:
         "--output", "-o", type=Path, default=Path("markers.yaml"), help="default: %(default)s"
     )
     colour.add_argument("--show", type=Path, metavar="PNG", help="write a picture of what is seen")
+    body = kinds.add_parser("body", help="see how a swimmer without dots stands out (--method midline)")
+    body.add_argument("frame", type=Path, help="image, or video (its first frame)")
+    body.add_argument(
+        "--body", choices=tuple(BODY_KINDS), default="auto", help="against the ground (default: auto)"
+    )
+    body.add_argument("--roi", type=region, metavar="X,Y,W,H", help="look only within this part")
+    body.add_argument("--output", "-o", type=Path, default=Path("markers.yaml"), help="default: %(default)s")
+    body.add_argument("--show", type=Path, metavar="PNG", help="write a picture of what is seen")
     board = kinds.add_parser("board", help="lens and perspective from pictures of a chessboard")
     board.add_argument(
         "images", type=Path, nargs="*", help=f"views in other poses, for the lens ({VIEWS_FOR_LENS} or more)"
@@ -56,7 +67,7 @@ def parser() -> argparse.ArgumentParser:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns its exit code."""
     options = parser().parse_args(arguments)
-    work = {"colour": _colour, "board": _board, "distance": _distance}[options.kind]
+    work = {"colour": _colour, "body": _body, "board": _board, "distance": _distance}[options.kind]
     return run_command(lambda: work(options))
 
 
@@ -66,10 +77,24 @@ def _colour(options: argparse.Namespace) -> None:
     print(learned)
     save_settings(learned.settings, options.output)
     print(f"Wrote {options.output}.")
-    if options.show is not None:
-        if not cv2.imwrite(str(options.show), learned_picture(image, learned)):
-            raise TrackerError(f"The picture {options.show} cannot be written; end its name in .png.")
-        print(f"Wrote {options.show}.")
+    _show(options.show, lambda: learned_picture(image, learned))
+
+
+def _body(options: argparse.Namespace) -> None:
+    image, _ = within(_image(options.frame), options.roi)
+    learned = learn_body(image, options.body)
+    print(learned)
+    save_settings(learned.settings, options.output)
+    print(f"Wrote {options.output}.")
+    _show(options.show, lambda: body_picture(image, learned))
+
+
+def _show(path: Path | None, draw: Callable[[], np.ndarray]) -> None:
+    if path is None:
+        return
+    if not cv2.imwrite(str(path), draw()):
+        raise TrackerError(f"The picture {path} cannot be written; end its name in .png.")
+    print(f"Wrote {path}.")
 
 
 def _board(options: argparse.Namespace) -> None:

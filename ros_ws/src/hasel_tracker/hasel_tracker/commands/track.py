@@ -10,7 +10,7 @@ import numpy as np
 
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
 from hasel_tracker.calibration.settings_file import load_settings
-from hasel_tracker.commands.command import point, progress_bar, run_command
+from hasel_tracker.commands.command import point, progress_bar, region, run_command
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.offline.drive import (
     Alignment,
@@ -30,6 +30,7 @@ from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.open_source import open_recorded
 from hasel_tracker.sources.video_source import VideoSource
 from hasel_tracker.tracking.bending_tracker import DEFAULT_METHOD, BendingTracker, TrackedFrame
+from hasel_tracker.tracking.silhouette import BODY_KINDS
 from hasel_tracker.tracking.tracker_settings import METHODS, TrackerSettings
 from hasel_tracker.video.annotation import annotate
 from hasel_tracker.video.video_writer import H264Writer
@@ -48,6 +49,14 @@ def parser() -> argparse.ArgumentParser:
         "--markers", type=int, metavar="N", help="how many, 2 to 15 (default: 3, or as --settings says)"
     )
     options.add_argument(
+        "--points",
+        metavar="N|S,S,…",
+        help="of midline: how many points, or at which shares of the length from the head",
+    )
+    options.add_argument(
+        "--body", choices=tuple(BODY_KINDS), help="of midline: how the body stands out (default: auto)"
+    )
+    options.add_argument(
         "--head", metavar="SIDE", help="where the head is in the first frame: left, right, top, bottom or X,Y"
     )
     options.add_argument(
@@ -61,7 +70,7 @@ def parser() -> argparse.ArgumentParser:
         "--fix", type=Path, metavar="FILE", help="frames and the markers' positions in them, by hand (YAML)"
     )
     options.add_argument(
-        "--roi", type=_region, metavar="X,Y,W,H", help="look only within this part of the picture"
+        "--roi", type=region, metavar="X,Y,W,H", help="look only within this part of the picture"
     )
     options.add_argument(
         "--box", type=_box, nargs="+", metavar="X,Y,W,H", help="boxes for csrt, from head to tail"
@@ -80,7 +89,7 @@ def parser() -> argparse.ArgumentParser:
     )
     options.add_argument(
         "--led",
-        type=_region,
+        type=region,
         metavar="X,Y,W,H",
         help="merge by a lamp here that lights when the drive starts",
     )
@@ -125,8 +134,7 @@ def _track(options: argparse.Namespace) -> None:
     print(f"Markers: {tracker.note}.")
     if not run.valid.any():
         raise TrackerError(
-            f"No frame of {options.video} gives an angle ({tracker.note}); point at the markers with --at, or learn "
-            "their colour with `calibrate colour`."
+            f"No frame of {options.video} gives an angle ({tracker.note}); {_advice(options.method)}."
         )
     alignment = None if drive is None else _align(run, drive, options, np.array(lamp))
     if alignment is not None:
@@ -184,9 +192,23 @@ def _metadata(options: argparse.Namespace) -> dict[str, str]:
     return metadata | ({"model": options.model} if options.model else {})
 
 
+def _advice(method: str) -> str:
+    if method == "midline":
+        return "say where to look with --roi, or see what stands out with `calibrate body`"
+    return "point at the markers with --at, or learn their colour with `calibrate colour`"
+
+
 def _settings(options: argparse.Namespace, placed: dict[int, np.ndarray]) -> TrackerSettings:
     """Settings from the file, with what the command line says beside it."""
     settings = load_settings(options.settings) if options.settings else TrackerSettings()
+    if (options.points is not None or options.body is not None) and options.method != "midline":
+        raise TrackerError("--points and --body are of --method midline; give that too, or leave them out.")
+    if options.body is not None:
+        settings = replace(settings, body=options.body)
+    if options.points is not None:
+        shares = "" if options.points.isdigit() else options.points
+        count = len(shares.split(",")) if shares else int(options.points)
+        settings = replace(settings, points=shares, marker_count=count)
     if options.head is not None:
         settings = replace(settings, head=options.head)
     counts = {len(points) for points in placed.values()} | ({options.markers} - {None})
@@ -195,13 +217,6 @@ def _settings(options: argparse.Namespace, placed: dict[int, np.ndarray]) -> Tra
             f"The numbers of markers given differ ({sorted(counts)}); give all markers everywhere."
         )
     return replace(settings, marker_count=counts.pop()) if counts else settings
-
-
-def _region(text: str) -> tuple[int, int, int, int]:
-    values = [int(part) for part in text.split(",")]
-    if len(values) != 4 or min(values) < 0:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a region X,Y,WIDTH,HEIGHT in pixels")
-    return tuple(values)
 
 
 def _box(text: str) -> tuple[int, int, int, int]:

@@ -33,11 +33,12 @@ class LabCase:
     least_frames: int = 8
 
 
-def _one(scene: LabScene) -> Callable[[int], LabScene]:
+def one_seed(scene: LabScene) -> Callable[[int], LabScene]:
+    """The same scene whatever the seed, but for its noise."""
     return lambda seed: replace(scene, seed=seed + 1)
 
 
-def _scattered(seed: int, count: int, swimmers: tuple[LabSwimmer, ...]) -> LabScene:
+def scattered_dots(seed: int, count: int, swimmers: tuple[LabSwimmer, ...]) -> LabScene:
     """Dots anywhere in the picture, of sizes like a marker's or not."""
     random = np.random.default_rng(seed)
     dots = tuple(
@@ -87,20 +88,20 @@ AWAY = tuple((dot, 0.2, 1.5) for dot in range(3))
 LOW_RATE = {"frame_rate_hz": 40.0, "exposure_s": 0.0}
 
 ADVERSARIAL = (
-    LabCase("no swimmer, three blue dots", lambda seed: _scattered(seed, 3, ()), expected=False),
-    LabCase("no swimmer, eight blue dots", lambda seed: _scattered(seed, 8, ()), expected=False),
-    LabCase("swimmer and three blue dots", lambda seed: _scattered(seed, 3, (RIGHT_WAY,))),
-    LabCase("swimmer and eight blue dots", lambda seed: _scattered(seed, 8, (RIGHT_WAY,))),
+    LabCase("no swimmer, three blue dots", lambda seed: scattered_dots(seed, 3, ()), expected=False),
+    LabCase("no swimmer, eight blue dots", lambda seed: scattered_dots(seed, 8, ()), expected=False),
+    LabCase("swimmer and three blue dots", lambda seed: scattered_dots(seed, 3, (RIGHT_WAY,))),
+    LabCase("swimmer and eight blue dots", lambda seed: scattered_dots(seed, 8, (RIGHT_WAY,))),
     LabCase("two swimmers", _two, expected=False),
     LabCase(
         "three blue dots on a textured ground",
-        lambda seed: replace(_scattered(seed, 3, ()), texture=25.0),
+        lambda seed: replace(scattered_dots(seed, 3, ()), texture=25.0),
         expected=False,
     ),
     LabCase("tail hidden, a blue dot at its distance", _dot_for_hidden_tail, least_frames=48),
     LabCase(
         "gliding into the picture",
-        _one(
+        one_seed(
             LabScene(
                 (replace(RIGHT_WAY, start_px=(-120.0, 360.0), drift_px_s=(500.0, 0.0), rest_s=0.05),),
                 exposure_s=0.0,
@@ -111,18 +112,18 @@ ADVERSARIAL = (
     ),
     LabCase(
         "tail covered at the start",
-        _one(LabScene((replace(RIGHT_WAY, hidden=((TAIL, 0.0, 0.05),)),), exposure_s=0.0)),
+        one_seed(LabScene((replace(RIGHT_WAY, hidden=((TAIL, 0.0, 0.05),)),), exposure_s=0.0)),
         least_frames=14,
     ),
-    LabCase("body without taper, head on the right", _one(LabScene((UNTAPERED,))), expected=False),
+    LabCase("body without taper, head on the right", one_seed(LabScene((UNTAPERED,))), expected=False),
     LabCase(
         "body without taper, head given",
-        _one(LabScene((UNTAPERED,))),
+        one_seed(LabScene((UNTAPERED,))),
         settings=TrackerSettings(head="right"),
     ),
     LabCase(
         "all hidden for over a second",
-        _one(LabScene((replace(RIGHT_WAY, hidden=AWAY, heading_rad=-0.4, bend_rad=0.5),), **LOW_RATE)),
+        one_seed(LabScene((replace(RIGHT_WAY, hidden=AWAY, heading_rad=-0.4, bend_rad=0.5),), **LOW_RATE)),
         least_frames=68,
     ),
     LabCase("reflection over the dots, 40 %", _reflected(0.4), expected=False),
@@ -153,25 +154,29 @@ ADVERSARIAL = (
 
 RAW = LabScene((replace(RIGHT_WAY, electrodes=True),))
 REAL = (
-    LabCase("plain, no noise", _one(LabScene(camera=LabCamera(noise_levels=0.0, bayer=False)))),
-    LabCase("Bayer, 4:2:0, noise", _one(LabScene())),
-    LabCase("electrodes beside the dots", _one(RAW)),
-    LabCase("electrodes, MJPEG 75", _one(replace(RAW, camera=LabCamera(jpeg_quality=75)))),
-    LabCase("electrodes, H.264 crf 18", _one(RAW), h264_rate_factor=18),
-    LabCase("electrodes, H.264 crf 28", _one(RAW), h264_rate_factor=28),
-    LabCase("textured ground", _one(replace(RAW, texture=22.0))),
-    LabCase("gloss inside the dots", _one(LabScene((replace(RIGHT_WAY, gloss=0.8),)))),
-    LabCase("exposure × 0.2", _one(replace(RAW, camera=LabCamera(exposure=0.2)))),
-    LabCase("exposure × 1.3", _one(replace(RAW, camera=LabCamera(exposure=1.3)))),
-    LabCase("defocus σ 3 px", _one(replace(RAW, camera=LabCamera(blur_px=3.0)))),
-    LabCase("motion blur 8 ms", _one(replace(RAW, exposure_s=0.008))),
-    LabCase("dark tank", _one(replace(RAW, water=(38.0, 36.0, 32.0)))),
-    LabCase("dark body", _one(LabScene((replace(RIGHT_WAY, body_colour=(58.0, 56.0, 54.0)),)))),
-    LabCase("dots of 10 px", _one(LabScene((replace(RIGHT_WAY, dot_radius_px=5.0, half_width_px=16.0),)))),
-    LabCase("dots of 60 px", _one(LabScene((replace(RIGHT_WAY, dot_radius_px=30.0, half_width_px=50.0),)))),
+    LabCase("plain, no noise", one_seed(LabScene(camera=LabCamera(noise_levels=0.0, bayer=False)))),
+    LabCase("Bayer, 4:2:0, noise", one_seed(LabScene())),
+    LabCase("electrodes beside the dots", one_seed(RAW)),
+    LabCase("electrodes, MJPEG 75", one_seed(replace(RAW, camera=LabCamera(jpeg_quality=75)))),
+    LabCase("electrodes, H.264 crf 18", one_seed(RAW), h264_rate_factor=18),
+    LabCase("electrodes, H.264 crf 28", one_seed(RAW), h264_rate_factor=28),
+    LabCase("textured ground", one_seed(replace(RAW, texture=22.0))),
+    LabCase("gloss inside the dots", one_seed(LabScene((replace(RIGHT_WAY, gloss=0.8),)))),
+    LabCase("exposure × 0.2", one_seed(replace(RAW, camera=LabCamera(exposure=0.2)))),
+    LabCase("exposure × 1.3", one_seed(replace(RAW, camera=LabCamera(exposure=1.3)))),
+    LabCase("defocus σ 3 px", one_seed(replace(RAW, camera=LabCamera(blur_px=3.0)))),
+    LabCase("motion blur 8 ms", one_seed(replace(RAW, exposure_s=0.008))),
+    LabCase("dark tank", one_seed(replace(RAW, water=(38.0, 36.0, 32.0)))),
+    LabCase("dark body", one_seed(LabScene((replace(RIGHT_WAY, body_colour=(58.0, 56.0, 54.0)),)))),
+    LabCase(
+        "dots of 10 px", one_seed(LabScene((replace(RIGHT_WAY, dot_radius_px=5.0, half_width_px=16.0),)))
+    ),
+    LabCase(
+        "dots of 60 px", one_seed(LabScene((replace(RIGHT_WAY, dot_radius_px=30.0, half_width_px=50.0),)))
+    ),
     LabCase(
         "640 × 480, dots of 12 px",
-        _one(
+        one_seed(
             LabScene(
                 (
                     LabSwimmer(
@@ -184,7 +189,7 @@ REAL = (
     ),
     LabCase(
         "30 frames/s, 4 Hz",
-        _one(LabScene((replace(RIGHT_WAY, frequency_hz=4.0, bend_rad=0.6),), frame_rate_hz=30.0)),
+        one_seed(LabScene((replace(RIGHT_WAY, frequency_hz=4.0, bend_rad=0.6),), frame_rate_hz=30.0)),
     ),
 )
 CASES = (*ADVERSARIAL, *REAL)

@@ -18,6 +18,7 @@ class LabSwimmer:
     start_px: the nose at time zero; heading_rad: where the body points from head to tail, anticlockwise with y up;
     drift_px_s: velocity of the nose, y down; bend_rad: the largest turn from head to tail; stations: of the dots, 0
     (nose) to 1 (tip of the fin); taper: half the width at the fin's root as a share of that at the shoulder.
+    marked: whether the dots are there at all; tags: AprilTags instead.
     hidden: (dot, from [s], to [s]) during which a hand, a bubble or a tether covers a dot, in `cover_colour`.
     """
 
@@ -40,6 +41,7 @@ class LabSwimmer:
     electrodes: bool = False
     gloss: float = 0.0
     tags: bool = False
+    marked: bool = True
     hidden: tuple[tuple[int, float, float], ...] = field(default=())
     cover_colour: tuple[float, float, float] = GREY_BODY
 
@@ -86,13 +88,16 @@ class LabSwimmer:
                 self._electrodes(canvas, line, self.stations[number], strength)
             if self.tags:
                 canvas.tag(centre, number, 2.4 * self.dot_radius_px, self.heading_rad)
-                continue
-            canvas.disc(centre, self.dot_radius_px, self.dot_colour, strength)
-            if self.gloss:
-                corner = centre - 0.4 * self.dot_radius_px
-                canvas.disc(corner, 0.3 * self.dot_radius_px, (255.0, 255.0, 255.0), self.gloss)
+            elif self.marked:
+                self._dot(canvas, centre, strength)
             if covered[number]:
                 canvas.disc(centre, 1.7 * self.dot_radius_px, self.cover_colour, 1.0)
+
+    def _dot(self, canvas: Canvas, centre: np.ndarray, strength: float) -> None:
+        canvas.disc(centre, self.dot_radius_px, self.dot_colour, strength)
+        if self.gloss:
+            corner = centre - 0.4 * self.dot_radius_px
+            canvas.disc(corner, 0.3 * self.dot_radius_px, (255.0, 255.0, 255.0), self.gloss)
 
     def _half_width(self, station: np.ndarray) -> np.ndarray:
         nose = np.sqrt(np.clip(station / 0.06, 0.0, 1.0))

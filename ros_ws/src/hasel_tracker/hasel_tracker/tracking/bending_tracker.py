@@ -15,6 +15,7 @@ from hasel_tracker.tracking.marker_contour import measure_contour
 from hasel_tracker.tracking.marker_moment import measure_marker
 from hasel_tracker.tracking.marker_set import MarkerSet
 from hasel_tracker.tracking.marker_tracker import MarkerTracker
+from hasel_tracker.tracking.midline_tracker import MidlineTracker
 from hasel_tracker.tracking.tracker_settings import METHODS, TrackerSettings
 
 DEFAULT_METHOD = "contour"
@@ -105,7 +106,7 @@ class BendingTracker:
                 f"Found an image of shape {image.shape} and type {image.dtype}; expected 8-bit colour in "
                 f"BGR order."
             )
-        view, corner = _within(image, self.roi)
+        view, corner = within(image, self.roi)
         at, self._start_at = self._start_at if at is None else at, None
         if at is None:
             markers = self._markers.update(view, time_s)
@@ -155,12 +156,14 @@ class BendingTracker:
 def _method(method: str, settings: TrackerSettings, boxes: list[tuple[int, int, int, int]] | None) -> _Method:
     if method == "apriltag":
         return AprilTagTracker(settings)
+    if method == "midline":
+        return MidlineTracker(settings)
     if method == "csrt":
         return CsrtTracker(settings, boxes)
     return MarkerTracker(settings, measure_marker if method == "moment" else measure_contour)
 
 
-def _within(image: np.ndarray, roi: tuple[int, int, int, int] | None) -> tuple[np.ndarray, np.ndarray]:
+def within(image: np.ndarray, roi: tuple[int, int, int, int] | None) -> tuple[np.ndarray, np.ndarray]:
     """The part of the image within the region, and its corner (2,) [px]."""
     if roi is None:
         return image, np.zeros(2)

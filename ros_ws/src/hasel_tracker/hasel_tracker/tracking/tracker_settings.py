@@ -2,12 +2,16 @@
 
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.tracking.colour_gate import ColourRange
 from hasel_tracker.tracking.head_side import SIDES, head_word
+from hasel_tracker.tracking.silhouette import BODY_KINDS
 
-METHODS = ("contour", "moment", "apriltag", "csrt")
+METHODS = ("contour", "moment", "midline", "apriltag", "csrt")
 FEWEST_MARKERS, MOST_MARKERS = 2, 15
+HEAD_SHARE, MIDDLE_SHARE = 5 / 190, 94 / 190  # where the swimmer's markers are, of its length with the fin
 
 
 @dataclass(frozen=True)
@@ -19,6 +23,9 @@ class TrackerSettings:
     (more for blurred pictures). head: the side of the picture on which the head starts, or a point 'X,Y' near it;
     `auto` takes the thicker half of the body for the front. minimum_quality: below it a marker counts as lost.
     rest_direction_deg: of two markers alone, where the straight body points, anticlockwise from right.
+
+    Of the method midline: `body` is light or dark against the ground, or auto; `points` says at which shares of the
+    length from the head, such as '0.05,0.5,1', the points are; empty puts marker_count of them where markers would be.
     """
 
     colour: ColourRange = field(default_factory=ColourRange)
@@ -31,6 +38,8 @@ class TrackerSettings:
     head: str = "auto"
     minimum_quality: float = 0.5
     rest_direction_deg: float = 0.0
+    body: str = "auto"
+    points: str = ""
 
     def __post_init__(self) -> None:
         try:
@@ -39,6 +48,26 @@ class TrackerSettings:
             raise TrackerError(
                 f"The head is said to be at '{self.head}'; expected auto, {', '.join(SIDES)} or a point X,Y."
             ) from None
+        if self.body not in BODY_KINDS:
+            raise TrackerError(
+                f"The body is said to be '{self.body}'; expected one of {', '.join(BODY_KINDS)}."
+            )
+        try:
+            shares = np.array(
+                [float(share) for share in self.points.split(",")] if self.points else [0.0, 1.0]
+            )
+        except ValueError:
+            shares = np.array([np.nan])
+        if not (shares[0] >= 0.0 and shares[-1] <= 1.0 and (np.diff(shares) > 0.0).all()):
+            raise TrackerError(
+                f"The points on the centre line are at '{self.points}'; expected rising shares of the length from 0 "
+                "(head) to 1 (tail), such as 0.05,0.5,1."
+            )
+        if self.points and len(shares) != self.marker_count:
+            raise TrackerError(
+                f"Found {len(shares)} shares of the length for {self.marker_count} points; give as many as "
+                "marker_count says."
+            )
         if not FEWEST_MARKERS <= self.marker_count <= MOST_MARKERS:
             raise TrackerError(
                 f"The number of markers is {self.marker_count}; expected {FEWEST_MARKERS} to {MOST_MARKERS}."
@@ -52,3 +81,12 @@ class TrackerSettings:
             raise TrackerError(
                 f"edge_px is {self.edge_px} and region_px {self.region_px}; expected at least 2 px each."
             )
+
+    @property
+    def shares(self) -> tuple[float, ...]:
+        """Shares of the length, from the head, of the method midline's points."""
+        if self.points:
+            return tuple(float(share) for share in self.points.split(","))
+        if self.marker_count == 3:
+            return HEAD_SHARE, MIDDLE_SHARE, 1.0
+        return tuple(np.linspace(HEAD_SHARE, 1.0, self.marker_count).tolist())

@@ -37,5 +37,5 @@ def test_plain_opencv_is_told_what_to_install(monkeypatch):
 
 def test_unknown_method_is_refused():
     """A method that does not exist is named with those that do."""
-    with pytest.raises(TrackerError, match="'kcf'; expected one of contour, moment, apriltag, csrt"):
+    with pytest.raises(TrackerError, match="'kcf'; expected one of contour, moment, midline, apriltag, csrt"):
         BendingTracker(method="kcf")
