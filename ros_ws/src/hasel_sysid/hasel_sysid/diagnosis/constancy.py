@@ -8,6 +8,7 @@ import numpy as np
 from hasel_sysid.diagnosis.conditions import conditions
 from hasel_sysid.drive_match import drive_unit
 from hasel_sysid.fit import FitResult
+from hasel_sysid.fit.between_runs import wider_where_runs_disagree
 from hasel_sysid.fit.uncertainty import parameter_covariance
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import Evaluation
@@ -81,6 +82,9 @@ def _trend(
     scale[scale == 0] = 1.0
     change = np.linalg.lstsq(columns / scale, evaluation.residual, rcond=1e-7)[0] / scale
     covariance, _ = parameter_covariance(columns, noise, evaluation.runs)
+    # what else is wrong in some runs must not pass for a trend of this effect
+    left = evaluation.residual - columns @ change
+    errors = wider_where_runs_disagree(np.sqrt(np.diag(covariance)), columns, left, evaluation.runs)
     middle = evaluation.model.values[name] + change[evaluation.names.index(name)]
     low, high = float(of_run.min()), float(of_run.max())
     return Trend(
@@ -88,6 +92,6 @@ def _trend(
         condition,
         (float(values.min()), float(values.max())),
         (float(middle + change[-1] * low), float(middle + change[-1] * high)),
-        float((high - low) * np.sqrt(covariance[-1, -1])),
+        float((high - low) * errors[-1]),
         unit,
     )
