@@ -30,6 +30,8 @@ def waterfall_picture(stages: Sequence[Stage], noise_floor: float | None, path: 
         ]
         _waterfall(axis, known, colour)
         _noise(axis, noise_floor)
+        if noise_floor is not None:
+            axis.legend(frameon=False, loc="upper right", fontsize=8)
         axis.set_title(name, fontsize=11)
     axes[0][0].set_ylabel("mean |Δ sin θ|")
     return _save(figure, path)
@@ -103,17 +105,8 @@ def _waterfall(axis: Axes, known: Sequence[tuple[str, float]], colour: str) -> N
 
 def _noise(axis: Axes, noise_floor: float | None) -> None:
     if noise_floor is not None:
-        axis.axhline(noise_floor, color=NOISE, linestyle="--", linewidth=1)
-        axis.annotate(
-            f"noise floor {error_text(noise_floor)}",
-            (1.0, noise_floor),
-            (0, 14),
-            xycoords=("axes fraction", "data"),
-            textcoords="offset points",
-            ha="right",
-            fontsize=8,
-            color=NOISE,
-        )
+        label = f"noise floor {error_text(noise_floor)}"
+        axis.axhline(noise_floor, color=NOISE, linestyle="--", linewidth=1.0, label=label)
 
 
 def _bare(axis: Axes) -> None:
