@@ -1,4 +1,4 @@
-"""Measured: a silicone arm bent by air pressure; its constants are free, what its chamber does besides is to be found."""
+"""Measured: a silicone arm bent by air pressure; its constants are free, its creep is to be found."""
 
 from pathlib import Path
 

@@ -16,7 +16,7 @@ from hasel_sim.bench.speed import by_nodes, by_parameters
 from hasel_sim.bench.timing import first_run_seconds
 from hasel_sim.bench.where_time_goes import shares
 
-SIZES = (180, 336, 700, 1400)
+SIZES = (180, 275, 700, 1400)
 """Wanted nodes: the second is the default mesh, the last has as many as the simulator this one is compared with."""
 
 
