@@ -44,12 +44,12 @@ def _strip(shape: StripShape, density: float, layers: int) -> Mesh:
     return strip_mesh(shape, density, layers)
 
 
-def body_mesh(description: Description, density: float | None = None) -> Mesh:
+def body_mesh(description: Description) -> Mesh:
     """The mesh of a described body. Raises ModelError when the outline crosses the spine or itself."""
     body, numerics = description.body, description.numerics
     _check_outline(body, np.array(body.coefficients))
     shape = body.shape(tuple(muscle.stretch for muscle in description.muscles))
-    return _strip(shape, density or numerics.mesh_density, numerics.layers)
+    return _strip(shape, numerics.mesh_density, numerics.layers)
 
 
 def moved_nodes(model: Model, outline: np.ndarray) -> np.ndarray:

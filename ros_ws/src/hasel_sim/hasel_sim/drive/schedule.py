@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
+from hasel_recording.drive_channel import HASEL_PAIR
 
 from hasel_sim.errors import SimulationError
 
-HASEL_CHANNELS = ("upper", "lower")
+HASEL_CHANNELS = tuple(channel.name for channel in HASEL_PAIR)
 """The two muscles of the HASEL rig."""
 
 

@@ -77,6 +77,21 @@ def contraction_of():
     return contraction
 
 
+@pytest.fixture(scope="session")
+def derivative():
+    """Derivative of an energy [n] by the deformation gradient [n, 2, 2], by central differences."""
+
+    def differentiate(energy, deformation: np.ndarray) -> np.ndarray:
+        out = np.empty_like(deformation)
+        for i, k in np.ndindex(2, 2):
+            step = np.zeros((2, 2))
+            step[i, k] = 1e-6
+            out[:, i, k] = (energy(deformation + step) - energy(deformation - step)) / 2e-6
+        return out
+
+    return differentiate
+
+
 class _FirstModePull(ForceEffect):
     """A force per mass in proportion to the first mode of a beam."""
 

@@ -25,15 +25,11 @@ def _energy(deformation: np.ndarray) -> np.ndarray:
     return STIFFENING * strain**4
 
 
-def test_the_stress_is_the_derivative_of_the_energy():
+def test_the_stress_is_the_derivative_of_the_energy(derivative):
     """First Piola stress = dW/dF of W = k E_xx^4, at random deformations."""
     deformation = np.eye(2) + 0.05 * np.random.default_rng(0).standard_normal((5, 2, 2))
     stress = _stress(deformation)
-    for i, k in np.ndindex(2, 2):
-        step = np.zeros((2, 2))
-        step[i, k] = 1e-6
-        change = (_energy(deformation + step) - _energy(deformation - step)) / 2e-6
-        assert stress[:, i, k] == pytest.approx(change, abs=1e-6 * np.abs(stress).max())
+    assert stress == pytest.approx(derivative(_energy, deformation), abs=1e-6 * np.abs(stress).max())
 
 
 def test_eight_times_the_stress_at_twice_the_strain():

@@ -25,15 +25,11 @@ def _energy(deformation: np.ndarray) -> np.ndarray:
     return -0.5 * SOFTENING * SHEAR * (excess - scale * np.log1p(excess / scale))
 
 
-def test_the_stress_is_the_derivative_of_the_energy():
+def test_the_stress_is_the_derivative_of_the_energy(derivative):
     """First Piola stress = dW/dF, at random deformations."""
     deformation = np.eye(2) + 0.1 * np.random.default_rng(0).standard_normal((5, 2, 2))
     stress = _stress(deformation)
-    for i, k in np.ndindex(2, 2):
-        step = np.zeros((2, 2))
-        step[i, k] = 1e-6
-        change = (_energy(deformation + step) - _energy(deformation - step)) / 2e-6
-        assert stress[:, i, k] == pytest.approx(change, abs=1e-6 * np.abs(stress).max())
+    assert stress == pytest.approx(derivative(_energy, deformation), abs=1e-6 * np.abs(stress).max())
 
 
 def test_small_strains_meet_the_whole_modulus_and_large_ones_what_is_left():
