@@ -16,13 +16,17 @@ if [ "${ROS_DISTRO:-}" = jazzy ]; then
 fi
 .venv/bin/python -c '' 2>/dev/null || options+=(--clear)
 
-installed=.venv/installed-requirements.txt
-if [ "$requirements" = "$(cat "$installed" 2>/dev/null)" ]; then
+# One environment may serve several checkouts: what another one needs beside is no reason to install again.
+installed=.venv/requirements-installed.txt
+lacking() { grep '^[^#]' <<<"$requirements" | grep -vxFf "$installed" || true; }
+if [ -s "$installed" ] && [ -z "$(lacking)" ]; then
     exit
 fi
 
 echo "Installing Python packages into .venv (some minutes, 2 GB)"
-"$python" -m venv "${options[@]}" .venv
+if [[ " ${options[*]} " = *" --clear "* ]]; then
+    "$python" -m venv "${options[@]}" .venv
+fi
 .venv/bin/python -m pip install --quiet --disable-pip-version-check -r <(echo "$requirements")
 if [ "${ROS_DISTRO:-}" = jazzy ]; then
     echo "${AMENT_PREFIX_PATH##*:}/setup.bash" >.venv/sourced-ros
