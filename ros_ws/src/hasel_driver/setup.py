@@ -23,7 +23,7 @@ setup(
             "bench = hasel_driver.bench:main",
             "console = hasel_driver.console:main",
             "calibrate = hasel_driver.calibrate:main",
-            "driver_node = hasel_driver.driver_node:main",
+            "driver_node = hasel_driver.start_driver:main",
             "stored_charge = hasel_driver.stored_charge:main",
             "virtual_shvps = hasel_driver.virtual_shvps:main",
             "virtual_supply = hasel_driver.virtual_supply:main",

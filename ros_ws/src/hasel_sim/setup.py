@@ -23,7 +23,7 @@ setup(
             "bench = hasel_sim.commands.bench:main",
             "effects = hasel_sim.commands.effects:main",
             "show_mesh = hasel_sim.commands.show_mesh:main",
-            "simulator = hasel_sim.simulator_node:main",
+            "simulator = hasel_sim.start_simulator:main",
         ]
     },
 )

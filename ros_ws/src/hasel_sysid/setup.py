@@ -20,7 +20,7 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "sysid = hasel_sysid.sysid_node:main",
+            "sysid = hasel_sysid.start_sysid:main",
             "check = hasel_sysid.command_line.entry:check",
             "compare = hasel_sysid.command_line.entry:compare",
             "fit = hasel_sysid.command_line.entry:fit",

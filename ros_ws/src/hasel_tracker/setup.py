@@ -19,7 +19,7 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "tracker_node = hasel_tracker.tracker_node:main",
+            "tracker_node = hasel_tracker.start_tracker:main",
             "track = hasel_tracker.commands.track:main",
             "render = hasel_tracker.commands.render:main",
             "calibrate = hasel_tracker.commands.calibrate:main",

@@ -20,6 +20,13 @@ class NodeParameter:
     high: float | None = None
     changeable: bool = False
 
+    @property
+    def usage(self) -> tuple[str, Any, str]:
+        """Name, default and meaning with unit and range, for `--help`."""
+        span = "" if self.low is None else f", {self.low:g} to {self.high:g}"
+        unit = f" [{self.unit}{span}]" if self.unit else ""
+        return self.name, self.default, self.description + unit
+
     def descriptor(self) -> ParameterDescriptor:
         """What ROS tells about it and checks by itself."""
         unit = f" [{self.unit}]" if self.unit else ""

@@ -1,10 +1,12 @@
 """The process around a node: start, one sentence for what is wrong with its parameters, a quiet end."""
 
+import os
 import signal
 import sys
 from collections.abc import Callable
 
 import rclpy
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.exceptions import InvalidParameterValueException
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
@@ -31,9 +33,22 @@ def run_node(
         return 1
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
+    except RCLError:
+        if rclpy.ok():  # otherwise it was interrupted while it was being made
+            raise
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in a launch file comes twice
         if node is not None:
             node.destroy_node()
         rclpy.try_shutdown()
     return 0
+
+
+def end_at_once(code: int) -> None:
+    """End the process without waiting for a thread that is in the middle of something long.
+
+    Worker processes notice and end too (`parallel.executor`).
+    """
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(code)

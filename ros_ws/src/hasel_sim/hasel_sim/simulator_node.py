@@ -17,40 +17,15 @@ from hasel_sim.errors import HaselSimError
 from hasel_sim.live.live_model import live_model
 from hasel_sim.live.live_simulator import LiveAnswer, LiveSimulator
 from hasel_sim.live.pace import Pace
+from hasel_sim.live.repeated_warnings import RepeatedWarnings
 from hasel_sim.model import Model
 from hasel_sim.model_parameters import ModelParameters
-from hasel_sim.node_parameters import NodeParameter, declare, words
+from hasel_sim.node_parameters import declare, words
 from hasel_sim.node_process import run_node
 from hasel_sim.simulator_messages import BodyMessage, angle_message, diagnostics, to_nanoseconds
+from hasel_sim.simulator_parameters import PARAMETERS
 
 EVERY_MESSAGE = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.RELIABLE)
-PARAMETERS = (
-    NodeParameter("model", "swimmer", "model simulated at the start: its name or file"),
-    NodeParameter(
-        "effects", [""], "effects added to the model at the start: ids, or path/to/file.py:ClassName"
-    ),
-    NodeParameter(
-        "rate", 0.0, "most angles published per second; 0: one for every state", "1/s", 0.0, 1000.0, True
-    ),
-    NodeParameter(
-        "shape_rate", 20.0, "shapes published per second, if anybody listens", "1/s", 0.0, 20.0, True
-    ),
-    NodeParameter("history", 20.0, "how far back drive and observation effects remember", "s", 1.0, 600.0),
-    NodeParameter("gap", 0.1, "state messages further apart are reported as missing", "s", 0.001, 10.0),
-    NodeParameter("reset", 2.0, "a longer gap starts a new run from rest", "s", 0.01, 3600.0),
-    NodeParameter(
-        "late",
-        0.5,
-        "an older message is ignored; if older by more than this, starts a new run",
-        "s",
-        0.0,
-        60.0,
-    ),
-    NodeParameter(
-        "load_factor", 1.0, "a run starts in equilibrium under this many times all loads", "1", 0.0, 10.0
-    ),
-    NodeParameter("frame_id", "swimmer", "frame of the stamped messages"),
-)
 
 
 class SimulatorNode(Node):
@@ -58,6 +33,7 @@ class SimulatorNode(Node):
 
     def __init__(self) -> None:
         super().__init__("hasel_simulator")
+        self._warnings = RepeatedWarnings()
         declare(self, PARAMETERS)
         model, warning = live_model(self._value("model"), words(self, "effects"))
         self._warn(warning)
@@ -83,6 +59,7 @@ class SimulatorNode(Node):
         return self.get_parameter(name).value
 
     def _warn(self, sentence: str) -> None:
+        sentence = sentence and self._warnings.to_say(sentence, time.monotonic())
         if sentence:
             self.get_logger().warning(sentence[:1].upper() + sentence[1:] + ".")
 

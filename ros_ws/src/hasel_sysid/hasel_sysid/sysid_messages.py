@@ -23,6 +23,8 @@ def error_message(stamp_ns: int, error: running_error.RunningError) -> RunningEr
         difference=error.difference,
         mean_absolute_error=error.mean_absolute,
         count=error.count,
+        window_mean_absolute_error=error.recent,
+        window=error.window,
     )
 
 

@@ -12,8 +12,8 @@ from hasel_recording.topics import MEASURED, SIMULATED, STATE
 from hasel_sim.errors import HaselSimError
 from hasel_sim.live.live_model import live_model
 from hasel_sim.model import Model, save_model
-from hasel_sim.node_parameters import NodeParameter, declare, words
-from hasel_sim.node_process import run_node
+from hasel_sim.node_parameters import declare, words
+from hasel_sim.node_process import end_at_once, run_node
 from hasel_sim.simulator_messages import to_nanoseconds
 from hasel_sim.simulator_node import EVERY_MESSAGE
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
@@ -26,19 +26,11 @@ from hasel_sysid.live.epochs import Epochs, StreamEpoch
 from hasel_sysid.live.fitting import chosen_recordings, diagnose_recordings, fit_recordings, status
 from hasel_sysid.live.heard import Heard
 from hasel_sysid.live.pairing import Pair, Pairing
-from hasel_sysid.live.running_error import RunningErrors
+from hasel_sysid.live.running_error import DriveStarts, RunningErrors
 from hasel_sysid.sysid_messages import diagnosis_message, diagnostics, error_message, fit_message
+from hasel_sysid.sysid_parameters import PARAMETERS
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-PARAMETERS = (
-    NodeParameter("model", "swimmer", "model that is fitted: its name or file", changeable=True),
-    NodeParameter("effects", [""], "effects added to it: ids, or path/to/file.py:ClassName", changeable=True),
-    NodeParameter("output", ".", "folder into which fitted models are written", changeable=True),
-    NodeParameter("jobs", 0, "processes that simulate; 0: one per core", "1", 0, 256, changeable=True),
-    NodeParameter("gap", 0.1, "no interpolation between simulated angles further apart", "s", 0.001, 10.0),
-    NodeParameter("reset", 2.0, "a longer gap begins a new run", "s", 0.01, 3600.0),
-    NodeParameter("late", 0.5, "stamps that go back by more begin a new run", "s", 0.0, 60.0),
-)
 
 
 class SysidNode(Node):
@@ -47,10 +39,11 @@ class SysidNode(Node):
     def __init__(self) -> None:
         super().__init__("hasel_sysid")
         declare(self, PARAMETERS)
-        gap, reset, late = (self._value(name) for name in ("gap", "reset", "late"))
+        gap, reset, late, window = (self._value(name) for name in ("gap", "reset", "late", "window"))
         epochs = Epochs()
         self._epoch = {topic: StreamEpoch(epochs, late) for topic in (STATE, MEASURED, SIMULATED)}
-        self._pairing, self._errors, self._heard = Pairing(gap), RunningErrors(reset), Heard(reset)
+        self._pairing, self._heard = Pairing(gap), Heard(reset)
+        self._errors, self._starts = RunningErrors(reset, window), DriveStarts()
         self._pairs, self._latest, self._busy, self._doing = 0, None, threading.Lock(), ""
         self._error = self.create_publisher(RunningError, "/hasel/error", EVERY_MESSAGE)
         self._fit = self.create_publisher(Fit, "/hasel/fit", LATCHED)
@@ -70,12 +63,20 @@ class SysidNode(Node):
         self.create_service(Diagnose, "/hasel/diagnose", self._serve_diagnosis, callback_group=working)
         self.get_logger().info("Ready to compare /hasel/bending/simulated with /hasel/bending/measured.")
 
+    @property
+    def doing(self) -> str:
+        """What is being worked on, in a sentence; empty: nothing."""
+        return self._doing
+
     def _value(self, name: str):
         return self.get_parameter(name).value
 
     def _on_state(self, message: SupplyState) -> None:
         stamp = to_nanoseconds(message.header.stamp)
-        self._heard.state(self._epoch[STATE].of(stamp), stamp, tuple(message.commanded_voltage))
+        epoch, voltage = self._epoch[STATE].of(stamp), tuple(message.commanded_voltage)
+        self._heard.state(epoch, stamp, voltage)
+        if self._starts.begins(epoch, stamp, voltage):
+            self._errors.begin(epoch, stamp)
 
     def _on_measured(self, message: BendingAngle) -> None:
         stamp = to_nanoseconds(message.header.stamp)
@@ -96,7 +97,12 @@ class SysidNode(Node):
 
     def _report(self) -> None:
         latest = self._latest
-        sentence = self._doing or ("idle" if latest is None else f"mean |Δ sin θ| {latest.mean_absolute:.4f}")
+        sentence = self._doing or (
+            "idle"
+            if latest is None
+            else f"mean |Δ sin θ| {latest.recent:.4f} in the last {latest.window:g} s, "
+            f"{latest.mean_absolute:.4f} in this run so far"
+        )
         values = {
             f"publishers of {topic}": heard.get_publisher_count() for topic, heard in self._inputs.items()
         }
@@ -142,6 +148,7 @@ class SysidNode(Node):
         if not self._busy.acquire(blocking=False):
             response.success, response.message = False, f"busy ({self._doing}); ask again when that is done"
             return response
+        self._doing = "the request that came last"
         try:
             response.message, response.success = action(), True
             self.get_logger().info(response.message)
@@ -154,16 +161,20 @@ class SysidNode(Node):
         return response
 
 
-def main() -> int:
-    """Run the node until it is interrupted; returns the exit code."""
-    return run_node(SysidNode, _spin)
+def main() -> None:
+    """Run the node until it is interrupted, then end with its exit code; a fit under way is given up."""
+    end_at_once(run_node(SysidNode, _spin))
 
 
 def _spin(node: SysidNode) -> None:
     executor = MultiThreadedExecutor(num_threads=3)
     executor.add_node(node)
-    executor.spin()
+    try:
+        executor.spin()
+    finally:
+        if node.doing:
+            print(f"given up: {node.doing}", file=sys.stderr)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -30,7 +30,7 @@ class LiveError:
         environment = {"ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
         self._processes = Processes(folder, environment)
         self._connected = False
-        self._last = RunningError()
+        self._last, self._compared = RunningError(), 0
 
     def __enter__(self) -> "LiveError":
         self._context = Context()
@@ -67,15 +67,15 @@ class LiveError:
 
     def of(self, recording: Path, frames: int, rate: str = "1") -> float:
         """Mean |Δ sin θ| over the frames of a recording, as published at its last frame."""
-        self._last = RunningError()
+        self._compared = 0
         listeners = ("--expect", "hasel_simulator", "hasel_sysid")
         self._processes.start("hasel_bringup", "replay", str(recording), "--rate", rate, *listeners)
-        self._until(lambda: self._last.count == frames, f"not all {frames} frames were compared")
+        self._until(lambda: self._compared == frames, f"not all {frames} frames were compared")
         self._processes.finish("replay", _PATIENCE_S)
         return self._last.mean_absolute_error
 
     def _on_error(self, message: RunningError) -> None:
-        self._last = message
+        self._last, self._compared = message, self._compared + 1
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         for status in message.status:

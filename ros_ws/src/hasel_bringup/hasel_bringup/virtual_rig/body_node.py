@@ -1,10 +1,13 @@
 """The swimmer and its camera, simulated: hears the supply's state and publishes a measured angle."""
 
+import time
+
 import numpy as np
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_recording.topics import MEASURED, STATE
 from hasel_sim.live.live_model import live_model
 from hasel_sim.live.live_simulator import LiveSimulator
+from hasel_sim.live.repeated_warnings import RepeatedWarnings
 from hasel_sim.node_parameters import NodeParameter, declare, words
 from hasel_sim.simulator_messages import angle_message, to_nanoseconds
 from hasel_sim.simulator_node import EVERY_MESSAGE
@@ -35,9 +38,9 @@ class VirtualBodyNode(Node):
     def __init__(self) -> None:
         super().__init__("hasel_virtual_body")
         declare(self, PARAMETERS)
+        self._warnings = RepeatedWarnings()
         model, warning = live_model(self._value("model"))
-        if warning:
-            self.get_logger().warning(warning)
+        self._warn(warning)
         self._live = LiveSimulator(with_hidden(model, words(self, "hidden")))
         noise = (self._value(name) for name in ("white_noise", "coloured_noise", "correlation", "seed"))
         self._noise, self._offset = CameraNoise(*noise), self._value("offset")
@@ -49,10 +52,14 @@ class VirtualBodyNode(Node):
     def _value(self, name: str):
         return self.get_parameter(name).value
 
+    def _warn(self, sentence: str) -> None:
+        sentence = sentence and self._warnings.to_say(sentence, time.monotonic())
+        if sentence:
+            self.get_logger().warning(sentence)
+
     def _on_state(self, state: SupplyState) -> None:
         answer = self._live.receive(to_nanoseconds(state.header.stamp), np.array(state.commanded_voltage))
-        if answer.sentence:
-            self.get_logger().warning(answer.sentence)
+        self._warn(answer.sentence)
         for angle in answer.angles:
             if 0 <= angle.stamp_ns - self._last_ns < self._spacing_ns:
                 continue

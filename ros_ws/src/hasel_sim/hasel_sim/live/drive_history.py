@@ -48,7 +48,9 @@ class DriveHistory:
         )
 
     def advance(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Voltage [V] and contraction [1], both [n, muscles], at the next instants [s] [n]."""
+        """Voltage [V] and contraction [1], both [n, muscles], at the next instants [s] [n]; 0 V where none is known."""
+        if len(self._schedule.time) == 0:
+            self.hold(self._start, np.zeros(len(self._schedule.channels)))
         self._instants.add(times, np.empty((len(times), 0)))
         voltage = self._chain.at_muscles(self._schedule.at(times))
         instants = np.concatenate([[self._start], self._instants.time])

@@ -78,8 +78,8 @@ class LiveSimulator:
     def receive(self, stamp_ns: int, voltage: np.ndarray) -> LiveAnswer:
         """Move on to a state message's stamp [ns]; its voltage [V] of upper and lower channel holds from there on.
 
-        A message out of order changes nothing; a voltage that is not known (NaN) leaves the last one in force. When the
-        motion cannot be followed, the next message starts from rest.
+        A message out of order changes nothing; a voltage that is not known (NaN) leaves the last one in force, 0 V at
+        the start of a run. When the motion cannot be followed, the next message starts from rest.
         """
         verdict = self.order.judge(stamp_ns)
         if verdict.arrival == Arrival.HELD:
@@ -95,7 +95,10 @@ class LiveSimulator:
         if np.all(np.isfinite(voltage)):
             self._drive.hold(self._time, np.asarray(voltage, dtype=float)[self._columns])
         else:
-            sentence = sentence or "the supply does not know its voltage: the last one is held"
+            sentence = (
+                sentence
+                or "the supply does not know its voltage: the last one is held (0 V before any is known)"
+            )
         angles = tuple(LiveAngle(stamp, sine) for stamp, sine in self._angles.ready())
         return LiveAnswer(verdict.arrival, angles, simulated, sentence)
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.base import DriveEffect, EffectParameter, ObservationEffect
+from hasel_sim.effects.registry import catalogue
 from hasel_sim.live.live_simulator import LiveSimulator
 from hasel_sim.live.stamp_order import Arrival
 from hasel_sim.model import Model, Parameter
@@ -173,6 +174,23 @@ def test_an_unknown_voltage_leaves_the_last_in_force(swimmer):
     assert sum("does not know" in answer.sentence for answer in answers) == 10
     heard = [angle.sin_theta for answer in answers for angle in answer.angles]
     assert heard == list(live(LiveSimulator(swimmer), stamps, voltage).values())
+
+
+def test_a_run_may_start_with_an_unknown_voltage(swimmer):
+    """A driver in FAULT at the start says NaN: 0 V until more is known, with every drive effect, and it is said."""
+    drive = [effect.id for effect in catalogue().values() if isinstance(effect, DriveEffect)]
+    stamps, voltage = frames(2.0, 0.2)
+    unknown, still = voltage.copy(), voltage.copy()
+    unknown[:3], still[:3] = np.nan, 0.0
+    for effects in ((), tuple(drive)):
+        model = swimmer.with_effects(*effects)
+        simulator = LiveSimulator(model)
+        answers = [simulator.receive(int(s), v) for s, v in zip(stamps, unknown, strict=True)]
+        assert ["0 V before any is known" in answer.sentence for answer in answers[:4]] == [True] * 3 + [
+            False
+        ]
+        heard = [angle.sin_theta for answer in answers for angle in answer.angles]
+        assert heard == list(live(LiveSimulator(model), stamps, still).values())
 
 
 def test_a_long_gap_starts_from_rest(swimmer):

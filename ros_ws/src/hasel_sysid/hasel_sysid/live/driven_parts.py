@@ -2,7 +2,7 @@
 
 import numpy as np
 
-_REST_S = 2.0
+REST_S = 2.0
 """After this long at 0 V the body is at rest."""
 _BEFORE_S, _AFTER_S = 0.25, 1.0
 """Of the rest, so much is kept around what is driven: the start, and the ringing."""
@@ -21,7 +21,7 @@ def driven_parts(time: np.ndarray, voltage: np.ndarray, end: float) -> list[tupl
     edges = np.append(time, end)[switched].reshape(-1, 2)
     parts = [list(edges[0])]
     for begin, stop in edges[1:]:
-        if begin - parts[-1][1] > _REST_S:
+        if begin - parts[-1][1] > REST_S:
             parts.append([begin, stop])
         else:
             parts[-1][1] = stop

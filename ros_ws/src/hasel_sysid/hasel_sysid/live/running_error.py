@@ -4,40 +4,85 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hasel_sysid.live.driven_parts import REST_S
 from hasel_sysid.live.pairing import Pair
 
 
 @dataclass(frozen=True)
 class RunningError:
-    """difference: simulated minus measured sin theta; mean_absolute: mean |Δ sin θ| of the run so far; count: pairs."""
+    """difference: simulated minus measured sin theta; count: pairs of this run so far.
+
+    mean_absolute: mean |Δ sin θ| of the run so far; recent: the same over the last `window` seconds of it.
+    """
 
     difference: float
     mean_absolute: float
     count: int
+    recent: float
+    window: float
+
+
+class DriveStarts:
+    """Tells when a body is driven after a long rest at 0 V, as `driven_parts` cuts a long stream."""
+
+    def __init__(self) -> None:
+        self._epoch: int | None = None
+        self._resting_since_ns = 0
+
+    def begins(self, epoch: int, stamp_ns: int, voltage: tuple[float, ...]) -> bool:
+        """Whether a run begins with this state; a voltage [V] that is not known (NaN) drives nothing."""
+        if epoch != self._epoch:
+            self._epoch, self._resting_since_ns = epoch, stamp_ns
+        if not any(abs(each) > 0 for each in voltage):
+            return False
+        rest, self._resting_since_ns = stamp_ns - self._resting_since_ns, stamp_ns
+        return rest > REST_S * 1e9
 
 
 class RunningErrors:
     """Sums up pair by pair; every run begins anew, so that a better model shows at once.
 
-    As in `compare`, the offset between simulated and measured angle is unknown: the mean difference of the run so far
-    is taken out before the mean of the magnitudes. reset: a longer gap [s] between pairs begins a new run.
+    As in `compare`, the offset between simulated and measured angle is unknown: the mean difference of the run so far,
+    or of the window, is taken out before the mean of the magnitudes. reset: a longer gap [s] between pairs begins a new
+    run; window [s]: of the recent error.
     """
 
-    def __init__(self, reset: float) -> None:
-        self._reset_ns = reset * 1e9
+    def __init__(self, reset: float, window: float) -> None:
+        self._reset_ns, self._window = reset * 1e9, window
         self._last: Pair | None = None
-        self._differences = np.empty(0)
+        self._begins: tuple[int, int] | None = None
+        self._differences, self._stamps = np.empty(0), np.empty(0, dtype=np.int64)
         self._count = 0
+
+    def begin(self, epoch: int, stamp_ns: int) -> None:
+        """A run begins at this stamp [ns]: pairs from there on are its own."""
+        self._begins = epoch, stamp_ns
 
     def add(self, pair: Pair) -> RunningError:
         """The error after one more pair."""
-        last = self._last
-        if last is None or pair.epoch != last.epoch or pair.stamp_ns - last.stamp_ns > self._reset_ns:
+        if self._is_another_run(pair):
             self._count = 0
         self._last = pair
         if self._count == len(self._differences):
-            self._differences = np.resize(self._differences, max(1024, 2 * self._count))
-        self._differences[self._count] = pair.difference
+            size = max(1024, 2 * self._count)
+            self._differences, self._stamps = (
+                np.resize(kept, size) for kept in (self._differences, self._stamps)
+            )
+        self._differences[self._count], self._stamps[self._count] = pair.difference, pair.stamp_ns
         self._count += 1
-        so_far = self._differences[: self._count]
-        return RunningError(pair.difference, float(np.abs(so_far - so_far.mean()).mean()), self._count)
+        so_far, stamps = self._differences[: self._count], self._stamps[: self._count]
+        first = np.searchsorted(stamps, pair.stamp_ns - round(self._window * 1e9))
+        return RunningError(
+            pair.difference, _about_mean(so_far), self._count, _about_mean(so_far[first:]), self._window
+        )
+
+    def _is_another_run(self, pair: Pair) -> bool:
+        if self._begins is not None and (pair.epoch, pair.stamp_ns) >= self._begins:
+            self._begins = None
+            return True
+        last = self._last
+        return last is None or pair.epoch != last.epoch or pair.stamp_ns - last.stamp_ns > self._reset_ns
+
+
+def _about_mean(differences: np.ndarray) -> float:
+    return float(np.abs(differences - differences.mean()).mean())

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sysid.live.pairing import Pair
-from hasel_sysid.live.running_error import RunningErrors
+from hasel_sysid.live.running_error import DriveStarts, RunningErrors
 
 _FRAME = 10_000_000
 
@@ -12,7 +12,7 @@ def test_the_offset_of_the_run_is_taken_out():
     """Mean magnitude of the differences less their mean, over the frames so far."""
     generator = np.random.default_rng(1)
     measured, simulated = generator.normal(size=(2, 3000))
-    errors = RunningErrors(reset=2.0)
+    errors = RunningErrors(reset=2.0, window=5.0)
     for n, pair in enumerate(zip(measured, simulated + 5.0, strict=True)):
         error = errors.add(Pair(0, n * _FRAME, *pair))
         if n in (1, 1500, 2999):
@@ -25,8 +25,39 @@ def test_the_offset_of_the_run_is_taken_out():
 @pytest.mark.parametrize("second", [Pair(1, 0, 0.0, 3.0), Pair(0, 300 * _FRAME, 0.0, 3.0)])
 def test_another_run_begins_anew(second):
     """After a restart or a long gap nothing of the old run is left."""
-    errors = RunningErrors(reset=2.0)
+    errors = RunningErrors(reset=2.0, window=5.0)
     errors.add(Pair(0, 0, 0.0, 1.0))
     assert errors.add(Pair(0, _FRAME, 0.0, 2.0)).count == 2
     error = errors.add(second)
     assert (error.count, error.mean_absolute) == (1, 0.0)
+
+
+def test_a_better_model_shows_in_the_window_at_once():
+    """After ten minutes with a bad model a window's length with a good one tells, where the whole run hardly does."""
+    errors = RunningErrors(reset=2.0, window=1.0)
+    for n in range(6000):
+        error = errors.add(Pair(0, n * _FRAME, 0.0, 0.1 * (-1) ** n))
+    assert error.recent == pytest.approx(0.1, rel=0.02)
+    for n in range(6000, 6102):
+        error = errors.add(Pair(0, n * _FRAME, 0.0, 0.01 * (-1) ** n))
+    assert (error.recent, error.window) == (pytest.approx(0.01, rel=0.02), 1.0)
+    assert error.mean_absolute > 0.09
+
+
+def test_driving_after_a_rest_begins_a_new_run():
+    """The driver's states go on between two experiments: no gap, no step back, only a rest at 0 V."""
+    errors, starts = RunningErrors(reset=2.0, window=5.0), DriveStarts()
+    counts = []
+    for n in range(1000):
+        driven = n < 300 or n >= 700
+        stamp = n * _FRAME
+        if starts.begins(0, stamp, (5000.0 * driven * (n % 50 < 25), 0.0)):
+            errors.begin(0, stamp)
+        counts.append(errors.add(Pair(0, stamp, 0.0, 1.0)).count)
+    assert counts[:700] == list(range(1, 701))
+    assert counts[700:] == list(range(1, 301))
+
+
+def test_an_unknown_voltage_begins_no_run():
+    """A supply in FAULT says NaN."""
+    assert not DriveStarts().begins(0, 0, (float("nan"), 0.0))

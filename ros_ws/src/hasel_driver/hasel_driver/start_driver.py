@@ -1,0 +1,26 @@
+"""`ros2 run hasel_driver driver_node`: where the executable begins; --help is answered before a port is opened."""
+
+import sys
+
+from hasel_recording.node_usage import answer_help
+
+from hasel_driver.parameters import PARAMETERS
+
+
+def main() -> int:
+    """Run the node until it is shut down; returns the exit code."""
+    answer_help(
+        "driver_node",
+        "Drives the high-voltage supply at a serial port: opens the port when it starts, arms nothing by itself.",
+        [
+            (each.name, each.default, each.description + (f" [{each.unit}]" if each.unit else ""))
+            for each in PARAMETERS
+        ],
+    )
+    from hasel_driver.driver_node import main as run
+
+    return run()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,24 @@
+"""`ros2 run hasel_sim simulator`: where the executable begins; --help is answered before anything is started."""
+
+import sys
+
+from hasel_recording.node_usage import answer_help
+
+from hasel_sim.simulator_parameters import PARAMETERS
+
+
+def main() -> int:
+    """Run the node until it is interrupted; returns the exit code."""
+    answer_help(
+        "simulator",
+        "Simulates the bending angle under the supply's state (/hasel/state), and publishes it "
+        "(/hasel/bending/simulated) with the shape (/hasel/swimmer).",
+        [parameter.usage for parameter in PARAMETERS],
+    )
+    from hasel_sim.simulator_node import main as run
+
+    return run()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

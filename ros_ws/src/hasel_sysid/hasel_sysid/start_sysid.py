@@ -1,0 +1,22 @@
+"""`ros2 run hasel_sysid sysid`: where the executable begins; --help is answered before anything is started."""
+
+from hasel_recording.node_usage import answer_help
+
+from hasel_sysid.sysid_parameters import PARAMETERS
+
+
+def main() -> None:
+    """Run the node until it is interrupted; the process ends with its exit code."""
+    answer_help(
+        "sysid",
+        "Publishes how far the simulated angle is from the measured one (/hasel/error), and fits and diagnoses what "
+        "was heard when asked to (/hasel/fit, /hasel/diagnose).",
+        [parameter.usage for parameter in PARAMETERS],
+    )
+    from hasel_sysid.sysid_node import main as run
+
+    run()
+
+
+if __name__ == "__main__":
+    main()

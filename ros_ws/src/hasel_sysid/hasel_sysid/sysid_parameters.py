@@ -1,0 +1,14 @@
+"""The identification node's parameters."""
+
+from hasel_sim.node_parameters import NodeParameter
+
+PARAMETERS = (
+    NodeParameter("model", "swimmer", "model that is fitted: its name or file", changeable=True),
+    NodeParameter("effects", [""], "effects added to it: ids, or path/to/file.py:ClassName", changeable=True),
+    NodeParameter("output", ".", "folder into which fitted models are written", changeable=True),
+    NodeParameter("jobs", 0, "processes that simulate; 0: one per core", "1", 0, 256, changeable=True),
+    NodeParameter("gap", 0.1, "no interpolation between simulated angles further apart", "s", 0.001, 10.0),
+    NodeParameter("reset", 2.0, "a longer gap begins a new run", "s", 0.01, 3600.0),
+    NodeParameter("window", 5.0, "length of the sliding window of /hasel/error", "s", 0.1, 3600.0),
+    NodeParameter("late", 0.5, "stamps that go back by more begin a new run", "s", 0.0, 60.0),
+)
