@@ -6,11 +6,11 @@ from collections.abc import Callable
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
+from hasel_recording.endpoints import Role
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 
-EVERY_MESSAGE = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.RELIABLE)
+EVERY_MESSAGE = Role.EVERY_SAMPLE.value
 
 
 def stamp_ns(message) -> int:

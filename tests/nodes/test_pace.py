@@ -26,12 +26,14 @@ def test_the_node_is_never_behind_on_one_core(tmp_path, environment, listener):
         processes.start("hasel_sim", "simulator", "--ros-args", "-p", f"model:={tmp_path / 'model.yaml'}")
         listener.until(lambda: states.get_subscription_count() == 2, 60.0, processes.check)
         os.sched_setaffinity(processes.process_id("simulator"), {max(os.sched_getaffinity(0))})
-        listener.until(lambda: "hasel_simulator: simulation" in listener.diagnostics, 20.0, processes.check)
+        listener.until(
+            lambda: "hasel/hasel_simulator: simulation" in listener.diagnostics, 20.0, processes.check
+        )
         worst, factors, begun = [], [], time.monotonic()
 
         def pace() -> None:
             processes.check()
-            values = listener.diagnostics["hasel_simulator: simulation"]
+            values = listener.diagnostics["hasel/hasel_simulator: simulation"]
             worst.append(float(values["worst lag [ms]"]))
             factors.append(float(values["real-time factor"]))
 

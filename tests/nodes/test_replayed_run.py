@@ -39,7 +39,7 @@ def stack(tmp_path, environment, listener, model_file):
         stack.start("hasel_sysid", "sysid", *model, "-p", f"output:={tmp_path}")
 
         def connected() -> bool:
-            heard = listener.diagnostics.get("hasel_sysid: identification", {})
+            heard = listener.diagnostics.get("hasel/hasel_sysid: identification", {})
             return heard.get("publishers of /hasel/bending/simulated") == "1"
 
         listener.until(connected, 60.0, stack.check)

@@ -4,7 +4,7 @@ import time
 
 from rclpy.node import Node
 
-FEEDBACK = "/hasel/run_experiment/_action/feedback"  # to which every client of the action subscribes
+FEEDBACK = "run_experiment/_action/feedback"  # to which every client of the action subscribes
 GRACE_S = 0.3
 
 

@@ -8,6 +8,8 @@ from typing import Any
 
 import rclpy
 from hasel_interfaces.msg import Actuation, SupplyState
+from hasel_recording.endpoints import Role, publisher, subscription
+from hasel_recording.topics import COMMAND, NAMESPACE, STATE
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
@@ -25,11 +27,11 @@ class ConsoleLink:
 
     def __init__(self) -> None:
         rclpy.init()
-        self._node = rclpy.create_node("hasel_console")
+        self._node = rclpy.create_node("hasel_console", namespace=NAMESPACE)
         self._state: SupplyState | None = None
         self._heard_s = 0.0
         self._commands = None
-        self._node.create_subscription(SupplyState, "/hasel/state", self._take, 10)
+        subscription(self._node, SupplyState, STATE, self._take, Role.SAMPLES)
         self._clients: dict[str, Any] = {}
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self._node)
@@ -49,7 +51,7 @@ class ConsoleLink:
 
     def trigger(self, name: str) -> str:
         """Call one of the driver's services; its words. Raises RefusedError with them where it fails."""
-        answer = self._ask(Trigger, f"/hasel/{name}", Trigger.Request())
+        answer = self._ask(Trigger, name, Trigger.Request())
         if not answer.success:
             raise RefusedError(answer.message)
         return answer.message
@@ -58,7 +60,7 @@ class ConsoleLink:
         """Lower the driver's maximum voltage [V]."""
         value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=voltage_v)
         request = SetParameters.Request(parameters=[Parameter(name="maximum_voltage", value=value)])
-        (result,) = self._ask(SetParameters, "/hasel_driver/set_parameters", request).results
+        (result,) = self._ask(SetParameters, "hasel_driver/set_parameters", request).results
         if not result.successful:
             raise RefusedError(result.reason)
         return f"The limit is {voltage_v:g} V."
@@ -66,7 +68,7 @@ class ConsoleLink:
     @contextmanager
     def commanding(self) -> Iterator[None]:
         """The driver allows one publisher of commands: this one is there only as long as it is needed."""
-        self._commands = self._node.create_publisher(Actuation, "/hasel/command", 10)
+        self._commands = publisher(self._node, Actuation, COMMAND, Role.COMMANDS)
         try:
             end_s = time.monotonic() + ANSWER_S
             while not self._commands.get_subscription_count():
@@ -108,4 +110,6 @@ class ConsoleLink:
             future.add_done_callback(lambda _: done.set())
             if done.wait(ANSWER_S):
                 return future.result()
-        raise RefusedError(f"{name} gives no answer: start the driver's node, or treat the output as live.")
+        raise RefusedError(
+            f"{client.srv_name} gives no answer: start the driver's node, or treat the output as live."
+        )

@@ -9,6 +9,8 @@ import time
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_interfaces.msg import SupplyState
+from hasel_recording.endpoints import Role, frame_of, publisher
+from hasel_recording.topics import DIAGNOSTICS, NAMESPACE, STATE
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.duration import Duration
 from rclpy.executors import MultiThreadedExecutor
@@ -24,6 +26,7 @@ from hasel_driver.limits import Limits, Voltages
 from hasel_driver.messages import to_diagnostics, to_supply_state
 from hasel_driver.middleware import avoid_shared_memory
 from hasel_driver.node_parameters import declare, values
+from hasel_driver.parameter_files import check_files
 from hasel_driver.realtime import middleware_threads, request_realtime
 from hasel_driver.spinning import quiet_at_shutdown, spin
 from hasel_driver.status import Status
@@ -42,7 +45,7 @@ class DriverNode(LifecycleNode):
     """Unconfigured: port closed. Inactive: telemetry. Active: may be armed, by the service `arm` only."""
 
     def __init__(self, **options) -> None:
-        super().__init__("hasel_driver", **options)
+        super().__init__("hasel_driver", **{"namespace": NAMESPACE, **options})
         self._thread: SupplyThread | None = None
         self._lifecycle_active = False
         self._retrying = False
@@ -51,13 +54,19 @@ class DriverNode(LifecycleNode):
         self._unheard_s: float | None = None
         self._last_limits: Limits | None = None
         self.end_reason: str | None = None  # why the process must end
+        check_files(self.get_name(), self.get_fully_qualified_name(), sys.argv)
         declare(self, lambda: self._thread is not None, self._lower_maximum)
         slow = ReentrantCallbackGroup()
-        self._state = self.create_publisher(SupplyState, "/hasel/state", 50)
-        self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
+        self._state = publisher(self, SupplyState, STATE, Role.SAMPLES)
+        self._frame_id = frame_of(self, "supply")
+        self._diagnostics = publisher(self, DiagnosticArray, DIAGNOSTICS, Role.DIAGNOSTICS)
         self.history = SupplyHistory(values(self)["history_file"], self.get_logger().warning)
         self._inputs = UrgentInputs(
-            self._on_command, self._on_stop_topic, self._on_inputs_alive, values(self)["realtime_priority"]
+            self.get_namespace(),
+            self._on_command,
+            self._on_stop_topic,
+            self._on_inputs_alive,
+            values(self)["realtime_priority"],
         )
         self._trigger_services = DriverServices(
             self,
@@ -197,6 +206,7 @@ class DriverNode(LifecycleNode):
             holders = inputs.holders.names(inputs.stop_topic.present()) if inputs.holders else []
             limits = thread.supervisor.limits if thread is not None else self._last_limits
             message = to_supply_state(status, limits, holders)
+            message.header.frame_id = self._frame_id
             self._state.publish(message)
             self.experiments.record_state(message)
         self.history.take(status)
@@ -213,9 +223,9 @@ class DriverNode(LifecycleNode):
         if not thread.is_alive():
             self._publish(thread.supervisor.status())
         thread.host_is_alive("services")
-        masters = self.count_publishers("/hasel/command")
+        masters = self._inputs.masters()
         if masters > 1 and thread.supervisor.armed:
-            self.fail(Fault(FaultCode.TWO_MASTERS, f"{masters} publishers of /hasel/command"))
+            self.fail(Fault(FaultCode.TWO_MASTERS, f"{masters} publishers of {self._inputs.command_topic}"))
         self._watch_stop_publishers(thread)
 
     def _watch_stop_publishers(self, thread: SupplyThread) -> None:
@@ -244,7 +254,8 @@ class DriverNode(LifecycleNode):
                 "grounds_itself_without_host": supervisor.capabilities.deadman,
                 "thread_alive": thread.is_alive(),
             }
-        self._diagnostics.publish(to_diagnostics(status, self.get_clock().now().to_msg(), details))
+        name = self.get_fully_qualified_name().lstrip("/")
+        self._diagnostics.publish(to_diagnostics(name, status, self.get_clock().now().to_msg(), details))
 
     # What the services ask for
 
@@ -263,8 +274,10 @@ class DriverNode(LifecycleNode):
                 "An emergency stop sent before may still arrive:"
                 f" wait {discovery_s - waited_s:.1f} s and arm again."
             )
-        if self.count_publishers("/hasel/command") > 1:
-            raise RefusedError("More than one node publishes /hasel/command: stop all but one, then arm.")
+        if self._inputs.masters() > 1:
+            raise RefusedError(
+                f"More than one node publishes {self._inputs.command_topic}: stop all but one, then arm."
+            )
         if not thread.supervisor.capabilities.deadman and not self.get_parameter("accept_no_deadman").value:
             raise RefusedError(
                 "This supply stays live when its host dies:"

@@ -35,7 +35,7 @@ class DriverServices:
         self._release_stop = release_stop
         for name in SERVICES:
             handler = partial(self._serve, getattr(self, name))
-            node.create_service(Trigger, f"/hasel/{name}", handler, callback_group=group)
+            node.create_service(Trigger, name, handler, callback_group=group)
 
     def _serve(
         self, action: Callable[[], str], _: Trigger.Request, response: Trigger.Response

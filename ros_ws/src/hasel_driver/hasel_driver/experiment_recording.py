@@ -28,6 +28,7 @@ class ExperimentRecording:
     path: Path
     plan: ExperimentPlan
     required_topics: tuple[str, ...] = ()
+    state_topic: str = STATE
     problem: str | None = None  # why nothing more can be written
     _closed: bool = False
     _recorder: McapRecorder = field(init=False)
@@ -62,10 +63,10 @@ class ExperimentRecording:
     def missing(self, duration_s: float) -> list[str]:
         """What the closed file lacks of a run of `duration_s` [s], in words; empty if it is complete."""
         content = read_file(self.path)
-        lacking = [_coverage(content, STATE, duration_s, MOST_STATE_GAP_S)]
+        lacking = [_coverage(content, self.state_topic, duration_s, MOST_STATE_GAP_S)]
         lacking += [_coverage(content, topic, duration_s, MOST_TOPIC_GAP_S) for topic in self.required_topics]
         if not any(lacking):
-            lacking += _drive_lacking(content, self.plan.waveform)
+            lacking += _drive_lacking(content, self.state_topic, self.plan.waveform)
         return [text for text in lacking if text]
 
 
@@ -82,8 +83,8 @@ def _coverage(content: McapFile, topic: str, duration_s: float, most_gap_s: floa
     return None
 
 
-def _drive_lacking(content: McapFile, waveform: Waveform | FileWaveform) -> list[str]:
-    states = content.decoded(STATE, TOPIC_TYPES[STATE])
+def _drive_lacking(content: McapFile, topic: str, waveform: Waveform | FileWaveform) -> list[str]:
+    states = content.decoded(topic, TOPIC_TYPES[STATE])
     voltage_v = np.array([state.commanded_voltage for state in states])  # [n, 2]
     if isinstance(waveform, FileWaveform):
         return _file_lacking(voltage_v, waveform)

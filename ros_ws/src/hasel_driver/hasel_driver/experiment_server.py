@@ -1,4 +1,4 @@
-"""The action `/hasel/run_experiment`: runs a plan, records it, and vouches for the recording."""
+"""The action `run_experiment`: runs a plan, records it, and vouches for the recording."""
 
 import importlib
 import threading
@@ -10,8 +10,9 @@ from pathlib import Path
 
 from hasel_interfaces.action import RunExperiment
 from hasel_interfaces.msg import SupplyState
+from hasel_recording.endpoints import Role
 from hasel_recording.errors import RecordingError
-from hasel_recording.topics import STATE, TOPIC_TYPES
+from hasel_recording.topics import STATE, TOPIC_TYPES, known_as, relative
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
@@ -34,6 +35,7 @@ class ExperimentServer:
 
     def __init__(self, node: Node, thread: Callable[[], SupplyThread | None], group: CallbackGroup) -> None:
         self._node, self._thread, self._group = node, thread, group
+        self._state_topic = node.resolve_topic_name(relative(STATE))
         self._experiment: Experiment | None = None
         self._recording: ExperimentRecording | None = None
         self._watched: list = []
@@ -41,7 +43,7 @@ class ExperimentServer:
         self._server = ActionServer(
             node,
             RunExperiment,
-            "/hasel/run_experiment",
+            "run_experiment",
             self._execute,
             goal_callback=self._accept,
             cancel_callback=lambda _: CancelResponse.ACCEPT,
@@ -52,18 +54,18 @@ class ExperimentServer:
         """Subscribe to what is to be recorded, before it is needed: discovery takes time."""
         for subscription in self._watched:
             self._node.destroy_subscription(subscription)
-        known = [topic for topic in topics if topic in TOPIC_TYPES]
+        known = {topic: kind for topic in topics if (kind := known_as(topic)) is not None}
         for topic in set(topics) - set(known):
             self._node.get_logger().warning(f"The type of {topic} is not known: it will not be recorded.")
         self._watched = [
             self._node.create_subscription(
-                _message_class(TOPIC_TYPES[topic]),
+                _message_class(TOPIC_TYPES[kind]),
                 topic,
-                self._writer(topic),
-                200,
+                self._writer(self._node.resolve_topic_name(topic)),
+                Role.SAMPLES.value,
                 callback_group=self._group,
             )
-            for topic in known
+            for topic, kind in known.items()
         ]
 
     def step(self) -> None:
@@ -75,7 +77,7 @@ class ExperimentServer:
         """Called in the supply's thread; a state that does not know the voltage is not a sample of it."""
         recording = self._recording
         if recording is not None and message.commanded_voltage[0] == message.commanded_voltage[0]:
-            recording.write(STATE, message)
+            recording.write(self._state_topic, message)
 
     def _writer(self, topic: str) -> Callable:
         def write(message) -> None:
@@ -127,7 +129,7 @@ class ExperimentServer:
         thread.call(experiment.begin).result(timeout=5.0)
         try:
             path = self._reserve(goal_handle.request, plan)
-            recording = self._recording = ExperimentRecording(path, plan, topics)
+            recording = self._recording = ExperimentRecording(path, plan, topics, self._state_topic)
         except (OSError, RecordingError, DriverError):
             thread.call(experiment.cancel)
             raise

@@ -58,6 +58,12 @@ class IdentifiedSubscription(Waitable):
         node.add_waitable(self)
 
     @property
+    def topic_name(self) -> str:
+        """The topic's full name, in the node's namespace and remapped."""
+        with self._subscription:
+            return self._subscription.get_topic_name()
+
+    @property
     def publishers(self) -> int:
         """How many publishers it is connected with."""
         with self._subscription:

@@ -53,9 +53,11 @@ def _interlock(closed: tuple[bool, bool] | None) -> list[int]:
     return [SupplyState.INTERLOCK_CLOSED if each else SupplyState.INTERLOCK_OPEN for each in closed]
 
 
-def to_diagnostics(status: Status | None, stamp: Time, details: dict[str, object]) -> DiagnosticArray:
-    """`/diagnostics`; no status means that the node is not configured."""
-    entry = DiagnosticStatus(name="hasel_driver: supply", hardware_id=str(details.get("device", "")))
+def to_diagnostics(
+    node: str, status: Status | None, stamp: Time, details: dict[str, object]
+) -> DiagnosticArray:
+    """`/diagnostics` of a node; no status means that it is not configured."""
+    entry = DiagnosticStatus(name=f"{node}: supply", hardware_id=str(details.get("device", "")))
     if status is None:
         entry.level, entry.message = DiagnosticStatus.WARN, "not configured: the port is closed"
     else:

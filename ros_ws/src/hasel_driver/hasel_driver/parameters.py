@@ -92,9 +92,9 @@ PARAMETERS: tuple[Parameter, ...] = (
     ),
     Parameter(
         "recorded_topics",
-        ["/hasel/bending/measured", "/hasel/markers/measured", "/hasel/bending/simulated"],
+        ["bending/measured", "markers/measured", "bending/simulated"],
         "",
-        "recorded with /hasel/state; required in the recording when published as the experiment begins",
+        "recorded with the state; required in the recording when published as the experiment begins",
     ),
     Parameter(
         "realtime_priority",

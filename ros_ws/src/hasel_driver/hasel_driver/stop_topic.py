@@ -1,7 +1,8 @@
-"""Hears `/hasel/emergency_stop` from every publisher, whatever its quality of service."""
+"""Hears `emergency_stop` from every publisher, whatever its quality of service."""
 
 from collections.abc import Callable
 
+from hasel_recording.topics import EMERGENCY_STOP, TOPIC_TYPES, relative
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -10,7 +11,7 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 from hasel_driver.identified_subscription import IDENTIFIER_BYTES, IdentifiedSubscription
 from hasel_driver.stop_holders import StopHolders
 
-TOPIC, TYPE = "/hasel/emergency_stop", "std_msgs/msg/Bool"
+TYPE = TOPIC_TYPES[EMERGENCY_STOP]
 DEPTH = 100
 NOT_KNOWN_YET = "_NODE_NAME_UNKNOWN_"
 # A subscription is not matched by a publisher that offers less than it asks for, and is not given more than it asks
@@ -32,32 +33,34 @@ class StopTopic:
         self._node, self._holders, self._on_change = node, holders, on_change
         group = MutuallyExclusiveCallbackGroup()
         self._subscriptions = [
-            IdentifiedSubscription(node, TOPIC, self._take, quality, group) for quality in QUALITIES
+            IdentifiedSubscription(node, relative(EMERGENCY_STOP), self._take, quality, group)
+            for quality in QUALITIES
         ]
+        self.topic = self._subscriptions[0].topic_name
 
     def present(self) -> dict[bytes, str]:
         """Names of the publishers that exist, by identifier."""
-        return {
-            bytes(info.endpoint_gid[:IDENTIFIER_BYTES]): _name(info)
-            for info in self._node.get_publishers_info_by_topic(TOPIC)
-        }
+        return {bytes(info.endpoint_gid[:IDENTIFIER_BYTES]): _name(info) for info in self._publishers()}
 
     def unheard(self) -> str | None:
         """Why a publisher that exists cannot be heard; None if all can."""
-        publishers = self._node.get_publishers_info_by_topic(TOPIC)
+        publishers = self._publishers()
         for info in publishers:
             if info.topic_type != TYPE:
-                return f"{_name(info)} publishes {info.topic_type} on {TOPIC}, {TYPE} is expected"
+                return f"{_name(info)} publishes {info.topic_type} on {self.topic}, {TYPE} is expected"
         heard = self._subscriptions[-1].publishers
         if heard < len(publishers):
             names = ", ".join(map(_name, publishers))
-            return f"of {len(publishers)} publishers of {TOPIC} ({names}) only {heard} are connected"
+            return f"of {len(publishers)} publishers of {self.topic} ({names}) only {heard} are connected"
         return None
 
     def destroy(self) -> None:
         """Stop listening."""
         for subscription in self._subscriptions:
             subscription.destroy()
+
+    def _publishers(self) -> list[TopicEndpointInfo]:
+        return self._node.get_publishers_info_by_topic(relative(EMERGENCY_STOP))
 
     def _take(self, publisher: bytes, sequence: int, asserted: bool) -> None:
         name = self.present().get(publisher, "an unknown node")

@@ -6,10 +6,11 @@ from collections.abc import Callable
 
 import rclpy
 from hasel_interfaces.msg import Actuation
+from hasel_recording.endpoints import Role
+from hasel_recording.topics import COMMAND, relative
 from rclpy.clock import Clock, ClockType
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
 
 from hasel_driver.limits import Voltages
 from hasel_driver.realtime import request_realtime
@@ -18,15 +19,18 @@ from hasel_driver.stop_holders import StopHolders
 from hasel_driver.stop_topic import StopTopic
 
 ALIVE_PERIOD_S = 0.05
-EVERY = QoSProfile(depth=100, reliability=ReliabilityPolicy.RELIABLE)  # the next must not push out a NaN
 STEADY = Clock(clock_type=ClockType.STEADY_TIME)  # no /clock, and no hand on the system's, may stop a watch
 
 
 class UrgentInputs:
-    """Calls `on_command(voltage [V], age [s])`, `on_stop(asserted, who)` and `on_alive()` from a thread of its own."""
+    """Calls `on_command(voltage [V], age [s])`, `on_stop(asserted, who)` and `on_alive()` from a thread of its own.
+
+    Their quality of service cannot be overridden by parameters: what makes the driver safe is no setting.
+    """
 
     def __init__(
         self,
+        namespace: str,
         on_command: Callable[[Voltages, float], None],
         on_stop: Callable[[bool, str], None],
         on_alive: Callable[[], None],
@@ -35,9 +39,11 @@ class UrgentInputs:
         self._on_command = on_command
         self._realtime_priority = realtime_priority
         self._node: Node = rclpy.create_node(
-            "hasel_driver_inputs", start_parameter_services=False, enable_rosout=False
+            "hasel_driver_inputs", namespace=namespace, start_parameter_services=False, enable_rosout=False
         )
-        self._node.create_subscription(Actuation, "/hasel/command", self._take_command, EVERY)
+        self._commands = self._node.create_subscription(
+            Actuation, relative(COMMAND), self._take_command, Role.COMMANDS.value
+        )
         self.holders = StopHolders()
         self.stop_topic = StopTopic(self._node, self.holders, on_stop)
         self._node.create_timer(ALIVE_PERIOD_S, on_alive, clock=STEADY)
@@ -45,6 +51,15 @@ class UrgentInputs:
         self._executor.add_node(self._node)
         self._thread = threading.Thread(target=self._spin, name="inputs", daemon=True)
         self._thread.start()
+
+    @property
+    def command_topic(self) -> str:
+        """The full name of the topic of commands."""
+        return self._commands.topic_name
+
+    def masters(self) -> int:
+        """How many publishers of commands there are."""
+        return self._node.count_publishers(self._commands.topic_name)
 
     def close(self) -> None:
         """End the thread."""

@@ -157,7 +157,7 @@ def test_parameters_are_checked(driver, ros):
     def change(name: str, value: float) -> str:
         number = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=value)
         request = SetParameters.Request(parameters=[Parameter(name=name, value=number)])
-        (result,) = ros.request(SetParameters, "/hasel_driver/set_parameters", request).results
+        (result,) = ros.request(SetParameters, "/hasel/hasel_driver/set_parameters", request).results
         return "accepted" if result.successful else result.reason
 
     ros.await_mode(STANDBY, 10.0)
@@ -169,7 +169,9 @@ def test_parameters_are_checked(driver, ros):
     ros.wait(lambda: ros.state.maximum_voltage == 5000.0)
     assert ros.state.slew_rate == 250_000.0
     request = DescribeParameters.Request(names=["maximum_voltage"])
-    (described,) = ros.request(DescribeParameters, "/hasel_driver/describe_parameters", request).descriptors
+    (described,) = ros.request(
+        DescribeParameters, "/hasel/hasel_driver/describe_parameters", request
+    ).descriptors
     assert described.floating_point_range[0].to_value == 9800.0
     assert "[V]" in described.description
 

@@ -71,8 +71,10 @@ class BodyMessage:
         return self._message
 
 
-def diagnostics(level: bytes, sentence: str, values: Mapping[str, object], stamp: Time) -> DiagnosticArray:
-    """The simulator's entry in `/diagnostics`."""
-    status = DiagnosticStatus(level=level, name="hasel_simulator: simulation", message=sentence)
+def diagnostics(
+    node: str, level: bytes, sentence: str, values: Mapping[str, object], stamp: Time
+) -> DiagnosticArray:
+    """A simulator's entry in `/diagnostics`."""
+    status = DiagnosticStatus(level=level, name=f"{node}: simulation", message=sentence)
     status.values = [KeyValue(key=key, value=str(value)) for key, value in values.items()]
     return DiagnosticArray(header=Header(stamp=stamp), status=[status])

@@ -8,8 +8,9 @@ import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_interfaces.srv import AddEffect, LoadModel, RemoveEffect
+from hasel_recording.endpoints import STEADY, Role, frame_of, publisher, subscription
+from hasel_recording.topics import DIAGNOSTICS, NAMESPACE, SIMULATED, STATE, SWIMMER
 from rclpy.node import Node
-from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from threadpoolctl import threadpool_limits
 from visualization_msgs.msg import MarkerArray
 
@@ -25,14 +26,12 @@ from hasel_sim.node_process import run_node
 from hasel_sim.simulator_messages import BodyMessage, angle_message, diagnostics, to_nanoseconds
 from hasel_sim.simulator_parameters import PARAMETERS
 
-EVERY_MESSAGE = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.RELIABLE)
-
 
 class SimulatorNode(Node):
     """Thin: all that is simulated happens in `LiveSimulator`."""
 
     def __init__(self) -> None:
-        super().__init__("hasel_simulator")
+        super().__init__("hasel_simulator", namespace=NAMESPACE)
         self._warnings = RepeatedWarnings()
         declare(self, PARAMETERS)
         model, warning = live_model(self._value("model"), words(self, "effects"))
@@ -42,18 +41,19 @@ class SimulatorNode(Node):
         model = self.model_parameters.declare(model)
         self.live = LiveSimulator(model, **options)
         _warm_up(LiveSimulator(model, **options))
-        self._body = BodyMessage(self.live.mesh, len(self.live.markers), self._value("frame_id"))
+        self._frame_id = frame_of(self, self._value("frame_id"))
+        self._body = BodyMessage(self.live.mesh, len(self.live.markers), self._frame_id)
         self._pace, self._counts = Pace(), Counter()
         self._next_angle_ns = self._next_shape_s = 0
-        self._angles = self.create_publisher(BendingAngle, "/hasel/bending/simulated", EVERY_MESSAGE)
-        self._shapes = self.create_publisher(MarkerArray, "/hasel/swimmer", 2)
-        self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
-        self.create_service(AddEffect, "/hasel/add_effect", self._add_effect)
-        self.create_service(RemoveEffect, "/hasel/remove_effect", self._remove_effect)
-        self.create_service(LoadModel, "/hasel/load_model", self._load_model)
-        self.create_timer(1.0, self._report)
-        self.create_subscription(SupplyState, "/hasel/state", self._on_state, EVERY_MESSAGE)
-        self.get_logger().info(f"Simulating model '{model.name}', ready for /hasel/state.")
+        self._angles = publisher(self, BendingAngle, SIMULATED, Role.EVERY_SAMPLE)
+        self._shapes = publisher(self, MarkerArray, SWIMMER, Role.SHAPES)
+        self._diagnostics = publisher(self, DiagnosticArray, DIAGNOSTICS, Role.DIAGNOSTICS)
+        self.create_service(AddEffect, "add_effect", self._add_effect)
+        self.create_service(RemoveEffect, "remove_effect", self._remove_effect)
+        self.create_service(LoadModel, "load_model", self._load_model)
+        self.create_timer(1.0, self._report, clock=STEADY)
+        states = subscription(self, SupplyState, STATE, self._on_state, Role.EVERY_SAMPLE)
+        self.get_logger().info(f"Simulating model '{model.name}', ready for {states.topic_name}.")
 
     def _value(self, name: str):
         return self.get_parameter(name).value
@@ -73,12 +73,12 @@ class SimulatorNode(Node):
         self._warn(answer.sentence)
 
     def _publish(self, answer: LiveAnswer) -> None:
-        rate, frame_id = self._value("rate"), self._value("frame_id")
+        rate = self._value("rate")
         for angle in answer.angles:
             early = angle.stamp_ns < self._next_angle_ns and answer.arrival.value == "next"
             if rate > 0 and early:
                 continue
-            self._angles.publish(angle_message(angle.stamp_ns, angle.sin_theta, frame_id))
+            self._angles.publish(angle_message(angle.stamp_ns, angle.sin_theta, self._frame_id))
             self._next_angle_ns = angle.stamp_ns + (int(1e9 / rate) if rate > 0 else 0)
         shape_rate, now = self._value("shape_rate"), time.monotonic()
         if (
@@ -107,14 +107,15 @@ class SimulatorNode(Node):
         }
         if counts["held"] or counts["gap"]:
             level = DiagnosticStatus.WARN
-        self._diagnostics.publish(diagnostics(level, str(pace), values, self.get_clock().now().to_msg()))
+        name, stamp = self.get_fully_qualified_name().lstrip("/"), self.get_clock().now().to_msg()
+        self._diagnostics.publish(diagnostics(name, level, str(pace), values, stamp))
         self._counts = Counter({name: counts[name] for name in ("start", "restart")})
 
     def _use(self, model: Model) -> None:
         before = self.live.mesh
         self.live.use(model)
         if self.live.mesh is not before:
-            self._body = BodyMessage(self.live.mesh, len(self.live.markers), self._value("frame_id"))
+            self._body = BodyMessage(self.live.mesh, len(self.live.markers), self._frame_id)
 
     def _add_effect(self, request: AddEffect.Request, response: AddEffect.Response) -> AddEffect.Response:
         def add() -> str:

@@ -27,5 +27,5 @@ PARAMETERS = (
     NodeParameter(
         "load_factor", 1.0, "a run starts in equilibrium under this many times all loads", "1", 0.0, 10.0
     ),
-    NodeParameter("frame_id", "swimmer", "frame of the stamped messages"),
+    NodeParameter("frame_id", "swimmer", "frame of the stamped messages, within the node's namespace"),
 )

@@ -90,8 +90,8 @@ def _ranked(finding: Finding) -> RankedEffect:
     )
 
 
-def diagnostics(sentence: str, values: Mapping[str, object], stamp: Time) -> DiagnosticArray:
-    """The node's entry in `/diagnostics`."""
-    status = DiagnosticStatus(level=DiagnosticStatus.OK, name="hasel_sysid: identification", message=sentence)
+def diagnostics(node: str, sentence: str, values: Mapping[str, object], stamp: Time) -> DiagnosticArray:
+    """A node's entry in `/diagnostics`."""
+    status = DiagnosticStatus(level=DiagnosticStatus.OK, name=f"{node}: identification", message=sentence)
     status.values = [KeyValue(key=key, value=str(value)) for key, value in values.items()]
     return DiagnosticArray(header=Header(stamp=stamp), status=[status])

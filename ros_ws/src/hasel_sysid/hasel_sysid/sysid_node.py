@@ -8,18 +8,17 @@ from diagnostic_msgs.msg import DiagnosticArray
 from hasel_interfaces.msg import BendingAngle, Diagnosis, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import RecordingError
-from hasel_recording.topics import MEASURED, SIMULATED, STATE
+from hasel_recording.endpoints import STEADY, Role, publisher, subscription
+from hasel_recording.topics import DIAGNOSIS, DIAGNOSTICS, ERROR, FIT, MEASURED, NAMESPACE, SIMULATED, STATE
 from hasel_sim.errors import HaselSimError
 from hasel_sim.live.live_model import live_model
 from hasel_sim.model import Model, save_model
 from hasel_sim.node_parameters import declare, words
 from hasel_sim.node_process import end_at_once, run_node
 from hasel_sim.simulator_messages import to_nanoseconds
-from hasel_sim.simulator_node import EVERY_MESSAGE
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from hasel_sysid.errors import SysidError
 from hasel_sysid.live.epochs import Epochs, StreamEpoch
@@ -30,14 +29,12 @@ from hasel_sysid.live.running_error import DriveStarts, RunningErrors
 from hasel_sysid.sysid_messages import diagnosis_message, diagnostics, error_message, fit_message
 from hasel_sysid.sysid_parameters import PARAMETERS
 
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
 
 class SysidNode(Node):
     """Thin: pairs and sums up what it hears, and hands it to the fit in a thread of the service's own."""
 
     def __init__(self) -> None:
-        super().__init__("hasel_sysid")
+        super().__init__("hasel_sysid", namespace=NAMESPACE)
         declare(self, PARAMETERS)
         gap, reset, late, window = (self._value(name) for name in ("gap", "reset", "late", "window"))
         epochs = Epochs()
@@ -45,23 +42,24 @@ class SysidNode(Node):
         self._pairing, self._heard = Pairing(gap), Heard(reset)
         self._errors, self._starts = RunningErrors(reset, window), DriveStarts()
         self._pairs, self._latest, self._busy, self._doing = 0, None, threading.Lock(), ""
-        self._error = self.create_publisher(RunningError, "/hasel/error", EVERY_MESSAGE)
-        self._fit = self.create_publisher(Fit, "/hasel/fit", LATCHED)
-        self._diagnosis = self.create_publisher(Diagnosis, "/hasel/diagnosis", LATCHED)
-        self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
+        self._error = publisher(self, RunningError, ERROR, Role.EVERY_SAMPLE)
+        self._fit = publisher(self, Fit, FIT, Role.RESULTS)
+        self._diagnosis = publisher(self, Diagnosis, DIAGNOSIS, Role.RESULTS)
+        self._diagnostics = publisher(self, DiagnosticArray, DIAGNOSTICS, Role.DIAGNOSTICS)
         hearing, working = MutuallyExclusiveCallbackGroup(), ReentrantCallbackGroup()
         self._inputs = {
-            topic: self.create_subscription(kind, topic, handler, EVERY_MESSAGE, callback_group=hearing)
+            topic: subscription(self, kind, topic, handler, Role.EVERY_SAMPLE, callback_group=hearing)
             for kind, topic, handler in (
                 (SupplyState, STATE, self._on_state),
                 (BendingAngle, MEASURED, self._on_measured),
                 (BendingAngle, SIMULATED, self._on_simulated),
             )
         }
-        self.create_timer(1.0, self._report, callback_group=hearing)
-        self.create_service(FitModel, "/hasel/fit", self._serve_fit, callback_group=working)
-        self.create_service(Diagnose, "/hasel/diagnose", self._serve_diagnosis, callback_group=working)
-        self.get_logger().info("Ready to compare /hasel/bending/simulated with /hasel/bending/measured.")
+        self.create_timer(1.0, self._report, callback_group=hearing, clock=STEADY)
+        self.create_service(FitModel, "fit", self._serve_fit, callback_group=working)
+        self.create_service(Diagnose, "diagnose", self._serve_diagnosis, callback_group=working)
+        simulated, measured = (self._inputs[topic].topic_name for topic in (SIMULATED, MEASURED))
+        self.get_logger().info(f"Ready to compare {simulated} with {measured}.")
 
     @property
     def doing(self) -> str:
@@ -104,10 +102,12 @@ class SysidNode(Node):
             f"{latest.mean_absolute:.4f} in this run so far"
         )
         values = {
-            f"publishers of {topic}": heard.get_publisher_count() for topic, heard in self._inputs.items()
+            f"publishers of {heard.topic_name}": heard.get_publisher_count()
+            for heard in self._inputs.values()
         }
         values["pairs"] = self._pairs
-        self._diagnostics.publish(diagnostics(sentence, values, self.get_clock().now().to_msg()))
+        name, stamp = self.get_fully_qualified_name().lstrip("/"), self.get_clock().now().to_msg()
+        self._diagnostics.publish(diagnostics(name, sentence, values, stamp))
 
     def _progress(self, sentence: str, share: float) -> None:
         self._doing = f"{share:.0%}: {sentence}"
@@ -121,7 +121,7 @@ class SysidNode(Node):
             save_model(result.model, path)
             response.fit = fit_message(result, str(path.resolve()), self.get_clock().now().to_msg())
             self._fit.publish(response.fit)
-            return f"{result} Written to {path}; the simulator takes it by /hasel/load_model."
+            return f"{result} Written to {path}; the simulator takes it by load_model."
 
         return self._serve(fit, response)
 

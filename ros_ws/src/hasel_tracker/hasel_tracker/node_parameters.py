@@ -45,7 +45,7 @@ PARAMETERS = (
     NodeParameter("roi", "", "look only within X,Y,WIDTH,HEIGHT of the picture; empty for all of it [px]"),
     NodeParameter("at", "", "the markers in the first frame, X,Y X,Y …, head first; empty to find them [px]"),
     NodeParameter("mirrored", False, "the camera looks from below or over a mirror"),
-    NodeParameter("frame_id", "camera", "of the stamped messages"),
+    NodeParameter("frame_id", "camera", "of the stamped messages, within the node's namespace"),
     NodeParameter("preview_rate", 5.0, "of the annotated picture; 0 for none [1/s]", 0.0, 30.0),
     NodeParameter("preview_width", 640, "of the annotated picture [px]", 64, 1920),
     NodeParameter("video_folder", ".", "where `record_video` writes"),

@@ -11,11 +11,12 @@ import numpy as np
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_interfaces.msg import BendingAngle
+from hasel_recording.endpoints import STEADY, Role, frame_of, publisher
+from hasel_recording.topics import DIAGNOSTICS, MEASURED, NAMESPACE
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.qos import QoSProfile, qos_profile_sensor_data
 from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import CompressedImage
 from std_srvs.srv import SetBool, Trigger
@@ -42,7 +43,6 @@ from hasel_tracker.sources.open_source import open_recorded
 from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
 from hasel_tracker.video.annotation import preview
 
-MEASURED_TOPIC = "/hasel/bending/measured"
 TOPIC_PREFIX = "topic:"
 PREVIEW_JPEG_QUALITY = 70
 
@@ -51,14 +51,12 @@ class TrackerNode(Node):
     """Publishes the bending angle of every frame, a preview, and diagnostics; records video on request."""
 
     def __init__(self) -> None:
-        super().__init__("hasel_tracker")
+        super().__init__("hasel_tracker", namespace=NAMESPACE)
         for each in PARAMETERS:
             self.declare_parameter(each.name, each.default, parameter_descriptor(each))
-        self._angles = self.create_publisher(BendingAngle, MEASURED_TOPIC, QoSProfile(depth=200))
-        self._previews = self.create_publisher(
-            CompressedImage, "~/preview/compressed", qos_profile_sensor_data
-        )
-        self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 10)
+        self._angles = publisher(self, BendingAngle, MEASURED, Role.SAMPLES)
+        self._previews = publisher(self, CompressedImage, "~/preview/compressed", Role.PICTURES)
+        self._diagnostics = publisher(self, DiagnosticArray, DIAGNOSTICS, Role.DIAGNOSTICS)
         self._next_preview_s = 0.0
         self._reported_drops = 0
         self._topic: ImageTopic | None = None
@@ -69,7 +67,7 @@ class TrackerNode(Node):
         self.add_post_set_parameters_callback(self._apply_settings)
         self.create_service(SetBool, "~/record_video", self._record_video)
         self.create_service(Trigger, "~/restart", self._restart)
-        self.create_timer(1.0, self._report)
+        self.create_timer(1.0, self._report, clock=STEADY)
         self._live.start()
 
     def close(self) -> None:
@@ -122,7 +120,7 @@ class TrackerNode(Node):
         )
 
     def _publish(self, frame: Frame, tracked: TrackedFrame) -> None:
-        frame_id = self._value("frame_id")
+        frame_id = frame_of(self, self._value("frame_id"))
         self._angles.publish(angle_message(tracked, frame.stamp_ns, frame_id))
         if self._live.tracker.note != self._last_note:
             self._last_note = self._live.tracker.note
@@ -150,6 +148,7 @@ class TrackerNode(Node):
             fault,
         )
         self._reported_drops = dropped
+        name = self.get_fully_qualified_name().lstrip("/")
         message = DiagnosticArray()
         message.header.stamp = self.get_clock().now().to_msg()
         details = {"dropped frames": dropped, "broken frames": self._live.broken_frames}
@@ -157,7 +156,7 @@ class TrackerNode(Node):
             details["camera"] = camera.given
         if self._live.recording is not None:
             details["recording"] = self._live.recording.path
-        message.status.append(diagnostic_status(self.get_name(), report, health, details))
+        message.status.append(diagnostic_status(name, report, health, details))
         self._diagnostics.publish(message)
 
     def _record_video(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:

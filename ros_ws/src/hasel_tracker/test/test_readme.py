@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
+from hasel_recording import topics
 from hasel_tracker.bench.accuracy import CONDITIONS
 from hasel_tracker.bench.robustness import CASES
 from hasel_tracker.commands import bench, calibrate, render, track
@@ -36,10 +37,12 @@ def test_parameters_are_listed_as_they_are():
 
 def test_topics_and_services_are_listed():
     """The tables name exactly what the node publishes and offers."""
-    measured = re.search(r'MEASURED_TOPIC = "([^"]+)"', NODE)[1]
-    published = re.findall(r'create_publisher\(\s*\w+, (?:"([^"]+)"|MEASURED_TOPIC)', NODE)
+    constants = {"MEASURED": topics.MEASURED, "DIAGNOSTICS": topics.DIAGNOSTICS}
+    published = re.findall(r"publisher\(self, \w+, (\S+), Role", NODE)
     offered = re.findall(r'create_service\(\w+, "([^"]+)"', NODE)
-    assert {row[0].strip("`") for row in rows("topic")} == {name or measured for name in published}
+    assert {row[0].strip("`") for row in rows("topic")} == {
+        constants.get(name, name.strip('"')) for name in published
+    }
     assert {row[0].strip("`") for row in rows("service")} == set(offered)
 
 

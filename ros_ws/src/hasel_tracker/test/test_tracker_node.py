@@ -39,14 +39,14 @@ class Observer(Node):
         self.create_subscription(BendingAngle, "/hasel/bending/measured", self.angles.append, 1000)
         self.create_subscription(
             CompressedImage,
-            "/hasel_tracker/preview/compressed",
+            "/hasel/hasel_tracker/preview/compressed",
             self.previews.append,
             qos_profile_sensor_data,
         )
         self.create_subscription(DiagnosticArray, "/diagnostics", self._note_report, 10)
 
     def _note_report(self, message: DiagnosticArray) -> None:
-        if message.status[0].name.startswith("hasel_tracker"):
+        if message.status[0].name.startswith("hasel/hasel_tracker"):
             self.reports.append(message)
 
     def wait(self, reached: Callable[[], object]) -> None:
@@ -151,7 +151,7 @@ def test_image_topic_services_and_parameters(observer, start, frames, tmp_path):
         observer.wait(lambda: any(each.header.stamp.sec == stamp_s for each in observer.angles))
         return observer.angles[-1]
 
-    started_video = observer.call(SetBool, "/hasel_tracker/record_video", SetBool.Request(data=True))
+    started_video = observer.call(SetBool, "/hasel/hasel_tracker/record_video", SetBool.Request(data=True))
     assert started_video.success
     assert show(frames[40].image, 1000).doubt == BendingAngle.STARTING
     assert not show(frames[40].image, 1001).valid
@@ -168,16 +168,18 @@ def test_image_topic_services_and_parameters(observer, start, frames, tmp_path):
     assert np.isnan([blank.sin_theta, blank.theta, *blank.marker_x, *blank.marker_y]).all()
     assert [*blank.marker_quality] == [0.0, 0.0, 0.0]
 
-    finished = observer.call(SetBool, "/hasel_tracker/record_video", SetBool.Request(data=False))
+    finished = observer.call(SetBool, "/hasel/hasel_tracker/record_video", SetBool.Request(data=False))
     assert finished.success
     source = VideoSource(Path(started_video.message))
     assert len(list(source)) == 4
     assert source.start_stamp_ns == 1000 * 10**9
-    assert not observer.call(SetBool, "/hasel_tracker/record_video", SetBool.Request(data=False)).success
+    assert not observer.call(
+        SetBool, "/hasel/hasel_tracker/record_video", SetBool.Request(data=False)
+    ).success
 
     def set_parameter(name: str, value: object) -> object:
         request = SetParameters.Request(parameters=[Parameter(name, value=value).to_parameter_msg()])
-        return observer.call(SetParameters, "/hasel_tracker/set_parameters", request).results[0]
+        return observer.call(SetParameters, "/hasel/hasel_tracker/set_parameters", request).results[0]
 
     refused = set_parameter("head", "north")
     assert not refused.successful
@@ -187,13 +189,13 @@ def test_image_topic_services_and_parameters(observer, start, frames, tmp_path):
     assert set_parameter("hue_high", 80).successful
     assert not show(frames[40].image, 1004).valid  # blue markers are not looked for any more
     assert set_parameter("hue_high", 130).successful
-    assert observer.call(Trigger, "/hasel_tracker/restart", Trigger.Request()).success
+    assert observer.call(Trigger, "/hasel/hasel_tracker/restart", Trigger.Request()).success
     assert [show(frames[40].image, stamp_s).valid for stamp_s in (1005, 1006, 1007)] == [False, False, True]
 
     request = DescribeParameters.Request(names=["frame_rate"])
-    described = observer.call(DescribeParameters, "/hasel_tracker/describe_parameters", request).descriptors[
-        0
-    ]
+    described = observer.call(
+        DescribeParameters, "/hasel/hasel_tracker/describe_parameters", request
+    ).descriptors[0]
     assert described.read_only
     assert described.floating_point_range[0].to_value == 1000.0
     assert "[1/s]" in described.description

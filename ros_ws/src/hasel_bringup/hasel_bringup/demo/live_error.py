@@ -8,13 +8,13 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_interfaces.msg import RunningError
 from hasel_interfaces.srv import LoadModel
-from hasel_recording.topics import SIMULATED
+from hasel_recording.endpoints import Role, subscription
+from hasel_recording.topics import ERROR, NAMESPACE, SIMULATED
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 
 from hasel_bringup.demo.processes import Processes
 from hasel_bringup.errors import BringupError
-from hasel_bringup.replay.replay_node import EVERY_MESSAGE
 
 _PATIENCE_S = 60.0
 
@@ -35,10 +35,10 @@ class LiveError:
     def __enter__(self) -> "LiveError":
         self._context = Context()
         rclpy.init(context=self._context, domain_id=self._domain)
-        self._node = rclpy.create_node("hasel_demo", context=self._context)
+        self._node = rclpy.create_node("hasel_demo", namespace=NAMESPACE, context=self._context)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
-        self._node.create_subscription(RunningError, "/hasel/error", self._on_error, EVERY_MESSAGE)
+        subscription(self._node, RunningError, ERROR, self._on_error, Role.EVERY_SAMPLE)
         self._node.create_subscription(DiagnosticArray, "/diagnostics", self._on_diagnostics, 10)
         model = ("--ros-args", "-p", f"model:={self._model}")
         self._processes.start("hasel_sim", "simulator", *model)
@@ -58,8 +58,8 @@ class LiveError:
 
     def load(self, model: Path) -> None:
         """Let the running simulator go on with another model. Raises BringupError when it refuses."""
-        client = self._node.create_client(LoadModel, "/hasel/load_model")
-        self._until(client.service_is_ready, "the simulator does not offer /hasel/load_model")
+        client = self._node.create_client(LoadModel, "load_model")
+        self._until(client.service_is_ready, "the simulator does not offer load_model")
         future = client.call_async(LoadModel.Request(model=str(model)))
         self._until(future.done, "the simulator did not answer")
         if not future.result().success:

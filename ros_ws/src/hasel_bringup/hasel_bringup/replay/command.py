@@ -31,8 +31,8 @@ def _rate(text: str) -> float:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="replay",
-        description="Publish /hasel/state and /hasel/bending/measured from recordings, with their own stamps "
-        "(of further recordings: moved to follow 10 s after the one before).",
+        description="Publish state and bending/measured from recordings, with their own stamps, in the namespace "
+        "/hasel or another (--ros-args -r __ns:=/rig2); of further recordings: moved to follow 10 s after the one before.",
     )
     parser.add_argument("recordings", nargs="+", metavar="RECORDING", help=".mcap or .csv file")
     parser.add_argument("--rate", type=_rate, default=1.0, help="times real time, or max (default: 1)")
@@ -42,14 +42,17 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--wait", type=float, default=30.0, help="longest wait for listeners [s] (default: 30)"
     )
+    parser.add_argument(
+        "--clock", action="store_true", help="publish the stamps on /clock, for nodes with use_sim_time"
+    )
     return parser
 
 
-def replay(paths: Sequence[str], rate: float, expect: Sequence[str], wait: float) -> None:
+def replay(paths: Sequence[str], rate: float, expect: Sequence[str], wait: float, clock: bool) -> None:
     """Play recordings one after the other. Raises RecordingError or BringupError."""
     recordings = read_recordings(paths)
     played = one_after_the_other([timeline(recording) for recording in recordings])
-    node = ReplayNode()
+    node = ReplayNode(clock)
     try:
         node.wait_for_subscribers(expect, wait)
         with Progress() as progress:
@@ -66,12 +69,12 @@ def main() -> int:
     arguments = _parser().parse_args(remove_ros_args(sys.argv)[1:])
     rclpy.init()
     try:
-        replay(arguments.recordings, arguments.rate, arguments.expect, arguments.wait)
+        replay(arguments.recordings, arguments.rate, arguments.expect, arguments.wait, arguments.clock)
     except (RecordingError, BringupError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
     except (KeyboardInterrupt, ExternalShutdownException):
-        return 130
+        pass
     finally:
         rclpy.try_shutdown()
     return 0

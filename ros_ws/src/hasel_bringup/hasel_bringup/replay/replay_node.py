@@ -6,28 +6,32 @@ from collections.abc import Sequence
 
 from builtin_interfaces.msg import Time
 from hasel_interfaces.msg import BendingAngle, SupplyState
-from hasel_recording.topics import MEASURED, STATE
+from hasel_recording.endpoints import Role, frame_of, publisher
+from hasel_recording.topics import MEASURED, NAMESPACE, STATE
 from rclpy.duration import Duration
 from rclpy.node import Node
-from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rosgraph_msgs.msg import Clock
 from std_msgs.msg import Header
 
 from hasel_bringup.errors import BringupError
 from hasel_bringup.replay.clock import ReplayClock
 from hasel_bringup.replay.timeline import ReplayedFrame
 
-EVERY_MESSAGE = QoSProfile(history=HistoryPolicy.KEEP_ALL, reliability=ReliabilityPolicy.RELIABLE)
 _SETTLED_S = 1.0
 _UNKNOWN_PAIR = [math.nan] * 2
 
 
 class ReplayNode(Node):
-    """Nothing is lost: subscribers are waited for, messages are kept until they are acknowledged."""
+    """Nothing is lost: subscribers are waited for, messages are kept until they are acknowledged.
 
-    def __init__(self) -> None:
-        super().__init__("hasel_replay")
-        self._states = self.create_publisher(SupplyState, STATE, EVERY_MESSAGE)
-        self._angles = self.create_publisher(BendingAngle, MEASURED, EVERY_MESSAGE)
+    clock: publish each frame's stamp on /clock too, for nodes with `use_sim_time`.
+    """
+
+    def __init__(self, clock: bool = False) -> None:
+        super().__init__("hasel_replay", namespace=NAMESPACE)
+        self._states = publisher(self, SupplyState, STATE, Role.EVERY_SAMPLE)
+        self._angles = publisher(self, BendingAngle, MEASURED, Role.EVERY_SAMPLE)
+        self._clock = publisher(self, Clock, "/clock", Role.CLOCK) if clock else None
 
     def wait_for_subscribers(self, expected: Sequence[str], seconds: float) -> None:
         """Wait until every expected node hears the states and all known subscribers are connected.
@@ -46,16 +50,16 @@ class ReplayNode(Node):
                 return
         missing = f"{', '.join(expected)} did not subscribe" if expected else "nobody subscribed"
         raise BringupError(
-            f"{missing} to {STATE} within {seconds:g} s; start the simulator (ros2 run hasel_sim simulator) "
-            "in the same ROS_DOMAIN_ID, or wait longer with --wait"
+            f"{missing} to {self._states.topic_name} within {seconds:g} s; start the simulator "
+            "(ros2 run hasel_sim simulator) in the same ROS_DOMAIN_ID, or wait longer with --wait"
         )
 
     def _hear(self, expected: Sequence[str]) -> bool:
-        for publisher in (self._states, self._angles):
-            known = [info.node_name for info in self.get_subscriptions_info_by_topic(publisher.topic_name)]
-            if publisher.get_subscription_count() < len(known):
+        for sent in (self._states, self._angles):
+            known = [info.node_name for info in self.get_subscriptions_info_by_topic(sent.topic_name)]
+            if sent.get_subscription_count() < len(known):
                 return False
-            if publisher is self._states and not set(expected) <= set(known):
+            if sent is self._states and not set(expected) <= set(known):
                 return False
         return True
 
@@ -70,21 +74,25 @@ class ReplayNode(Node):
 
     def finish(self, seconds: float = 10.0) -> None:
         """Wait until every message has arrived. Raises BringupError when one has not."""
-        for publisher in (self._states, self._angles):
-            if not publisher.wait_for_all_acked(Duration(seconds=seconds)):
+        for sent in (self._states, self._angles):
+            if not sent.wait_for_all_acked(Duration(seconds=seconds)):
                 raise BringupError(
-                    f"not all of {publisher.topic_name} arrived within {seconds:g} s; a subscriber is too slow or was "
+                    f"not all of {sent.topic_name} arrived within {seconds:g} s; a subscriber is too slow or was "
                     "stopped: replay again with a lower --rate"
                 )
 
     def _publish(self, frame: ReplayedFrame) -> None:
         seconds, nanoseconds = divmod(frame.stamp_ns, 1_000_000_000)
-        header = Header(stamp=Time(sec=seconds, nanosec=nanoseconds))
+        stamp = Time(sec=seconds, nanosec=nanoseconds)
+        if self._clock is not None:
+            self._clock.publish(Clock(clock=stamp))
+        header = Header(stamp=stamp, frame_id=frame_of(self, "supply"))
         state = SupplyState(header=header, commanded_voltage=list(frame.voltage), mode=SupplyState.ACTIVE)
         state.measured_voltage = state.current = _UNKNOWN_PAIR
         self._states.publish(state)
         if frame.sin_theta is None:
             return
+        header = Header(stamp=stamp, frame_id=frame_of(self, "camera"))
         angle = BendingAngle(header=header, sin_theta=frame.sin_theta, valid=math.isfinite(frame.sin_theta))
         angle.theta = math.asin(max(-1.0, min(1.0, frame.sin_theta))) if angle.valid else math.nan
         angle.sin_theta_std = math.nan

@@ -4,13 +4,13 @@ import time
 
 import numpy as np
 from hasel_interfaces.msg import BendingAngle, SupplyState
-from hasel_recording.topics import MEASURED, STATE
+from hasel_recording.endpoints import Role, frame_of, publisher, subscription
+from hasel_recording.topics import MEASURED, NAMESPACE, STATE
 from hasel_sim.live.live_model import live_model
 from hasel_sim.live.live_simulator import LiveSimulator
 from hasel_sim.live.repeated_warnings import RepeatedWarnings
 from hasel_sim.node_parameters import NodeParameter, declare, words
 from hasel_sim.simulator_messages import angle_message, to_nanoseconds
-from hasel_sim.simulator_node import EVERY_MESSAGE
 from rclpy.node import Node
 
 from hasel_bringup.virtual_rig.camera_noise import CameraNoise
@@ -36,7 +36,8 @@ class VirtualBodyNode(Node):
     """Publishes what a camera would see; nobody is told the hidden effects."""
 
     def __init__(self) -> None:
-        super().__init__("hasel_virtual_body")
+        super().__init__("hasel_virtual_body", namespace=NAMESPACE)
+        self._frame_id = frame_of(self, "camera")
         declare(self, PARAMETERS)
         self._warnings = RepeatedWarnings()
         model, warning = live_model(self._value("model"))
@@ -46,8 +47,8 @@ class VirtualBodyNode(Node):
         self._noise, self._offset = CameraNoise(*noise), self._value("offset")
         self._spacing_ns = int(0.99e9 / self._value("frame_rate"))
         self._last_ns = -(10**18)
-        self._angles = self.create_publisher(BendingAngle, MEASURED, EVERY_MESSAGE)
-        self.create_subscription(SupplyState, STATE, self._on_state, EVERY_MESSAGE)
+        self._angles = publisher(self, BendingAngle, MEASURED, Role.SAMPLES)
+        subscription(self, SupplyState, STATE, self._on_state, Role.EVERY_SAMPLE)
 
     def _value(self, name: str):
         return self.get_parameter(name).value
@@ -65,5 +66,5 @@ class VirtualBodyNode(Node):
                 continue
             self._last_ns = angle.stamp_ns
             seen = angle.sin_theta + self._offset + self._noise.next()
-            message = angle_message(angle.stamp_ns, float(np.clip(seen, -1.0, 1.0)), "camera")
+            message = angle_message(angle.stamp_ns, float(np.clip(seen, -1.0, 1.0)), self._frame_id)
             self._angles.publish(message)

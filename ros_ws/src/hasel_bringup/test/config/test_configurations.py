@@ -18,7 +18,7 @@ TABLES = {
     "hasel_sysid": SYSID,
 }
 ENTRIES = [
-    (file.name, node, content["ros__parameters"])
+    (file.name, node.removeprefix("/**/"), content["ros__parameters"])
     for file in sorted(FOLDER.glob("*.yaml"))
     for node, content in yaml.safe_load(file.read_text()).items()
 ]

@@ -90,13 +90,13 @@ class RosClient:
         """Request a lifecycle transition and wait for it."""
         request = ChangeState.Request()
         request.transition.id = identifier
-        if not self.request(ChangeState, "/hasel_driver/change_state", request).success:
+        if not self.request(ChangeState, "/hasel/hasel_driver/change_state", request).success:
             raise AssertionError(f"the transition {identifier} failed")
 
     def activate(self) -> None:
         """Bring the node's lifecycle to active, from unconfigured or inactive."""
         request = GetState.Request()
-        state = self.request(GetState, "/hasel_driver/get_state", request).current_state.id
+        state = self.request(GetState, "/hasel/hasel_driver/get_state", request).current_state.id
         if state == State.PRIMARY_STATE_UNCONFIGURED:
             self.transition(Transition.TRANSITION_CONFIGURE)
         if state != State.PRIMARY_STATE_ACTIVE:
@@ -104,7 +104,7 @@ class RosClient:
 
     def illegal_transition(self, identifier: int) -> None:
         """Request a transition that will never be answered."""
-        client = self._client(ChangeState, "/hasel_driver/change_state")
+        client = self._client(ChangeState, "/hasel/hasel_driver/change_state")
         if not client.wait_for_service(5.0):
             raise AssertionError("there is no lifecycle service")
         request = ChangeState.Request()

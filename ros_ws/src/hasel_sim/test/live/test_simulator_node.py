@@ -8,9 +8,10 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_interfaces.srv import AddEffect, LoadModel, RemoveEffect
+from hasel_recording.endpoints import Role
 from hasel_sim.live.live_simulator import LiveSimulator
 from hasel_sim.simulator_messages import to_nanoseconds, to_time
-from hasel_sim.simulator_node import EVERY_MESSAGE, SimulatorNode
+from hasel_sim.simulator_node import SimulatorNode
 from rcl_interfaces.srv import SetParameters
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
@@ -30,10 +31,10 @@ class Rig:
         self.angles: list[BendingAngle] = []
         self.shapes: list[MarkerArray] = []
         self.diagnostics: list[DiagnosticArray] = []
-        self._hear(BendingAngle, "/hasel/bending/simulated", self.angles, EVERY_MESSAGE)
+        self._hear(BendingAngle, "/hasel/bending/simulated", self.angles, Role.EVERY_SAMPLE.value)
         self._hear(MarkerArray, "/hasel/swimmer", self.shapes, 10)
         self._hear(DiagnosticArray, "/diagnostics", self.diagnostics, 10)
-        self.states = self.user.create_publisher(SupplyState, "/hasel/state", EVERY_MESSAGE)
+        self.states = self.user.create_publisher(SupplyState, "/hasel/state", Role.EVERY_SAMPLE.value)
         self.until(lambda: self.states.get_subscription_count() and self.heard() == 3)
 
     def heard(self) -> int:
@@ -66,7 +67,9 @@ class Rig:
     def set(self, name: str, value: float):
         """Set a parameter of the node and return the result."""
         parameter = Parameter(name, value=value).to_parameter_msg()
-        return self.call(SetParameters, "/hasel_simulator/set_parameters", parameters=[parameter]).results[0]
+        return self.call(
+            SetParameters, "/hasel/hasel_simulator/set_parameters", parameters=[parameter]
+        ).results[0]
 
     def close(self) -> None:
         """Destroy both nodes."""

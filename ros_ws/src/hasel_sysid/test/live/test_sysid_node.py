@@ -10,14 +10,14 @@ import rclpy
 from hasel_interfaces.msg import BendingAngle, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import Recording
+from hasel_recording.endpoints import Role
 from hasel_recording.topics import MEASURED, SIMULATED, STATE
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import load_model, save_model
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 from hasel_sim.simulator_messages import angle_message, to_nanoseconds, to_time
-from hasel_sim.simulator_node import EVERY_MESSAGE
-from hasel_sysid.sysid_node import LATCHED, SysidNode
+from hasel_sysid.sysid_node import SysidNode
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.parameter import Parameter
 
@@ -73,11 +73,11 @@ class Talk:
         self.user, self.errors, self.fits = user, [], []
         self.executor = SingleThreadedExecutor()
         self.executor.add_node(user)
-        self.states = user.create_publisher(SupplyState, STATE, EVERY_MESSAGE)
-        self.measured = user.create_publisher(BendingAngle, MEASURED, EVERY_MESSAGE)
-        self.simulated = user.create_publisher(BendingAngle, SIMULATED, EVERY_MESSAGE)
-        user.create_subscription(RunningError, "/hasel/error", self.errors.append, EVERY_MESSAGE)
-        user.create_subscription(Fit, "/hasel/fit", self.fits.append, LATCHED)
+        self.states = user.create_publisher(SupplyState, STATE, Role.EVERY_SAMPLE.value)
+        self.measured = user.create_publisher(BendingAngle, MEASURED, Role.EVERY_SAMPLE.value)
+        self.simulated = user.create_publisher(BendingAngle, SIMULATED, Role.EVERY_SAMPLE.value)
+        user.create_subscription(RunningError, "/hasel/error", self.errors.append, Role.EVERY_SAMPLE.value)
+        user.create_subscription(Fit, "/hasel/fit", self.fits.append, Role.RESULTS.value)
         publishers = (self.states, self.measured, self.simulated)
         self.until(
             lambda: (
