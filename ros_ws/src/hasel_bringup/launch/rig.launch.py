@@ -10,10 +10,21 @@ from launch_ros.substitutions import FindPackageShare
 
 def generate_launch_description() -> LaunchDescription:
     """Driver and tracker or their virtual counterparts, and with them simulator and identification."""
-    virtual, config, rig = (LaunchConfiguration(name) for name in ("virtual", "config", "rig"))
+    virtual, config, rig, namespace = (
+        LaunchConfiguration(name) for name in ("virtual", "config", "rig", "namespace")
+    )
     folder = [FindPackageShare("hasel_bringup"), "config"]
     arguments = [
-        DeclareLaunchArgument("virtual", default_value="false", description="without hardware: true"),
+        DeclareLaunchArgument(
+            "namespace",
+            default_value="hasel",
+            description="of all topics and services but /diagnostics; another for a second rig",
+        ),
+        DeclareLaunchArgument(
+            "virtual",
+            default_value="false",
+            description="true: without hardware, a virtual supply and swimmer",
+        ),
         DeclareLaunchArgument(
             "hidden",
             default_value="['']",
@@ -38,6 +49,7 @@ def generate_launch_description() -> LaunchDescription:
                 package="hasel_driver",
                 executable="driver_node",
                 parameters=[rig],
+                namespace=namespace,
                 condition=real,
                 output="screen",
             ),
@@ -45,6 +57,7 @@ def generate_launch_description() -> LaunchDescription:
                 package="hasel_tracker",
                 executable="tracker_node",
                 parameters=[rig],
+                namespace=namespace,
                 condition=real,
                 output="screen",
             ),
@@ -52,10 +65,23 @@ def generate_launch_description() -> LaunchDescription:
                 package="hasel_bringup",
                 executable="virtual_rig",
                 parameters=[{"hidden": LaunchConfiguration("hidden")}],
+                namespace=namespace,
                 condition=simulated,
                 output="screen",
             ),
-            Node(package="hasel_sim", executable="simulator", parameters=[config], output="screen"),
-            Node(package="hasel_sysid", executable="sysid", parameters=[config], output="screen"),
+            Node(
+                package="hasel_sim",
+                executable="simulator",
+                parameters=[config],
+                namespace=namespace,
+                output="screen",
+            ),
+            Node(
+                package="hasel_sysid",
+                executable="sysid",
+                parameters=[config],
+                namespace=namespace,
+                output="screen",
+            ),
         ]
     )

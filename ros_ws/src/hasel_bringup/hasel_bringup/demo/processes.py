@@ -32,6 +32,7 @@ class Processes:
 
     def __init__(self, folder: Path, environment: Mapping[str, str]) -> None:
         self._folder = folder
+        folder.mkdir(parents=True, exist_ok=True)
         self._environment = {**os.environ, "PYTHONUNBUFFERED": "1", **environment}
         self._running: dict[str, subprocess.Popen] = {}
 
@@ -67,10 +68,10 @@ class Processes:
         """Wait for one to end by itself and return its exit code."""
         return self._running.pop(name).wait(seconds)
 
-    def stop(self, name: str) -> int:
-        """Interrupt one as Ctrl-C does and return its exit code."""
+    def stop(self, name: str, number: signal.Signals = signal.SIGINT) -> int:
+        """End one, as Ctrl-C does if no other signal is given, and return its exit code."""
         process = self._running.pop(name)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(number)
         try:
             return process.wait(_PATIENCE_S)
         except subprocess.TimeoutExpired:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import rclpy
 from hasel_recording import RecordingError, read_recordings
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.executors import ExternalShutdownException
 from rclpy.utilities import remove_ros_args
 from rich.progress import Progress
@@ -32,7 +33,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="replay",
         description="Publish state and bending/measured from recordings, with their own stamps, in the namespace "
-        "/hasel or another (--ros-args -r __ns:=/rig2); of further recordings: moved to follow 10 s after the one before.",
+        "/hasel or another (--ros-args -r __ns:=/rig2); "
+        "of further recordings: moved to follow 10 s after the one before.",
     )
     parser.add_argument("recordings", nargs="+", metavar="RECORDING", help=".mcap or .csv file")
     parser.add_argument("--rate", type=_rate, default=1.0, help="times real time, or max (default: 1)")
@@ -75,6 +77,9 @@ def main() -> int:
         return 1
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
+    except RCLError:
+        if rclpy.ok():  # otherwise it was ended in the middle of a message
+            raise
     finally:
         rclpy.try_shutdown()
     return 0

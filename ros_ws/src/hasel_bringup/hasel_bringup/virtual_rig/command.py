@@ -17,12 +17,12 @@ from hasel_bringup.virtual_rig.virtual_supply import VirtualSupply
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="virtual_rig",
-        description="A virtual supply with its driver (services /hasel/arm …, action /hasel/run_experiment), and a "
+        description="A virtual supply with its driver (services arm …, action run_experiment), and a "
         "simulated swimmer before a noisy camera. Hide an effect with "
         "--ros-args -p 'hidden:=[quadratic_drag.coefficient=0.25]'.",
     )
     parser.add_argument(
-        "--body-only", action="store_true", help="without supply and driver: /hasel/state is given"
+        "--body-only", action="store_true", help="without supply and driver: the topic state is given"
     )
     return parser
 
@@ -36,9 +36,9 @@ def main() -> int:
 
 def _node(arguments: argparse.Namespace, stack: contextlib.ExitStack) -> VirtualBodyNode:
     """The body's node and, for as long as `stack` is open, a virtual supply that it watches."""
-    supply = None if arguments.body_only else stack.enter_context(VirtualSupply())
     node = VirtualBodyNode()
-    if supply is not None:
+    if not arguments.body_only:
+        supply = stack.enter_context(VirtualSupply(node.get_namespace()))
         node.create_timer(1.0, supply.check)
     return node
 

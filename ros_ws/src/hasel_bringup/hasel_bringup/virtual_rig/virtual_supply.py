@@ -12,7 +12,13 @@ _PATIENCE_S = 15.0
 
 
 class VirtualSupply:
-    """Starts the board and the driver on its port; as a context manager, ends both."""
+    """Starts the board and the driver on its port; as a context manager, ends both.
+
+    namespace: of the driver, such as /hasel.
+    """
+
+    def __init__(self, namespace: str) -> None:
+        self._namespace = namespace
 
     def __enter__(self) -> "VirtualSupply":
         self._folder = tempfile.TemporaryDirectory(prefix="hasel_")
@@ -24,6 +30,7 @@ class VirtualSupply:
                 self._start(
                     "hasel_driver.driver_node",
                     "--ros-args",
+                    *("-r", f"__ns:={self._namespace}"),
                     *("-p", f"port:={port}"),
                     *("-p", "history_file:=" + str(port.with_name("history.jsonl"))),
                 )
