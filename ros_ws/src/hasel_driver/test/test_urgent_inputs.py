@@ -24,6 +24,7 @@ def inputs():
 
     rclpy.init()
     inputs = UrgentInputs(
+        "/hasel",
         lambda voltage_v, _age_s: take("commands", voltage_v),
         lambda stop, _who: take("stops", stop),
         lambda: None,
