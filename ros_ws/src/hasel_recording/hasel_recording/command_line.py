@@ -9,13 +9,13 @@ from pathlib import Path
 from hasel_recording.convert import convert
 from hasel_recording.errors import RecordingError, RecordingWarning
 from hasel_recording.reading import drive_of_each, read_recording
-from hasel_recording.reading_options import add_reading_options
+from hasel_recording.reading_options import RecordingsParser, add_reading_options
 from hasel_recording.recording import Recording
 
 
 def convert_main(arguments: Sequence[str] | None = None) -> int:
     """Convert the recordings named on the command line; return an exit code."""
-    parser = argparse.ArgumentParser(
+    parser = RecordingsParser(
         prog="convert",
         description="Turn CSV recordings into MCAP (for rosbag2, Foxglove, PlotJuggler) and MCAP into CSV. "
         "The header lines go along; numbers are kept exactly, times to the nanosecond.",
@@ -45,7 +45,7 @@ def convert_main(arguments: Sequence[str] | None = None) -> int:
 
 def info_main(arguments: Sequence[str] | None = None) -> int:
     """Describe the recordings named on the command line; return an exit code."""
-    parser = argparse.ArgumentParser(prog="info", description="Say what a recording holds.")
+    parser = RecordingsParser(prog="info", description="Say what a recording holds.")
     parser.add_argument("recordings", metavar="RECORDING", nargs="+", type=Path, help="a .csv or .mcap file")
     add_reading_options(parser)
     options = parser.parse_args(arguments)

@@ -2,9 +2,22 @@
 
 import argparse
 from pathlib import Path
+from typing import NoReturn
 
 from hasel_recording.column_map import parse_map
 from hasel_recording.errors import RecordingError
+
+
+class RecordingsParser(argparse.ArgumentParser):
+    """A parser that says so where an option that takes several files has taken the recordings too."""
+
+    def error(self, message: str) -> NoReturn:
+        """Leave with usage, the message and a remedy."""
+        if "required: RECORDING" in message:
+            message += (
+                " (an option such as --drive takes every file that follows it: name the recordings first)"
+            )
+        super().error(message)
 
 
 def add_reading_options(parser: argparse.ArgumentParser) -> None:

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from hasel_sim.effects.base import Coefficients, MaterialEffect, MaterialPoints
-from hasel_sim.effects.check_tools import called, expect, same
+from hasel_sim.effects.check_tools import called, expect, guarded, repeatable, same
 from hasel_sim.mesh.mesh import Region
 
 
@@ -58,9 +58,9 @@ def _check_stress(effect: MaterialEffect, null: SimpleNamespace, typical: Simple
 
 
 def _check_constants(effect: MaterialEffect, null: SimpleNamespace, typical: SimpleNamespace) -> None:
-    before, off, on = _constants(), _constants(), _constants()
-    for constants, p in ((off, null), (on, typical)):
-        returned = _guarded(effect, "modify", constants, p)
+    before, off, on, again = _constants(), _constants(), _constants(), _constants()
+    for constants, p in ((off, null), (on, typical), (again, typical)):
+        returned = guarded(effect, "modify", constants, p)
         expect(
             returned is None,
             effect,
@@ -82,7 +82,9 @@ def _check_constants(effect: MaterialEffect, null: SimpleNamespace, typical: Sim
             and np.all(constants.retardation >= 0)
         )
         expect(stiff, effect, "makes shear, rest_stretch or retardation negative", "keep them above zero")
-    quiet, loud = (_guarded(effect, "branches", p) for p in (null, typical))
+    repeated = all(same(getattr(again, name), value) for name, value in vars(on).items())
+    repeatable(effect, "modify", repeated)
+    quiet, loud = (guarded(effect, "branches", p) for p in (null, typical))
     unchanged = [same(getattr(off, name), value) for name, value in vars(before).items()]
     expect(
         all(unchanged) and not any(ratio for ratio, _ in quiet),
@@ -110,15 +112,6 @@ def _check_constants(effect: MaterialEffect, null: SimpleNamespace, typical: Sim
         "does nothing at its typical values",
         "write modify, branches, or regions with first_piola",
     )
-
-
-def _guarded(effect: MaterialEffect, method: str, *arguments):
-    try:
-        return getattr(effect, method)(*arguments)
-    except Exception as error:  # noqa: BLE001  a user's method may fail in any way
-        return expect(
-            False, effect, f"fails in {method} ({type(error).__name__}: {error})", "correct that method"
-        )
 
 
 def _constants() -> Coefficients:

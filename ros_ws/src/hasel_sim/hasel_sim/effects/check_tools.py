@@ -1,5 +1,7 @@
 """What the checks of an effect share: the one sentence, a guarded call, and equality up to round-off."""
 
+from copy import deepcopy
+
 import numpy as np
 
 from hasel_sim.effects.base import Effect
@@ -13,11 +15,8 @@ def expect(right: object, effect: Effect, found: str, change: str) -> None:
 
 
 def called(effect: Effect, method: str, shape: tuple[int, ...], *arguments) -> np.ndarray:
-    """What a method returns, as an array of the shape expected and of finite numbers."""
-    try:
-        result = np.asarray(getattr(effect, method)(*arguments), dtype=float)
-    except Exception as error:  # noqa: BLE001  a user's method may fail in any way
-        expect(False, effect, f"fails in {method} ({type(error).__name__}: {error})", "correct that method")
+    """What a method returns, as an array of the shape expected and of finite numbers, the same at every call."""
+    result, again = (np.asarray(guarded(effect, method, *deepcopy(arguments)), dtype=float) for _ in range(2))
     expect(
         result.shape == shape,
         effect,
@@ -30,7 +29,28 @@ def called(effect: Effect, method: str, shape: tuple[int, ...], *arguments) -> n
         f"returns numbers that are not finite from {method}",
         "avoid division by zero and roots or logarithms of negative numbers",
     )
+    repeatable(effect, method, np.array_equal(result, again))
     return result
+
+
+def guarded(effect: Effect, method: str, *arguments):
+    """What a method returns; any failure of it becomes a ModelError."""
+    try:
+        return getattr(effect, method)(*arguments)
+    except Exception as error:  # noqa: BLE001  a user's method may fail in any way
+        return expect(
+            False, effect, f"fails in {method} ({type(error).__name__}: {error})", "correct that method"
+        )
+
+
+def repeatable(effect: Effect, method: str, same_again: bool) -> None:
+    """Refuse an effect whose method answered otherwise when called with the same input again."""
+    expect(
+        same_again,
+        effect,
+        f"returns other numbers from {method} when it is called with the same input again",
+        "take random numbers, and anything it keeps from call to call, out of it",
+    )
 
 
 def same(a: np.ndarray, b: np.ndarray) -> bool:

@@ -7,16 +7,17 @@ import numpy as np
 
 from hasel_sim.effects.base import (
     DriveEffect,
-    DriveStage,
     Effect,
     EffectParameter,
     ForceEffect,
     MaterialEffect,
     ObservationEffect,
 )
+from hasel_sim.effects.check_drive import check_drive
 from hasel_sim.effects.check_force import check_force
 from hasel_sim.effects.check_material import check_material
 from hasel_sim.effects.check_tools import called, expect, same
+from hasel_sim.effects.units import is_unit
 
 
 def check_effect(effect: Effect) -> None:
@@ -24,7 +25,7 @@ def check_effect(effect: Effect) -> None:
     _check_declarations(effect)
     null, typical = SimpleNamespace(**effect.null()), SimpleNamespace(**effect.typical())
     checks: dict[type[Effect], Callable] = {
-        DriveEffect: _check_drive,
+        DriveEffect: check_drive,
         ForceEffect: check_force,
         MaterialEffect: check_material,
         ObservationEffect: _check_observation,
@@ -37,6 +38,12 @@ def _check_declarations(effect: Effect) -> None:
         text = getattr(effect, name, "")
         expect(isinstance(text, str) and text, effect, f"has no {name}", f'add {name} = "..." to the class')
     parameters = getattr(effect, "parameters", ())
+    expect(
+        not isinstance(parameters, EffectParameter),
+        effect,
+        "declares one parameter where a tuple of them is expected",
+        "end it with a comma: parameters = (EffectParameter(…),)",
+    )
     right = isinstance(parameters, tuple) and all(isinstance(p, EffectParameter) for p in parameters)
     expect(
         right and parameters,
@@ -48,6 +55,12 @@ def _check_declarations(effect: Effect) -> None:
         where = f"declares the parameter '{p.name}'"
         expect(p.name.isidentifier(), effect, where, "use a name of letters, digits and underscores")
         expect(p.unit, effect, f"{where} without unit", 'give its SI unit, or "1" for none')
+        expect(
+            is_unit(p.unit),
+            effect,
+            f"{where} in '{p.unit}', which is no unit",
+            "give SI units such as s, Pa, 1/s, kg/m^3 or N s/m, or 1 for none",
+        )
         numbers = np.isfinite([p.null, p.lower, p.upper, p.typical]).all()
         expect(
             numbers, effect, f"{where} with a null, bound or typical value that is no number", "give numbers"
@@ -68,40 +81,9 @@ def _check_declarations(effect: Effect) -> None:
     )
 
 
-def _check_drive(effect: DriveEffect, null: SimpleNamespace, typical: SimpleNamespace) -> None:
-    expect(
-        isinstance(effect.stage, DriveStage),
-        effect,
-        f"has the stage {effect.stage!r}",
-        "use a member of DriveStage",
-    )
-    time = np.sort(np.concatenate([np.linspace(0.0, 2.0, 481), [0.5, 1.0, 1.5]]))
-    late = np.arange(len(time)) >= np.searchsorted(time, 1.0, side="right")
-    size = 0.05 if effect.stage >= DriveStage.TARGET else 5000.0
-    signal = size * np.stack([~late, 0.8 * late], axis=1)
-
-    def result(p: SimpleNamespace) -> tuple[np.ndarray, np.ndarray]:
-        response = called(effect, "respond", time.shape + (2,), time.copy(), signal.copy(), p)
-        return response, called(effect, "clock", time.shape, time.copy(), p)
-
-    (response, clock), (moved, later) = result(null), result(typical)
-    expect(
-        same(np.abs(response), np.abs(signal)) and same(clock, time),
-        effect,
-        "changes the signal at its null values",
-        "make respond return the signal, and clock the time, when every parameter is at null",
-    )
-    expect(
-        not (same(moved, signal) and same(later, time)),
-        effect,
-        "does nothing at its typical values",
-        "make respond or clock use its parameters, or raise the typical values",
-    )
-
-
 def _check_observation(effect: ObservationEffect, null: SimpleNamespace, typical: SimpleNamespace) -> None:
     time = np.linspace(0.0, 1.0, 241)
-    angle = 0.3 * np.sin(2 * np.pi * 2.0 * time)
+    angle = 0.3 * np.sin(2 * np.pi * 2.3 * time)
     markers = np.zeros((len(time), 3, 2))
     markers[:, :, 0] = [0.005, 0.094, 0.190]
     markers[:, 2, 1] = 0.096 * angle
@@ -115,10 +97,19 @@ def _check_observation(effect: ObservationEffect, null: SimpleNamespace, typical
             f"looks {ahead} s ahead",
             "make look_ahead return 0 or more",
         )
-        seen = called(effect, "markers", markers.shape, markers.copy(), across.copy(), p)
-        return seen, called(effect, "angle", time.shape, time.copy(), angle.copy(), p)
+        seen = called(effect, "markers", markers.shape, markers, across, p)
+        return seen, called(effect, "angle", time.shape, time, angle, p)
 
     (seen, measured), (seen_typical, measured_typical) = result(null), result(typical)
+    so_far, known = time <= 0.5, time <= 0.6 + effect.look_ahead(typical)
+    stopped = called(effect, "angle", time.shape, time, np.where(known, angle, 0.0), typical)
+    expect(
+        same(stopped[so_far], measured_typical[so_far]),
+        effect,
+        "shows what is seen later than look_ahead says",
+        "compute every row of angle from that row and the rows before it, or return from look_ahead how far ahead [s] "
+        "it looks",
+    )
     expect(
         same(seen, markers) and same(measured, angle),
         effect,

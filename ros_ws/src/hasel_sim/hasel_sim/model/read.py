@@ -1,6 +1,7 @@
 """Model files: reading with one-sentence errors, and writing."""
 
 import json
+import os
 from dataclasses import replace
 from importlib import resources
 from pathlib import Path
@@ -9,12 +10,14 @@ from pydantic import ValidationError
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
+from hasel_sim.effects.base import Effect
 from hasel_sim.errors import ModelError, nearest_name
 from hasel_sim.model.constants import constants, unit_of
 from hasel_sim.model.description import Description, ParameterEntry
 from hasel_sim.model.former import is_former, translated
 from hasel_sim.model.model import Model, response_parameters
 from hasel_sim.model.parameter import Parameter
+from hasel_sim.model.plausible import implausible
 from hasel_sim.model.validation import sentence_for
 
 
@@ -63,6 +66,9 @@ def _parse(text: str, source: str, folder: Path) -> Model:
         raise ModelError(f"{source}: {error}") from None
     except ValidationError as error:
         raise ModelError(f"{source}: {sentence_for(error)}") from None
+    sections = ("body", "material", "muscles", "markers")
+    for fault in implausible({name: content[name] for name in sections if name in content}):
+        raise ModelError(f"{source}: {fault}")
     bare = Model(description.model_copy(update={"effects": (), "parameters": {}}))
     bare = replace(bare, parameters=response_parameters(description))
     model = bare.with_effects(*(_located(effect, folder) for effect in description.effects))
@@ -106,10 +112,18 @@ def _located(effect: str, folder: Path) -> str:
     return effect if not separator or Path(path).is_absolute() else f"{(folder / path).resolve()}:{name}"
 
 
+def _named_from(folder: Path, effect: Effect) -> str:
+    if effect.source is None:
+        return effect.id
+    path, _, name = effect.source.rpartition(":")
+    return f"{Path(os.path.relpath(path, folder)).as_posix()}:{name}"
+
+
 def save_model(model: Model, path: str | Path) -> None:
-    """Write a model file that `load_model` reads back to the same model."""
+    """Write a model file that `load_model` reads back to the same model; effects in files are named relative to it."""
+    folder = Path(path).resolve().parent
     content = json.loads(model.description.model_dump_json(exclude_none=True))
-    content["effects"] = [effect.id if effect.source is None else effect.source for effect in model.effects]
+    content["effects"] = [_named_from(folder, effect) for effect in model.effects]
     content["parameters"] = {name: _entry(parameter) for name, parameter in model.parameters.items()}
     yaml = YAML(typ="safe")
     yaml.sort_base_mapping_type_on_output = False

@@ -19,6 +19,13 @@ _SECTIONS: dict[str, type[BaseModel]] = {
 }
 """Sections by their key; `body.spine` and `material.spine`, and `material` within a region, are told apart below."""
 
+_SCALES: tuple[dict[str, float], ...] = (
+    {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6},
+    {"pa": 1.0, "kpa": 1e3, "mpa": 1e6, "gpa": 1e9, "mbar": 1e2, "bar": 1e5},
+    {"s": 1.0, "ms": 1e-3, "us": 1e-6},
+)
+"""Units in which a key may have been meant, by their size in the SI unit."""
+
 
 def _section(parents: list[str]) -> type[BaseModel]:
     if parents[:1] == ["parameters"]:
@@ -35,13 +42,14 @@ def _section(parents: list[str]) -> type[BaseModel]:
 
 
 def sentence_for(error: ValidationError) -> str:
-    """The first problem of a validation error, as a sentence."""
-    problem = error.errors()[0]
+    """The first problem of a validation error, as a sentence; a misspelt key goes before a missing one."""
+    problems = error.errors()
+    strange = [each for each in problems if each["type"] == "extra_forbidden"]
+    problem = strange[0] if problems[0]["type"] == "missing" and strange else problems[0]
     where = ".".join(str(part) for part in problem["loc"]) or "the file"
     if problem["type"] == "extra_forbidden":
         names = [part for part in problem["loc"] if isinstance(part, str)]
-        fields = list(_section(names[:-1]).model_fields)
-        return f"unknown key '{where}'; {nearest_name(names[-1], fields)}: rename or remove it"
+        return _strange_key(where, names[-1], list(_section(names[:-1]).model_fields), problem.get("input"))
     if problem["type"] == "missing":
         return f"the key '{where}' is missing: add it"
     if problem["type"] == "value_error":
@@ -49,3 +57,18 @@ def sentence_for(error: ValidationError) -> str:
         return f"{place}{problem['ctx']['error']}"
     found = problem.get("input")
     return f"{where} is {found!r}; {problem['msg'].replace('Input should be', 'expected')}: correct it"
+
+
+def _strange_key(where: str, key: str, fields: list[str], value: object) -> str:
+    """A key that is not known: the same one with another unit, or the nearest known one."""
+    stem, _, unit = key.rpartition("_")
+    for field in fields:
+        same, _, expected = field.rpartition("_")
+        scale = next((u[unit] / u[expected] for u in _SCALES if unit in u and expected in u), None)
+        if stem == same and scale is not None and unit != expected:
+            example = f", here {value * scale:g}" if isinstance(value, (int, float)) else ""
+            return (
+                f"unknown key '{where}'; the nearest known one is '{field}', in {expected}: rename it and convert the "
+                f"value from {unit} to {expected}{example}"
+            )
+    return f"unknown key '{where}'; {nearest_name(key, fields)}: rename or remove it"

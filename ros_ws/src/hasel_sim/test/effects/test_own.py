@@ -156,11 +156,16 @@ def test_own_drag_equals_the_built_in_one(written, coarse_swimmer, sin_theta_of)
 
 
 def test_a_model_file_names_it_relative_to_itself(written, tmp_path, coarse_swimmer, sin_theta_of):
-    """A saved model loads its own effect again, and a file may name it beside itself."""
+    """A saved model loads its own effect again, also when both have moved together."""
     model = coarse_swimmer.with_effects(written(DRAG)).with_values({"MyDrag.c": 100.0})
-    save_model(model, tmp_path / "model.yaml")
-    text = (tmp_path / "model.yaml").read_text()
-    (tmp_path / "model.yaml").write_text(text.replace(str(tmp_path) + "/", ""))
+    (tmp_path / "models").mkdir()
+    save_model(model, tmp_path / "models" / "model.yaml")
+    assert "- ../my_effect.py:MyDrag" in (tmp_path / "models" / "model.yaml").read_text()
+    moved = tmp_path / "elsewhere"
+    moved.mkdir()
+    (tmp_path / "models").rename(moved / "models")
+    (tmp_path / "my_effect.py").rename(moved / "my_effect.py")
+    tmp_path = moved / "models"
     again = load_model(tmp_path / "model.yaml")
     assert [effect.id for effect in again.effects] == ["MyDrag"]
     assert np.array_equal(sin_theta_of(again), sin_theta_of(model))
@@ -234,6 +239,24 @@ def test_a_broken_effect_is_refused_with_what_to_change(said, written):
         (SLIP, '("deformation", "rate")', '("deformation",)', "uses the rate without saying so"),
         (SLIP, "p.eta *", "1 + p.eta *", "adds stress at its null values"),
         (SLIP, "at.rate[:, 0, 0]", "at.rate[:, 0, 0].mean()", "depends on others|fails in first_piola"),
+        (
+            EXAMPLE.read_text(),
+            "signal[:, ::-1]",
+            "__import__('numpy').random.rand(*signal.shape)",
+            "other numbers from respond when it is called with the same input again",
+        ),
+        (
+            EXAMPLE.read_text(),
+            "signal[:, ::-1]",
+            "abs(signal).mean(axis=0)",
+            "answers to what is commanded later",
+        ),
+        (EXAMPLE.read_text(), "p.coupling * signal[:, ::-1]", "0", "driven with 4 strokes of either muscle"),
+        (EXAMPLE.read_text(), 'unit="1"', 'unit="bananas"', "in 'bananas', which is no unit"),
+        (EXAMPLE.read_text(), "typical=0.4),", "typical=0.4)", "end it with a comma"),
+        (ROLL, "p.offset", "p.offset * __import__('random').random()", "other numbers from angle"),
+        (ROLL, "p.offset", "p.offset * (sin_theta[-1] - 1)", "shows what is seen later than look_ahead says"),
+        (DRAG, "-p.c", "-p.c * np.random.rand()", "other numbers from force"),
         (ROLL, "sin_theta + p.offset", "sin_theta + 0.1", "changes what is observed at its null values"),
         (ROLL, "sin_theta + p.offset", "sin_theta", "does nothing at its typical values"),
     ],
@@ -243,6 +266,31 @@ def test_other_places_are_checked_alike(text, before, after, said, written):
     assert before in text
     with pytest.raises(ModelError, match=said):
         find_effects((written(text.replace(before, after)),))
+
+
+TIRING = """
+import numpy as np
+from hasel_sim.effects.base import DriveEffect, DriveStage, EffectParameter
+
+
+class Tiring(DriveEffect):
+    physics = "Every stroke before the present one weakens a muscle."
+    equation = "V <- V (1 - k n)"
+    parameters = (EffectParameter("k", "k", "1", 0.0, 0.0, 0.2, 0.05),)
+    stage = DriveStage.ELECTRODE
+
+    def respond(self, time, signal, p):
+        on = np.abs(signal) > 0
+        starts = on & ~np.vstack([np.zeros((1, signal.shape[1]), bool), on[:-1]])
+        before = np.maximum(np.cumsum(starts, axis=0) - 1, 0)
+        return signal * (1 - p.k * before)
+"""
+
+
+def test_an_effect_that_needs_several_strokes_is_taken(written):
+    """It counts the strokes before the present one, so a single stroke of each muscle would show nothing."""
+    (effect,) = find_effects((written(TIRING),))
+    assert effect.id == "Tiring"
 
 
 def test_an_id_may_be_declared(written):

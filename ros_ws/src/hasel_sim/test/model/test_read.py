@@ -64,12 +64,33 @@ def test_a_key_with_another_unit_is_refused_with_the_right_one(content, refusal)
     """Millimetres where metres are expected."""
     spine = content["body"]["spine"]
     spine["fin_length_mm"] = 1000 * spine.pop("fin_length_m")
-    assert "unknown key 'body.spine.fin_length_mm'; the nearest known one is 'fin_length_m'" in refusal(
-        content
-    )
+    assert (
+        "unknown key 'body.spine.fin_length_mm'; the nearest known one is 'fin_length_m', in m: rename it and convert "
+        "the value from mm to m, here 0.03"
+    ) in refusal(content)
     content["muscles"][1]["to_mm"] = 152.0
     spine["fin_length_m"] = 1e-3 * spine.pop("fin_length_mm")
-    assert "unknown key 'muscles.1.to_mm'; the nearest known one is 'to_m'" in refusal(content)
+    assert "unknown key 'muscles.1.to_mm'; the nearest known one is 'to_m', in m" in refusal(content)
+
+
+def test_a_misspelt_key_goes_before_the_one_that_is_missing_by_it(content, refusal):
+    """Not "is missing: add it", which would send the user looking."""
+    content["body"]["lenght_m"] = content["body"].pop("length_m")
+    assert "unknown key 'body.lenght_m'; the nearest known one is 'length_m'" in refusal(content)
+
+
+@pytest.mark.parametrize(
+    ("section", "key", "value", "expected"),
+    [
+        (("body", "spine"), "fin_length_m", 300.0, "fin_length_m is 300 m; expected 1e-06 to 10 m"),
+        (("material", "soft"), "youngs_modulus_pa", 0.065, "youngs_modulus_pa is 0.065 Pa; expected 1 to"),
+        (("material", "soft"), "density_kg_per_m3", 0.9, "density_kg_per_m3 is 0.9 kg/m^3; expected 10 to"),
+    ],
+)
+def test_a_number_that_no_body_has_is_noticed(section, key, value, expected, content, refusal):
+    """Mostly another unit: millimetres, megapascals, grams per cubic centimetre."""
+    content[section[0]][section[1]][key] = value
+    assert expected in refusal(content)
 
 
 @pytest.mark.parametrize(

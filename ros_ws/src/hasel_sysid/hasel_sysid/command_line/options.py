@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from hasel_recording.reading_options import add_reading_options
+from hasel_recording.reading_options import RecordingsParser, add_reading_options
 
 DEFAULT_MODEL = "swimmer"
 
@@ -12,7 +12,7 @@ def recording_options(
     prog: str, description: str, several_models: bool = False, effects: bool = False, noise: bool = False
 ) -> argparse.ArgumentParser:
     """What commands on recordings share: what to read, the model, candidates, where to write, on how many cores."""
-    parser = argparse.ArgumentParser(prog=prog, description=description)
+    parser = RecordingsParser(prog=prog, description=description)
     _add_recordings(parser)
     add_reading_options(parser)
     _add_model(parser, several_models)
@@ -62,13 +62,27 @@ def _add_results(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_effects(parser: argparse.ArgumentParser) -> None:
-    """--effects."""
+    """--effects and --add."""
     parser.add_argument(
         "--effects",
         metavar="A,B",
-        type=lambda text: tuple(name.strip() for name in text.split(",") if name.strip()),
-        help="consider only these effects (ids, or path/to/file.py:ClassName)",
+        action="extend",
+        type=_names,
+        help="consider only these effects (ids, or path/to/file.py:ClassName); with a + before each, all known ones "
+        "and these",
     )
+    parser.add_argument(
+        "--add",
+        metavar="A,B",
+        dest="effects",
+        action="extend",
+        type=lambda text: tuple(f"+{name.lstrip('+')}" for name in _names(text)),
+        help="the same as --effects +A,+B: consider all known effects and these",
+    )
+
+
+def _names(text: str) -> tuple[str, ...]:
+    return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
 def _add_noise(parser: argparse.ArgumentParser) -> None:

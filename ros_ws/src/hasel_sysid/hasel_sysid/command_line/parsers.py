@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from hasel_recording.reading_options import add_reading_options
+from hasel_recording.reading_options import RecordingsParser, add_reading_options
 
 from hasel_sysid.command_line.options import DEFAULT_MODEL, recording_options
 
@@ -56,7 +56,7 @@ def suggest_parser() -> argparse.ArgumentParser:
 
 def check_parser() -> argparse.ArgumentParser:
     """Options of `check`."""
-    options = argparse.ArgumentParser(
+    options = RecordingsParser(
         prog="check",
         description="Say what was understood of recordings (rate, angle, drive, markers, start) and what looks wrong, "
         "before anything is fitted. Exit code 0: nothing with which results would mislead.",

@@ -46,7 +46,7 @@ def _suggest(options: argparse.Namespace) -> None:
         )
         ranked = suggest(
             pool,
-            rivals(problem, found, named=bool(options.effects)),
+            rivals(problem, found, named=any(not name.startswith("+") for name in options.effects or ())),
             found.noise,
             _highest(options.max_level, given.model),
             lambda text, share: progress(text, 0.75 + 0.25 * share),

@@ -37,8 +37,16 @@ class Start:
 
 
 def candidate_effects(model: Model, only: tuple[str, ...] | None = None) -> list[Effect]:
-    """Effects that could be added to this model: the catalogue or the named ones, less those that do not fit it."""
-    effects = list(find_effects(only)) if only else list(catalogue().values())
+    """Effects that could be added to this model, less those that do not fit it.
+
+    only: the ones to consider; all of the catalogue and these where one is written with a + before it; default: all of
+    the catalogue.
+    """
+    named = find_effects(tuple(name.removeprefix("+") for name in only or ()))
+    every = not only or any(name.startswith("+") for name in only)
+    effects = list(
+        {effect.id: effect for effect in (*(catalogue().values() if every else ()), *named)}.values()
+    )
     present = {effect.id for effect in model.effects}
     return [effect for effect in effects if effect.id not in present and _fits(model, effect)]
 

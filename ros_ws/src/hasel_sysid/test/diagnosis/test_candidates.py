@@ -2,7 +2,8 @@
 
 import pytest
 from hasel_sim.effects.registry import catalogue
-from hasel_sysid.diagnosis.candidates import larger_starts, resized, starts
+from hasel_sim.model import load_model
+from hasel_sysid.diagnosis.candidates import candidate_effects, larger_starts, resized, starts
 
 
 def test_what_is_one_sided_starts_at_twice_its_typical_size_too():
@@ -41,3 +42,21 @@ def test_larger_starts_lie_within_the_range_and_leave_nuisances_alone(name):
             if p.scan:
                 assert value == start.values[f"{name}.{p.name}"]
     assert len(larger_starts(effect)) in (0, len(ordinary))
+
+
+def test_a_plus_adds_to_the_catalogue_and_without_one_nothing_else_is_considered(tmp_path):
+    """An effect of one's own beside the built-in ones, or alone."""
+    model = load_model("swimmer")
+    own = tmp_path / "mine.py"
+    own.write_text(
+        "from hasel_sim.effects.base import DriveEffect, EffectParameter\n\n\n"
+        "class Mine(DriveEffect):\n"
+        '    physics, equation = "Less voltage arrives.", "V <- (1 - k) V"\n'
+        '    parameters = (EffectParameter("k", "k", "1", 0.0, 0.0, 0.5, 0.1),)\n\n'
+        "    def respond(self, time, signal, p):\n"
+        "        return (1 - p.k) * signal\n"
+    )
+    every = [effect.id for effect in candidate_effects(model)]
+    assert [effect.id for effect in candidate_effects(model, (f"+{own}:Mine",))] == [*every, "Mine"]
+    assert [effect.id for effect in candidate_effects(model, (f"{own}:Mine", "tether"))] == ["Mine", "tether"]
+    assert [effect.id for effect in candidate_effects(model, ("+tether",))] == every

@@ -1,0 +1,21 @@
+"""What the options of a command mean."""
+
+import pytest
+from hasel_sysid.command_line.parsers import check_parser, compare_parser, diagnose_parser, improve_parser
+
+
+def test_effects_of_ones_own_are_added_to_the_catalogue():
+    """--add is the same as --effects with a + before each."""
+    for given in (["--effects", "+mine.py:Mine,+tether"], ["--add", "mine.py:Mine", "--add", "tether"]):
+        assert list(improve_parser().parse_args(["run.csv", *given]).effects) == ["+mine.py:Mine", "+tether"]
+    assert list(improve_parser().parse_args(["run.csv", "--effects", "tether"]).effects) == ["tether"]
+    assert improve_parser().parse_args(["run.csv"]).effects is None
+
+
+@pytest.mark.parametrize("parser", [check_parser, compare_parser, diagnose_parser])
+def test_an_option_that_took_the_recordings_is_said(parser, capsys):
+    """--drive FILE RECORDING leaves no recording; it is not only said that one is required."""
+    with pytest.raises(SystemExit) as left:
+        parser().parse_args(["--drive", "supply.csv", "run.csv"])
+    assert left.value.code == 2
+    assert "takes every file that follows it: name the recordings first" in capsys.readouterr().err
