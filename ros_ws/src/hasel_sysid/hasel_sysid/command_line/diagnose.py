@@ -11,7 +11,8 @@ from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import diagnose_parser
 from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
-from hasel_sysid.command_line.shown import code_after, show
+from hasel_sysid.command_line.shown import code_after, show, summarise, tell
+from hasel_sysid.command_line.summary import diagnosis_lines
 from hasel_sysid.compare import compare
 from hasel_sysid.diagnosis import diagnose
 from hasel_sysid.fit import fit_from_afar
@@ -39,9 +40,14 @@ def _diagnose(options: argparse.Namespace) -> int:
         found = diagnose(problem, fit, options.effects, part(progress, "diagnosis: ", 0.3, 0.95))
         label, last = f"{given.label}, fitted", part(progress, "", 0.95, 1.0)
         comparison = compare(fit.model, given.experiments, pool, given.unseen, label, last)
-    show([comparison], given.said)
-    print(found)
-    print(found.adequacy)
+    tell(comparison.set_up, given.said)
+
+    def everything() -> None:
+        show([comparison], [*given.said, *comparison.set_up])
+        print(found)
+
+    others = f"tables of all runs, where the model fails, all {len(found.findings)} effects"
+    summarise(diagnosis_lines(found, comparison), everything, options.all, others)
     if options.json:
         write_json({**comparison.to_json(), **diagnosis_json(found)}, options.json)
     print(f"Wrote {write_report(diagnosis_content(found, comparison), options.output)}.")

@@ -14,7 +14,8 @@ from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import improve_parser
 from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
-from hasel_sysid.command_line.shown import code_after, show, tell
+from hasel_sysid.command_line.shown import code_after, show, summarise, tell
+from hasel_sysid.command_line.summary import improvement_lines
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.compare.compare import comparison_of
 from hasel_sysid.dataset import Experiment
@@ -67,7 +68,19 @@ def _improve(options: argparse.Namespace) -> int:
             print(f"wrote the stages so far ({len(written)}), see {ledger.path}", file=sys.stderr)
         raise
     tell(start.set_up, given.said)
-    show([stages[0]], [*given.said, *start.set_up])
+    told = [*given.said, *start.set_up]
+    tell(stages[0].set_up, told)
+
+    def everything() -> None:
+        show([stages[0]], [*told, *stages[0].set_up])
+        print(found.diagnosis)
+        print(found)
+
+    lines = improvement_lines(found, stages, suggestions)
+    others = (
+        f"tables of all runs, where the model fails, the other {len(found.diagnosis.findings) - 1} effects"
+    )
+    summarise(lines, everything, options.all, others)
     _finish(options, found, start, stages, suggestions)
     return code_after([*given.said, *stages[0].set_up])
 
@@ -99,10 +112,6 @@ def _finish(
     suggestions: Sequence[Suggestion],
 ) -> None:
     folder: Path = options.output
-    print(found.diagnosis)
-    print(found)
-    if suggestions:
-        print(f"Measure next: {suggestions[0]}")
     save_model(found.model, folder / MODEL_FILE)
     content = improvement_content(found, stages, start, suggestions)
     report = write_report(content, folder)

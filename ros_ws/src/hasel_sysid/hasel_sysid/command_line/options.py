@@ -9,7 +9,12 @@ DEFAULT_MODEL = "swimmer"
 
 
 def recording_options(
-    prog: str, description: str, several_models: bool = False, effects: bool = False, noise: bool = False
+    prog: str,
+    description: str,
+    several_models: bool = False,
+    effects: bool = False,
+    noise: bool = False,
+    everything: bool = False,
 ) -> argparse.ArgumentParser:
     """What commands on recordings share: what to read, the model, candidates, where to write, on how many cores."""
     parser = RecordingsParser(prog=prog, description=description)
@@ -18,6 +23,10 @@ def recording_options(
     _add_model(parser, several_models)
     if effects:
         _add_effects(parser)
+    if everything:
+        parser.add_argument(
+            "--all", action="store_true", help="print all tables and what is said of every effect"
+        )
     if noise:
         _add_noise(parser)
     _add_results(parser)

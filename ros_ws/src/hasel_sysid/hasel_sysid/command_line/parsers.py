@@ -29,13 +29,14 @@ def fit_parser() -> argparse.ArgumentParser:
 
 def diagnose_parser() -> argparse.ArgumentParser:
     """Options of `diagnose`."""
-    return recording_options("diagnose", "Rank the effects that a model may lack.", effects=True, noise=True)
+    what = "Rank the effects that a model may lack."
+    return recording_options("diagnose", what, effects=True, noise=True, everything=True)
 
 
 def improve_parser() -> argparse.ArgumentParser:
     """Options of `improve`."""
     what = "Add missing effects until what is left is noise or nothing known explains it."
-    return recording_options("improve", what, effects=True, noise=True)
+    return recording_options("improve", what, effects=True, noise=True, everything=True)
 
 
 def suggest_parser() -> argparse.ArgumentParser:

@@ -1,7 +1,7 @@
 """Comparisons and faults of the set-up on the terminal."""
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from rich.console import Console
 
@@ -30,6 +30,15 @@ def show(comparisons: Sequence[Comparison], said: Sequence[Finding] = ()) -> Non
         print(comparison)
         for sentence in comparison.where.sentences():
             print(f"  {sentence}")
+
+
+def summarise(lines: Sequence[str], everything: Callable[[], None], show_all: bool, others: str) -> None:
+    """Print what a person needs and, where asked to, everything before it."""
+    if show_all:
+        everything()
+    print("\n".join(lines))
+    if not show_all:
+        print(f"({others}: --all, and in the report)")
 
 
 def code_after(findings: Sequence[Finding]) -> int:

@@ -1,6 +1,8 @@
 """From numbers to the verdict on every effect."""
 
+from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -16,6 +18,7 @@ from hasel_sysid.projection import orthonormal
 
 _MATTERS = 0.4
 """An effect that removes less than this share of the error above the noise is not what is missing."""
+_RULED_OUT = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
 _DETECTION = 3.3
 """Standard errors at which an effect is seen with 95 % certainty at a 5 % false-alarm rate."""
 
@@ -28,13 +31,15 @@ def judged(context: Context) -> Diagnosis:
         replace(finding(context, effect), probability=chances.get(effect.id, 0.0))
         for effect in context.effects
     ]
+    alike = groups(context)
+    findings = [_one_answer(finding, context.winner, alike) for finding in findings]
     findings.sort(key=lambda one: (-one.probability, context.squares.get(one.effect, np.inf)))
     best = context.winner or min(context.finals, key=context.squares.get, default=None)
     columns = np.column_stack([base.jacobian, regressors(base)])
     learned = unexplained_by(columns, base.residual)
     return Diagnosis(
         findings,
-        groups(context),
+        alike,
         context.noise,
         context.chance,
         0.0 if best is None else context.error_removed(best),
@@ -45,15 +50,29 @@ def judged(context: Context) -> Diagnosis:
     )
 
 
+def _one_answer(found: Finding, winner: str | None, alike: Sequence[tuple[str, ...]]) -> Finding:
+    """What cannot be told from the winner is not called absent: it could stand in its place."""
+    in_doubt = winner is not None and any(winner in group and found.effect in group for group in alike)
+    if in_doubt and found.effect != winner and found.verdict in _RULED_OUT:
+        return replace(found, verdict=Verdict.MISSING_IF_SIZE_MATTERS)
+    return found
+
+
 def finding(context: Context, effect) -> Finding:
     """The verdict on one effect, judged beside the winner: what the winner explains accuses nobody else."""
     name = effect.id
     units = {f"{name}.{p.name}": p.unit for p in effect.parameters}
+    first = _size(effect)
+    whole = partial(
+        Finding,
+        source=effect.source,
+        plausible=(first.lower, first.upper),
+        null=first.null,
+        winner=None if context.winner == name else context.winner,
+    )
     seen = context.signatures.get(name)
     if seen is None:
-        return Finding(
-            name, Verdict.INCONCLUSIVE, 0.0, 0.0, {}, units, 1.0, float("inf"), source=effect.source
-        )
+        return whole(name, Verdict.INCONCLUSIVE, 0.0, 0.0, {}, units, 1.0, float("inf"))
     if name in context.finals:
         model = with_numerical_error(context.finals[name], context.changes).model
         expected = {
@@ -67,9 +86,12 @@ def finding(context: Context, effect) -> Finding:
     verdict, limit = _verdict(context, effect, seen, removed)
     final = context.finals.get(name)
     said = context.error_removed(name)
-    return Finding(
-        name, verdict, 0.0, said, expected, units, seen.swallowed, limit, final, source=effect.source
-    )
+    return whole(name, verdict, 0.0, said, expected, units, seen.swallowed, limit, final)
+
+
+def _size(effect):
+    """The parameter that says how large an effect is."""
+    return next((p for p in effect.parameters if not p.scan), effect.parameters[0])
 
 
 def _beside_winner(context: Context, seen: Signature) -> tuple[np.ndarray, Signature]:
@@ -90,7 +112,7 @@ def _verdict(context: Context, effect, seen: Signature, removed: float) -> tuple
     limit = _DETECTION * alone * abs(seen.size)
     if effect.id == context.winner and removed >= _MATTERS:
         return Verdict.MISSING, limit
-    first = next((p for p in effect.parameters if not p.scan), effect.parameters[0])
+    first = _size(effect)
     widest = max(abs(first.lower - first.null), abs(first.upper - first.null))
     if limit > widest or not np.isfinite(limit):
         return Verdict.CANNOT_BE_SEEN, limit

@@ -1,5 +1,6 @@
 """What a diagnosis says: one finding per effect, the groups that look alike, and a verdict."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
@@ -31,7 +32,9 @@ class Finding:
     expected: its values in SI units (name: value, standard error); error_removed: share of the mean |Δ sin θ| above
     the noise that it explains, 0 to 1; swallowed: share of its signature that the fitted parameters imitate;
     visible_above: the smallest size that these recordings would have shown, in the unit of its first parameter; source:
-    where a user's own effect comes from; beside: other effects without which it would not be seen.
+    where a user's own effect comes from; beside: other effects without which it would not be seen; plausible: lowest
+    and highest value of its first parameter; null: the one at which it does nothing; winner: the effect that is in the
+    model where absence is judged, itself without it.
     """
 
     effect: str
@@ -45,11 +48,28 @@ class Finding:
     fit: FitResult | None = None
     source: str | None = None
     beside: tuple[str, ...] = ()
+    plausible: tuple[float, float] = (-math.inf, math.inf)
+    null: float = 0.0
+    winner: str | None = None
+
+    @property
+    def is_plausible(self) -> bool:
+        """Whether the estimate of its size lies within the plausible range."""
+        first = next(iter(self.expected.values()), None)
+        return first is None or self.plausible[0] <= first[0] <= self.plausible[1]
+
+    def _no_size_shows(self, unit: str) -> str:
+        """That no plausible size would show: a threshold beyond the plausible range is no number to tell."""
+        largest = max((abs(bound - self.null) for bound in self.plausible), default=math.inf)
+        reach = f" (up to {largest:.2g}{unit})" if math.isfinite(largest) else ""
+        return f"no plausible size{reach} would show in these recordings"
 
     def __str__(self) -> str:
         first = next(iter(self.expected), None)
         unit = "" if first is None or self.units[first] == "1" else f" {self.units[first]}"
         value = "" if first is None else f" of {self.expected[first][0]:.3g}{unit}"
+        if not self.is_plausible:
+            value = " beyond its plausible range"
         share = f"{self.error_removed:.0%} of the error above the noise"
         if self.beside:
             return f"{self.effect} is missing beside {' and '.join(self.beside)}: together they explain most."
@@ -64,16 +84,26 @@ class Finding:
             return f"{self.effect} may be there with a size{value}, but removes only {share}."
         if self.verdict is Verdict.NOT_JUDGED:
             return f"{self.effect} is not judged: the model does not describe these runs yet."
+        limit = f"{self.visible_above:.2g}{unit}"
         if self.verdict is Verdict.ABSENT:
-            return f"{self.effect} is absent: above {self.visible_above:.2g}{unit} it would have been seen."
+            seen = f"{self.effect} is absent: above {limit} it would have been seen"
+            if self.winner is None or self.error_removed < _WORTH_SAYING:
+                return f"{seen}."
+            alone = f"without {self.winner} it would imitate {self.error_removed:.0%} of what that explains"
+            return f"{seen} beside {self.winner}; {alone}."
         if self.verdict is Verdict.INCONCLUSIVE:
-            limit = f"{self.visible_above:.2g}{unit}"
+            if not math.isfinite(self.visible_above):
+                return f"{self.effect} is undecided: it could not be simulated on these recordings."
             return f"{self.effect} is undecided: these recordings would show it only above {limit}."
-        return (
-            f"{self.effect} cannot be seen: the fitted parameters imitate {self.swallowed:.0%} of it, and what is left "
-            f"would show only above {self.visible_above:.2g}{unit}."
-        )
+        if self.swallowed > _WORTH_SAYING:
+            imitated = f"the fitted parameters imitate {self.swallowed:.0%} of it, and of what is left "
+        else:
+            imitated = ""
+        return f"{self.effect} cannot be seen: {imitated}{self._no_size_shows(unit)}."
 
+
+_WORTH_SAYING = 0.1
+"""Shares below this say nothing about an effect that is not there."""
 
 _NEEDS_A_MODEL = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
 
@@ -143,8 +173,16 @@ class Diagnosis:
         """What is said of one effect."""
         return next(finding for finding in self.findings if finding.effect == effect)
 
+    @property
+    def groups_in_question(self) -> list[tuple[str, ...]]:
+        """The groups of which a member may be missing; of the others it does not matter who is who."""
+        ruled_out = {finding.effect for finding in self.findings if finding.verdict in _NEEDS_A_MODEL}
+        return [group for group in self.groups if not set(group) <= ruled_out]
+
     def __str__(self) -> str:
         lines = [f"Noise floor {self.measured.mean_absolute:.2g} mean |Δ sin θ|: {self.measured}."]
         lines += [str(finding) for finding in self.findings]
-        lines += [f"These recordings cannot tell apart: {', '.join(group)}." for group in self.groups]
+        lines += [
+            f"These recordings cannot tell apart: {', '.join(group)}." for group in self.groups_in_question
+        ]
         return "\n".join(lines)

@@ -61,11 +61,11 @@ def _title(improvement: Improvement) -> str:
 
 
 def _verdict(improvement: Improvement) -> str:
-    said = [_said_of(effect, improvement) for effect in improvement.missing[:1]]
+    said = [said_of(effect, improvement) for effect in improvement.missing[:1]]
     return " ".join([*said, improvement.reason, *improvement.contradictions])
 
 
-def _said_of(effect: str, improvement: Improvement) -> str:
+def said_of(effect: str, improvement: Improvement) -> str:
     """What the first diagnosis says of an effect, or why it was put in the place of the one found first."""
     finding = improvement.diagnosis.finding(effect)
     if finding.verdict is Verdict.MISSING:

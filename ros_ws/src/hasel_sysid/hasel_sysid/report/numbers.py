@@ -2,6 +2,8 @@
 
 import math
 
+_NORMAL_95 = 1.96
+
 
 def error_text(error: float) -> str:
     """An error of sin theta: four decimals, or two digits where these would say nothing."""
@@ -38,3 +40,14 @@ def value_with_error(value: float, error: float | None, unit: str) -> str:
     if digits > 7 or digits < -3:
         return f"{value:.4g} ± {error:.2g}{suffix}"
     return f"{value:.{max(digits, 0)}f} ± {error:.{max(digits, 0)}f}{suffix}"
+
+
+def interval_text(value: float, error: float | None, unit: str) -> str:
+    """A value with its unit and its 95 % interval: "0.0624 s (95 % interval 0.0602 to 0.0646)"."""
+    suffix = "" if unit == "1" else f" {unit}"
+    if error is None or not math.isfinite(error) or error <= 0:
+        return f"{value:.4g}{suffix}"
+    digits = max(0, 1 - math.floor(math.log10(error)))
+    interval = (value, value - _NORMAL_95 * error, value + _NORMAL_95 * error)
+    middle, low, high = (f"{each:.{digits}f}" if digits <= 7 else f"{each:.4g}" for each in interval)
+    return f"{middle}{suffix} (95 % interval {low} to {high})"

@@ -32,6 +32,8 @@ class DriveDependence:
 
     def __str__(self) -> str:
         lag, value = self.strongest
+        if self.band >= 1.0:
+            return "Whether the residual depends on the drive cannot be told: the run holds too few cycles."
         if not self.depends:
             return f"The residual does not depend on the drive (correlation within ±{self.band:.2f})."
         return (

@@ -4,6 +4,9 @@ from collections.abc import Callable
 
 from hasel_sysid.where_it_fails.component import Component, Kind
 
+_OUT_OF_PROPORTION = 5.0
+"""A model that moves so many times less is no scale for a percentage."""
+
 
 def _digits(value: float) -> str:
     return f"{value:.0f}" if value >= 9.5 else f"{value:.2g}"
@@ -22,6 +25,10 @@ def _offset(c: Component) -> str:
 
 
 def _gain(c: Component) -> str:
+    if c.value < -1:
+        return "moves against the model"
+    if c.value > _OUT_OF_PROPORTION:
+        return "moves many times more than the model, which hardly moves"
     return f"moves {_percent(c.value)} {'more' if c.value > 0 else 'less'} than the model"
 
 
@@ -42,12 +49,16 @@ def _rise_against_fall(c: Component) -> str:
 
 
 def _upper_against_lower(c: Component) -> str:
+    if abs(c.value) > _OUT_OF_PROPORTION:
+        return f"bends many times {'more' if c.value > 0 else 'less'} to the lower than to the upper side"
     return (
         f"bends {_percent(c.value)} {'more' if c.value > 0 else 'less'} to the lower than to the upper side"
     )
 
 
 def _gain_drift(c: Component) -> str:
+    if abs(c.value) > _OUT_OF_PROPORTION:
+        return f"{'grows' if c.value > 0 else 'fades'} many times over within a second against the model"
     return f"{'grows' if c.value > 0 else 'fades'} by {_percent(c.value)} per second against the model"
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from hasel_sim.model import load_model
-from hasel_sysid.command_line import improve
+from hasel_sysid.command_line import diagnose, improve
 
 OWN = '''
 import numpy as np
@@ -63,7 +63,11 @@ def test_improve_adds_the_hidden_effect(with_drag, tmp_path, capsys):
     for line in lines:
         load_model(tmp_path / line["model"])
     assert {"waterfall.png", "error_by_stage.png"} <= {path.name for path in tmp_path.iterdir()}
-    assert "quadratic_drag is missing" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert said.startswith("quadratic_drag is missing")
+    assert "quadratic_drag.coefficient = 0.2" in said and "(95 % interval 0.2" in said
+    assert "on fitted runs: 0." in said and "on unseen runs: 0." in said and " before, 0.00" in said
+    assert "muscle_asymmetry is" not in said and "--all" in said
 
 
 def test_improve_adds_an_effect_of_the_users_own(with_waves, tmp_path):
@@ -76,3 +80,19 @@ def test_improve_adds_an_effect_of_the_users_own(with_waves, tmp_path):
     model = load_model(tmp_path / "improved_model.yaml")
     assert model.effects[0].id == "wave_drag"
     assert model.values["wave_drag.coefficient"] == pytest.approx(400.0, rel=0.1)
+
+
+def test_diagnose_says_what_a_person_needs_and_with_all_the_rest(with_drag, tmp_path, capsys):
+    """Verdict, value with its interval, errors; tables and every effect behind --all. The noise may be given."""
+    given = [*with_drag.arguments("muscle_asymmetry"), "--output", str(tmp_path), "--noise", "0.002"]
+    assert diagnose.main(given) == 0
+    brief = capsys.readouterr().out
+    assert brief.startswith("quadratic_drag is missing")
+    assert "(95 % interval" in brief and "noise floor: 0.0016" in brief
+    assert "muscle_asymmetry is" not in brief and "┃ run" not in brief
+    assert diagnose.main([*given, "--all"]) == 0
+    whole = capsys.readouterr().out
+    assert "muscle_asymmetry is" in whole and "┃ run" in whole and "0.002 rms" in whole
+    assert whole.endswith(
+        brief.split("(tables")[0] + whole.rpartition("Wrote")[1] + whole.rpartition("Wrote")[2]
+    )

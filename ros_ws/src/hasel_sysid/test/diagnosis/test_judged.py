@@ -33,3 +33,16 @@ def test_one_more_full_fit_can_change_the_ranking(context):
     assert (after.best.effect, after.best.verdict) == ("sine", Verdict.MISSING)
     assert after.best.probability > 0.9 and after.explained > 0.9
     assert after.probability_none < 0.1 < before.probability_none
+
+
+def test_what_cannot_be_told_from_the_winner_is_not_absent(context):
+    """One answer of one effect: it is named in the winner's group, so it could stand in its place."""
+    whole = context(0.01)
+    for name, final in whole.finals.items():
+        final.model.parameters = {f"{name}.size": SimpleNamespace(**ERROR)}
+    found = judged(whole)
+    group = next(group for group in found.groups if found.best.effect in group)
+    assert len(group) > 1
+    for name in group:
+        assert found.finding(name).verdict in (Verdict.MISSING, Verdict.MISSING_IF_SIZE_MATTERS)
+    assert found.groups_in_question[0] == group

@@ -1,7 +1,14 @@
 """Numbers as a reader wants them."""
 
 import pytest
-from hasel_sysid.report.numbers import change_text, count_text, error_text, percent, value_with_error
+from hasel_sysid.report.numbers import (
+    change_text,
+    count_text,
+    error_text,
+    interval_text,
+    percent,
+    value_with_error,
+)
 
 
 @pytest.mark.parametrize(
@@ -18,6 +25,20 @@ from hasel_sysid.report.numbers import change_text, count_text, error_text, perc
 def test_value_with_error(value, error, unit, text):
     """Digits follow the standard error; the unit 1 is not written."""
     assert value_with_error(value, error, unit) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "unit", "text"),
+    [
+        (0.0694496, 0.0056, "s", "0.0694 s (95 % interval 0.0585 to 0.0804)"),
+        (0.248, 0.003, "1", "0.2480 (95 % interval 0.2421 to 0.2539)"),
+        (1200.0, 150.0, "Pa", "1200 Pa (95 % interval 906 to 1494)"),
+        (0.5, None, "1/s", "0.5 1/s"),
+    ],
+)
+def test_interval(value, error, unit, text):
+    """A value with unit and 95 % interval, to two digits of the standard error."""
+    assert interval_text(value, error, unit) == text
 
 
 def test_percent():
