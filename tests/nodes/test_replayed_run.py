@@ -71,6 +71,9 @@ def test_three_processes_agree_with_compare(stack, listener, model_file):
     assert [stamp_ns(angle) for angle in listener.measured] == stamps
     assert [stamp_ns(error) for error in listener.errors] == stamps
     expected = compared(model_file)
+    heard = (listener.states, listener.measured, listener.simulated, listener.errors)
+    frames = [{message.header.frame_id for message in messages} for messages in heard]
+    assert frames == [{f"hasel/{name}"} for name in ("supply", "camera", "swimmer", "swimmer")]
     assert listener.errors[-1].mean_absolute_error == pytest.approx(expected, abs=TOLERANCE)
     assert expected > 0.004
 
@@ -80,8 +83,11 @@ def test_three_processes_agree_with_compare(stack, listener, model_file):
 
     answer = listener.call(FitModel, "/hasel/fit", 100.0, stack.check)
     assert answer.success, answer.message
+    assert answer.fit.header.frame_id == "hasel/swimmer"
     assert listener.call(LoadModel, "/hasel/load_model", 20.0, stack.check, model=answer.fit.model).success
     replay(stack, listener, "--rate", "max")
-    assert listener.errors[-1].mean_absolute_error == pytest.approx(answer.fit.mae_fit, abs=TOLERANCE)
-    assert answer.fit.mae_fit < 0.8 * expected
+    assert listener.errors[-1].mean_absolute_error == pytest.approx(
+        answer.fit.mean_absolute_error, abs=TOLERANCE
+    )
+    assert answer.fit.mean_absolute_error < 0.8 * expected
     assert [stack.stop(name) for name in ("simulator", "sysid")] == [0, 0]

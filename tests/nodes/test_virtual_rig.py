@@ -17,6 +17,8 @@ def test_an_armed_virtual_rig_bends_what_the_camera_sees(tmp_path, environment, 
         processes.start("hasel_bringup", "virtual_rig", "--ros-args", "-p", hidden)
         # two seconds: longer than the driver waits for a latched emergency stop
         listener.until(lambda: min(len(listener.measured), len(listener.states)) > 200, 60.0, processes.check)
+        assert {state.header.frame_id for state in listener.states} == {"hasel/supply"}
+        assert {angle.header.frame_id for angle in listener.measured} == {"hasel/camera"}
         rest = np.array([angle.sin_theta for angle in listener.measured])
         assert 1e-3 < rest.std() < 5e-3
         assert {state.mode for state in listener.states} == {SupplyState.STANDBY}

@@ -8,7 +8,7 @@ from typing import Any
 
 import rclpy
 from hasel_interfaces.msg import Actuation, SupplyState
-from hasel_recording.endpoints import Role, publisher, subscription
+from hasel_recording.endpoints import Role, frame_of, publisher, subscription
 from hasel_recording.topics import COMMAND, NAMESPACE, STATE
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
@@ -83,6 +83,7 @@ class ConsoleLink:
     def command(self, voltage_v: Voltages) -> None:
         """Publish one command."""
         message = Actuation(voltage=list(voltage_v))
+        message.header.frame_id = frame_of(self._node, "supply")
         message.header.stamp = self._node.get_clock().now().to_msg()
         self._commands.publish(message)
 

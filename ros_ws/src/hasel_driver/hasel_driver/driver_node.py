@@ -22,7 +22,7 @@ from hasel_driver.driver_services import DriverServices
 from hasel_driver.errors import DriverError, PortInUseError, RefusedError
 from hasel_driver.experiment_server import ExperimentServer
 from hasel_driver.faults import Fault, FaultCode
-from hasel_driver.limits import Limits, Voltages
+from hasel_driver.limits import Limits
 from hasel_driver.messages import to_diagnostics, to_supply_state
 from hasel_driver.middleware import avoid_shared_memory
 from hasel_driver.node_parameters import declare, values
@@ -186,7 +186,7 @@ class DriverNode(LifecycleNode):
 
     # Topics
 
-    def _on_command(self, voltage_v: Voltages, age_s: float) -> None:
+    def _on_command(self, voltage_v: tuple[float, ...], age_s: float) -> None:
         thread = self._thread
         if thread is not None and self._lifecycle_active:
             thread.call(lambda: thread.supervisor.command(voltage_v, age_s))
@@ -205,8 +205,7 @@ class DriverNode(LifecycleNode):
         with quiet_at_shutdown():
             holders = inputs.holders.names(inputs.stop_topic.present()) if inputs.holders else []
             limits = thread.supervisor.limits if thread is not None else self._last_limits
-            message = to_supply_state(status, limits, holders)
-            message.header.frame_id = self._frame_id
+            message = to_supply_state(status, limits, holders, self._frame_id)
             self._state.publish(message)
             self.experiments.record_state(message)
         self.history.take(status)

@@ -51,7 +51,7 @@ EXPLANATIONS: dict[FaultCode, str] = {
     FaultCode.GARBAGE_RECEIVED: "a garbled line came from the board",
     FaultCode.COMMAND_REFUSED: "the board refused a command",
     FaultCode.TWO_MASTERS: "more than one source of commands",
-    FaultCode.INVALID_COMMAND: "a command was not a number",
+    FaultCode.INVALID_COMMAND: "a command was not a number for each muscle",
     FaultCode.HOST_STALLED: "the driver node stopped responding",
     FaultCode.ILLEGAL_TRANSITION: "an illegal lifecycle transition was requested while armed",
     FaultCode.UNEXPECTED_STATE: "the board is in a state that nobody asked for",

@@ -1,6 +1,7 @@
 """The limits a supply is run within, and the clipping of commands to them."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hasel_driver.errors import LimitError
@@ -10,7 +11,8 @@ MOST_TRIP_A = 980e-6  # of 1 mA, for the same reason
 DISCHARGED_V = 200.0  # below it a muscle counts as discharged
 LONGEST_HEARTBEAT_S = 2.0
 
-Voltages = tuple[float, float]  # V, order upper, lower
+MUSCLE_NAMES = ("upper", "lower")
+Voltages = tuple[float, float]  # V, in the order of MUSCLE_NAMES
 
 
 @dataclass(frozen=True)
@@ -24,12 +26,17 @@ class Limits:
     dead_time_s: float = 0.005
 
 
-def clip(requested: Voltages, maximum_v: float, bipolar: bool = True) -> Voltages:
+def clip(requested: Sequence[float], maximum_v: float, bipolar: bool = True) -> Voltages:
     """`requested` [V] within ± `maximum_v`, or 0 to `maximum_v` for a supply of one polarity.
 
     Raises:
-        LimitError: a value is NaN or infinite; such a command must not be guessed at.
+        LimitError: a value is NaN or infinite, or not one for each muscle; such a command must not be guessed at.
     """
+    if len(requested) != len(MUSCLE_NAMES):
+        raise LimitError(
+            f"{len(requested)} voltages were commanded, expected {len(MUSCLE_NAMES)} ({', '.join(MUSCLE_NAMES)}): "
+            "correct what sent them"
+        )
     if not all(math.isfinite(value) for value in requested):
         raise LimitError(
             f"the voltages {requested} are not finite numbers: the controller that sent them is broken"

@@ -8,7 +8,7 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from hasel_interfaces.msg import SupplyState
 
-from hasel_driver.limits import Limits
+from hasel_driver.limits import MUSCLE_NAMES, Limits
 from hasel_driver.mode import Mode
 from hasel_driver.status import Status
 
@@ -25,10 +25,13 @@ def to_time(monotonic_s: float) -> Time:
     return Time(sec=nanoseconds // 1_000_000_000, nanosec=nanoseconds % 1_000_000_000)
 
 
-def to_supply_state(status: Status, limits: Limits | None = None, holders: Sequence[str] = ()) -> SupplyState:
+def to_supply_state(
+    status: Status, limits: Limits | None = None, holders: Sequence[str] = (), frame_id: str = ""
+) -> SupplyState:
     """`/hasel/state`; in FAULT its text also tells whether the output is proven grounded."""
     message = SupplyState()
-    message.header.stamp = to_time(status.time_s)
+    message.header.stamp, message.header.frame_id = to_time(status.time_s), frame_id
+    message.muscle = list(MUSCLE_NAMES)
     message.commanded_voltage = list(status.commanded_v)
     message.measured_voltage = list(status.measured_v)
     message.current = list(status.current_a)

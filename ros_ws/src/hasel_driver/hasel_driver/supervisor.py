@@ -5,7 +5,7 @@ What it tells about the output comes from the supply's own recent report, never 
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from hasel_driver.errors import LimitError, PortError, RefusedError
 from hasel_driver.faults import Fault, FaultCode, SupplyFaultError
@@ -153,7 +153,7 @@ class Supervisor:
         if self.fault is not None:
             raise RefusedError(f"The fault came back at once: {self.fault}.")
 
-    def command(self, voltage_v: Voltages, age_s: float = 0.0) -> None:
+    def command(self, voltage_v: Sequence[float], age_s: float = 0.0) -> None:
         """A voltage from outside [V], `age_s` old; clipped, held for 200 ms from its making, else ignored."""
         try:
             applied = clip(voltage_v, self.maximum_voltage_v, self._supply.capabilities.bipolar)

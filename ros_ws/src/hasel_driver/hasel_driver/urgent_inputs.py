@@ -12,7 +12,6 @@ from rclpy.clock import Clock, ClockType
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
-from hasel_driver.limits import Voltages
 from hasel_driver.realtime import request_realtime
 from hasel_driver.spinning import quiet_at_shutdown
 from hasel_driver.stop_holders import StopHolders
@@ -31,7 +30,7 @@ class UrgentInputs:
     def __init__(
         self,
         namespace: str,
-        on_command: Callable[[Voltages, float], None],
+        on_command: Callable[[tuple[float, ...], float], None],
         on_stop: Callable[[bool, str], None],
         on_alive: Callable[[], None],
         realtime_priority: int = 0,
@@ -77,4 +76,4 @@ class UrgentInputs:
         stamp = command.header.stamp
         made_s = stamp.sec + stamp.nanosec * 1e-9
         age_s = time.time() - made_s if made_s else 0.0  # `ros2 topic pub` by hand leaves the stamp empty
-        self._on_command((float(command.voltage[0]), float(command.voltage[1])), age_s)
+        self._on_command(tuple(command.voltage), age_s)

@@ -75,6 +75,14 @@ def test_not_a_number_is_a_fault(provoke, ros, bad, rounds):
         assert ros.trigger("clear_fault").success
 
 
+@pytest.mark.parametrize("voltages", [(), (1000.0,), (1000.0, 0.0, 0.0)])
+def test_a_command_for_another_number_of_muscles_is_a_fault(provoke, ros, voltages):
+    """As a value that is no number: grounded and latched, with the reason."""
+    provoke(lambda: ros.command(voltages), FaultCode.INVALID_COMMAND)
+    assert f"{len(voltages)} voltages were commanded" in ros.state.fault_text
+    assert ros.trigger("clear_fault").success
+
+
 def test_deactivating_disarms_and_activating_does_not_arm(driver, shared_rig, ros):
     """The lifecycle leads away from high voltage, never to it."""
     driver.arm()

@@ -105,6 +105,7 @@ def record(tmp_path):
             message.header.stamp.sec = 1000 + int(time_s)
             message.header.stamp.nanosec = round(time_s % 1 * 1e9)
             voltage = PLAN.waveform.voltage(time_s + 0.005 - PLAN.rest_s)
+            message.muscle = ["upper", "lower"]
             message.commanded_voltage = [scale(time_s) * value for value in voltage]
             if keep(time_s):
                 recording.write(STATE, message)
@@ -123,7 +124,7 @@ def test_a_full_disk_is_kept_as_the_problem(tmp_path):
 
     path = tmp_path / "run.mcap"
     path.symlink_to("/dev/full")
-    recording, message = ExperimentRecording(path, PLAN), SupplyState()
+    recording, message = ExperimentRecording(path, PLAN), SupplyState(commanded_voltage=[0.0, 0.0])
     while recording.problem is None:
         message.header.stamp.sec += 1
         recording.write(STATE, message)

@@ -21,6 +21,13 @@ def test_always_within_the_limit(upper, lower, maximum, bipolar):
         assert after == before or not least <= before <= maximum
 
 
+@pytest.mark.parametrize("voltages", [(), (1.0,), (1.0, 2.0, 3.0)])
+def test_another_number_of_voltages_is_an_error(voltages):
+    """There is one for each muscle; which one is missing must not be guessed at."""
+    with pytest.raises(LimitError, match=rf"{len(voltages)} voltages .* expected 2 \(upper, lower\)"):
+        clip(voltages, 1000.0)
+
+
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
 def test_no_number_is_an_error(bad):
     """NaN and infinity are refused instead of guessed at."""

@@ -10,7 +10,7 @@ import numpy as np
 def bending_angle_message(
     sin_theta: float,
     theta: float | None = None,
-    sin_theta_std: float = math.nan,
+    sin_theta_standard_deviation: float = math.nan,
     marker_names: Sequence[str] = (),
     pixels: np.ndarray | None = None,
     metres: np.ndarray | None = None,
@@ -28,7 +28,7 @@ def bending_angle_message(
     metres = unknown[:0] if metres is None else np.asarray(metres, dtype=float)
     return {
         "sin_theta": sin_theta,
-        "sin_theta_std": sin_theta_std,
+        "sin_theta_standard_deviation": sin_theta_standard_deviation,
         "theta": math.asin(max(-1.0, min(1.0, sin_theta))) if theta is None else theta,
         "marker_name": list(marker_names)[:count],
         "marker_x": pixels[:, 0].tolist(),

@@ -62,7 +62,7 @@ class DriveChannel:
 
 
 HASEL_PAIR = (DriveChannel("upper", "voltage", "V"), DriveChannel("lower", "voltage", "V"))
-"""What the rig's supply drives; its messages carry these two voltages in this order."""
+"""What the rig's supply drives; a message that names no muscles carries these two voltages in this order."""
 
 
 def is_drive_column(column: str) -> bool:

@@ -1,5 +1,6 @@
 """What drove a body, from the messages of an MCAP file."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import compress
 from typing import Any
@@ -62,22 +63,34 @@ def stamped_drive(file: McapFile) -> StampedDrive | None:
     messages, stamps = stamped_messages(file, STATE)
     if not messages:
         return None
+    names = _names(file, STATE, [(muscles(message), message.commanded_voltage) for message in messages])
+    channels = tuple(DriveChannel(name, "voltage", "V") for name in names)
     voltage = np.array([message.commanded_voltage for message in messages], dtype=float)
     known = np.isfinite(voltage).all(axis=1)
     first = int(np.argmax(known)) if known.any() else 0
-    return _checked(file, STATE, HASEL_PAIR, stamps[first:], voltage[first:], skipped=first)
+    return _checked(file, STATE, channels, stamps[first:], voltage[first:], skipped=first)
+
+
+def muscles(state: Any) -> list[str]:
+    """Return the names of a SupplyState's muscles; one without names, as of old, has the rig's two."""
+    return list(getattr(state, "muscle", ())) or [channel.name for channel in HASEL_PAIR]
+
+
+def _names(file: McapFile, topic: str, named: list[tuple[list[str], Sequence[float]]]) -> list[str]:
+    """Return the names that go with the values of every message; raises RecordingError where they change."""
+    expected = named[0][0]
+    for number, (names, values) in enumerate(named, start=1):
+        if names != expected or len(values) != len(expected):
+            raise RecordingError(
+                f"{file.path}: message {number} on {topic} has {len(values)} values for {', '.join(names)}, "
+                f"but {', '.join(expected)} are expected: publish the same channels always."
+            )
+    return expected
 
 
 def _channels(file: McapFile, messages: list[Any]) -> tuple[DriveChannel, ...]:
-    names = list(messages[0].channel)
-    for number, message in enumerate(messages, start=1):
-        if list(message.channel) != names or len(message.value) != len(names):
-            raise RecordingError(
-                f"{file.path}: message {number} on {DRIVE} has {len(message.value)} values for "
-                f"{', '.join(message.channel)}, but {', '.join(names)} are expected: publish the same channels always."
-            )
     channels = []
-    for name in names:
+    for name in _names(file, DRIVE, [(list(message.channel), message.value) for message in messages]):
         try:
             channel, factor = parse_column(name)
         except RecordingError as error:

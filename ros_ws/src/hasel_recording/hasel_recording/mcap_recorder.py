@@ -16,7 +16,7 @@ from hasel_recording.errors import RecordingError, nearest
 from hasel_recording.message_definitions import has_header, schema_text
 from hasel_recording.message_fields import plain_fields, stamp, type_of
 from hasel_recording.rosbag2_metadata import TopicCount, bag_metadata, channel_metadata
-from hasel_recording.topics import TOPIC_TYPES
+from hasel_recording.topics import FRAMES, TOPIC_TYPES
 
 HEADER_RECORD = "hasel_recording"  # metadata record with the header lines
 TIME_RECORD = "hasel_time"  # metadata record with the stamp that is time 0
@@ -66,7 +66,7 @@ class McapRecorder:
         """
         type_name = type_name or type_of(message) or self._type_of_topic(topic)
         if isinstance(message, Mapping) and "header" not in message and has_header(type_name):
-            message = {"header": {"stamp": stamp(stamp_ns), "frame_id": ""}, **message}
+            message = {"header": {"stamp": stamp(stamp_ns), "frame_id": FRAMES.get(topic, "")}, **message}
         fields = plain_fields(message, type_name)
         with self._lock:
             if self._file.closed:

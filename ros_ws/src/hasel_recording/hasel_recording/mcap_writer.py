@@ -46,6 +46,7 @@ def _drive(recording: Recording) -> Iterator[tuple[int, str, dict[str, Any]]]:
 def state_message(voltage: list[float]) -> dict[str, Any]:
     """A supply's state of which only the commanded voltage [V] is known, as a mapping that McapRecorder writes."""
     return {
+        "muscle": [channel.name for channel in HASEL_PAIR],
         "commanded_voltage": voltage,
         "measured_voltage": UNKNOWN_PAIR,
         "current": UNKNOWN_PAIR,

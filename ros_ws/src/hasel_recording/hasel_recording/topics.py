@@ -29,6 +29,15 @@ TOPIC_TYPES = {
     DIAGNOSTICS: "diagnostic_msgs/msg/DiagnosticArray",
 }
 
+FRAMES = {
+    COMMAND: "hasel/supply",
+    STATE: "hasel/supply",
+    DRIVE: "hasel/supply",
+    MEASURED: "hasel/camera",
+    SIMULATED: "hasel/swimmer",
+}
+"""`header.frame_id` of messages that no node has stamped: those made from a file."""
+
 
 def relative(topic: str) -> str:
     """Return the name as a node gives it, for ROS to put into the node's namespace and to remap."""

@@ -45,7 +45,7 @@ def test_any_number_of_markers(count, tmp_path):
     assert list(read.marker_name) == names
     assert np.column_stack([read.marker_x, read.marker_y]).tolist() == pixels.tolist()
     assert np.column_stack([read.marker_x_m, read.marker_y_m]).tolist() == (pixels / 1000).tolist()
-    assert (read.marker_quality.tolist(), read.sin_theta_std) == (quality.tolist(), 0.002)
+    assert (read.marker_quality.tolist(), read.sin_theta_standard_deviation) == (quality.tolist(), 0.002)
     assert read.valid and read.theta == pytest.approx(math.asin(0.1))
 
 

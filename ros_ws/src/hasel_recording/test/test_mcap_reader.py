@@ -20,7 +20,12 @@ def angle(sin_theta: float, valid: bool = True) -> dict:
 def state(upper: float, lower: float) -> dict:
     """Return a SupplyState with this voltage [V]."""
     unknown = [math.nan, math.nan]
-    supply = {"commanded_voltage": [upper, lower], "measured_voltage": unknown, "current": unknown}
+    supply = {
+        "muscle": ["upper", "lower"],
+        "commanded_voltage": [upper, lower],
+        "measured_voltage": unknown,
+        "current": unknown,
+    }
     safety = {"grounded": False, "interlock": [0, 0], "emergency_stop_holders": []}
     limits = dict.fromkeys(("maximum_voltage", "slew_rate", "trip_current", "heartbeat_timeout"), math.nan)
     return supply | {"mode": 2, "fault_code": 0, "fault_text": ""} | safety | limits
@@ -173,3 +178,25 @@ def test_a_drive_signal_keeps_its_channels(recorder):
     recorder.write(MEASURED, angle(0.1), 3)
     with pytest.raises(RecordingError, match="message 2 on /hasel/drive has 2 values"):
         read(recorder)
+
+
+def test_a_supply_of_other_muscles_is_read_by_their_names(tmp_path):
+    """The voltages of a state belong to the muscles that it names, however many there are."""
+    names = ["left", "right", "tail"]
+    supply = state(0.0, 0.0) | {"muscle": names, "commanded_voltage": [1000.0, 0.0, -2000.0]}
+    with McapRecorder(tmp_path / "run.mcap") as recorder:
+        recorder.write(STATE, supply, 0)
+        recorder.write(MEASURED, bending_angle_message(0.1), 10)
+    run = read_recording(tmp_path / "run.mcap")
+    assert [channel.column for channel in run.channels] == [f"voltage_{name}_v" for name in names]
+    assert run.drive_signal.tolist() == [[1000.0, 0.0, -2000.0]]
+
+
+def test_voltages_for_other_muscles_than_before_are_refused(tmp_path):
+    """One sentence says which message has which voltages."""
+    with McapRecorder(tmp_path / "run.mcap") as recorder:
+        recorder.write(STATE, state(0.0, 0.0), 0)
+        recorder.write(STATE, state(0.0, 0.0) | {"commanded_voltage": [1.0, 2.0, 3.0]}, 5)
+        recorder.write(MEASURED, bending_angle_message(0.1), 10)
+    with pytest.raises(RecordingError, match="message 2 on /hasel/state has 3 values for upper, lower"):
+        read_recording(tmp_path / "run.mcap")

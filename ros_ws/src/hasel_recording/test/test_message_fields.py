@@ -40,7 +40,7 @@ def test_missing_field_is_not_filled_in():
 
 
 def test_array_of_wrong_length():
-    """A pair of voltages given as three is refused."""
-    message = {"header": {"stamp": stamp(0), "frame_id": ""}, "voltage": [1.0, 2.0, 3.0]}
+    """A pair of contacts given as three is refused."""
+    message = plain_fields(SupplyState(), "hasel_interfaces/msg/SupplyState") | {"interlock": [1, 1, 1]}
     with pytest.raises(RecordingError, match="Found 3 values"):
-        plain_fields(message, "hasel_interfaces/msg/Actuation")
+        plain_fields(message, "hasel_interfaces/msg/SupplyState")

@@ -7,10 +7,12 @@ import numpy as np
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from geometry_msgs.msg import Point
-from hasel_interfaces.msg import BendingAngle
+from hasel_interfaces.msg import BendingAngle, SupplyState
+from hasel_recording.mcap_drive import muscles
 from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
 
+from hasel_sim.drive.schedule import HASEL_CHANNELS
 from hasel_sim.live.body_picture import COLOURS, region_triangles, skin_line
 from hasel_sim.mesh.mesh import Mesh
 
@@ -28,12 +30,18 @@ def to_nanoseconds(stamp: Time) -> int:
     return stamp.sec * 1_000_000_000 + stamp.nanosec
 
 
+def rig_voltage(state: SupplyState) -> np.ndarray:
+    """The voltages [V] that were commanded of upper and lower muscle, [2]; NaN where a state does not tell."""
+    commanded = dict(zip(muscles(state), state.commanded_voltage, strict=False))
+    return np.array([commanded.get(name, math.nan) for name in HASEL_CHANNELS])
+
+
 def angle_message(stamp_ns: int, sin_theta: float, frame_id: str) -> BendingAngle:
     """A simulated angle; no camera has seen it, so there are no marker positions."""
     message = BendingAngle(header=Header(stamp=to_time(stamp_ns), frame_id=frame_id))
     message.sin_theta = sin_theta
     message.theta = math.asin(max(-1.0, min(1.0, sin_theta)))
-    message.sin_theta_std = math.nan
+    message.sin_theta_standard_deviation = math.nan
     message.valid = math.isfinite(sin_theta)
     return message
 

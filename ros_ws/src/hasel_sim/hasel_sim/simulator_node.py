@@ -23,7 +23,7 @@ from hasel_sim.model import Model
 from hasel_sim.model_parameters import ModelParameters
 from hasel_sim.node_parameters import declare, words
 from hasel_sim.node_process import run_node
-from hasel_sim.simulator_messages import BodyMessage, angle_message, diagnostics, to_nanoseconds
+from hasel_sim.simulator_messages import BodyMessage, angle_message, diagnostics, rig_voltage, to_nanoseconds
 from hasel_sim.simulator_parameters import PARAMETERS
 
 
@@ -65,7 +65,7 @@ class SimulatorNode(Node):
 
     def _on_state(self, state: SupplyState, info: dict) -> None:
         begun = time.perf_counter()
-        answer = self.live.receive(to_nanoseconds(state.header.stamp), np.array(state.commanded_voltage))
+        answer = self.live.receive(to_nanoseconds(state.header.stamp), rig_voltage(state))
         self._publish(answer)
         waited = (time.time_ns() - info["received_timestamp"]) * 1e-9
         self._pace.add(answer.simulated, time.perf_counter() - begun, max(0.0, waited))

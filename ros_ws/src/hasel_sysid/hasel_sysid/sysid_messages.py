@@ -16,10 +16,10 @@ from hasel_sysid.fit import FitResult
 from hasel_sysid.live import running_error
 
 
-def error_message(stamp_ns: int, error: running_error.RunningError) -> RunningError:
+def error_message(stamp_ns: int, error: running_error.RunningError, frame_id: str) -> RunningError:
     """`/hasel/error` at a stamp [ns]."""
     return RunningError(
-        header=Header(stamp=to_time(stamp_ns)),
+        header=Header(stamp=to_time(stamp_ns), frame_id=frame_id),
         difference=error.difference,
         mean_absolute_error=error.mean_absolute,
         count=error.count,
@@ -44,23 +44,23 @@ def parameter_messages(model: Model, at_bound=(), undetermined=()) -> list[Named
     ]
 
 
-def fit_message(result: FitResult, model_file: str, stamp: Time) -> Fit:
+def fit_message(result: FitResult, model_file: str, header: Header) -> Fit:
     """`/hasel/fit`; `model` is the file that was written, ready for the simulator's load_model."""
     return Fit(
-        header=Header(stamp=stamp),
+        header=header,
         model=model_file,
         effects=[effect.id for effect in result.model.effects],
         parameters=parameter_messages(result.model, result.at_bound, result.undetermined),
-        mae_fit=result.mean_absolute_error,
-        mae_validation=math.nan,
+        mean_absolute_error=result.mean_absolute_error,
+        mean_absolute_error_unseen=math.nan,
         messages=result.sentences,
     )
 
 
-def diagnosis_message(found: diagnosis_result.Diagnosis, status: str, stamp: Time) -> Diagnosis:
+def diagnosis_message(found: diagnosis_result.Diagnosis, status: str, header: Header) -> Diagnosis:
     """`/hasel/diagnosis`."""
     return Diagnosis(
-        header=Header(stamp=stamp),
+        header=header,
         status=status,
         missing=[finding.effect for finding in found.findings if finding.verdict is Verdict.MISSING],
         ranking=[_ranked(finding) for finding in found.findings],

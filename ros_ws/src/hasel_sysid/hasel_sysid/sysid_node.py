@@ -8,17 +8,18 @@ from diagnostic_msgs.msg import DiagnosticArray
 from hasel_interfaces.msg import BendingAngle, Diagnosis, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import RecordingError
-from hasel_recording.endpoints import STEADY, Role, publisher, subscription
+from hasel_recording.endpoints import STEADY, Role, frame_of, publisher, subscription
 from hasel_recording.topics import DIAGNOSIS, DIAGNOSTICS, ERROR, FIT, MEASURED, NAMESPACE, SIMULATED, STATE
 from hasel_sim.errors import HaselSimError
 from hasel_sim.live.live_model import live_model
 from hasel_sim.model import Model, save_model
 from hasel_sim.node_parameters import declare, words
 from hasel_sim.node_process import end_at_once, run_node
-from hasel_sim.simulator_messages import to_nanoseconds
+from hasel_sim.simulator_messages import rig_voltage, to_nanoseconds
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
+from std_msgs.msg import Header
 
 from hasel_sysid.errors import SysidError
 from hasel_sysid.live.epochs import Epochs, StreamEpoch
@@ -42,6 +43,7 @@ class SysidNode(Node):
         self._pairing, self._heard = Pairing(gap), Heard(reset)
         self._errors, self._starts = RunningErrors(reset, window), DriveStarts()
         self._pairs, self._latest, self._busy, self._doing = 0, None, threading.Lock(), ""
+        self._frame_id = frame_of(self, self._value("frame_id"))
         self._error = publisher(self, RunningError, ERROR, Role.EVERY_SAMPLE)
         self._fit = publisher(self, Fit, FIT, Role.RESULTS)
         self._diagnosis = publisher(self, Diagnosis, DIAGNOSIS, Role.RESULTS)
@@ -71,7 +73,7 @@ class SysidNode(Node):
 
     def _on_state(self, message: SupplyState) -> None:
         stamp = to_nanoseconds(message.header.stamp)
-        epoch, voltage = self._epoch[STATE].of(stamp), tuple(message.commanded_voltage)
+        epoch, voltage = self._epoch[STATE].of(stamp), tuple(rig_voltage(message))
         self._heard.state(epoch, stamp, voltage)
         if self._starts.begins(epoch, stamp, voltage):
             self._errors.begin(epoch, stamp)
@@ -90,7 +92,7 @@ class SysidNode(Node):
     def _publish(self, pairs: list[Pair]) -> None:
         for pair in pairs:
             self._latest = self._errors.add(pair)
-            self._error.publish(error_message(pair.stamp_ns, self._latest))
+            self._error.publish(error_message(pair.stamp_ns, self._latest, self._frame_id))
         self._pairs += len(pairs)
 
     def _report(self) -> None:
@@ -119,7 +121,7 @@ class SysidNode(Node):
             result = fit_recordings(model, recordings, request.method, self._value("jobs"), self._progress)
             path = Path(self._value("output")) / f"{model.name}_fitted.yaml"
             save_model(result.model, path)
-            response.fit = fit_message(result, str(path.resolve()), self.get_clock().now().to_msg())
+            response.fit = fit_message(result, str(path.resolve()), self._header())
             self._fit.publish(response.fit)
             return f"{result} Written to {path}; the simulator takes it by load_model."
 
@@ -130,12 +132,14 @@ class SysidNode(Node):
             model, recordings = self._model(), self._recordings(request.recordings)
             effects = [effect for effect in request.effects if effect]
             found = diagnose_recordings(model, recordings, effects, self._value("jobs"), self._progress)
-            stamp = self.get_clock().now().to_msg()
-            response.diagnosis = diagnosis_message(found, status(found), stamp)
+            response.diagnosis = diagnosis_message(found, status(found), self._header())
             self._diagnosis.publish(response.diagnosis)
             return str(found)
 
         return self._serve(diagnose, response)
+
+    def _header(self) -> Header:
+        return Header(stamp=self.get_clock().now().to_msg(), frame_id=self._frame_id)
 
     def _model(self) -> Model:
         return live_model(self._value("model"), words(self, "effects"))[0]

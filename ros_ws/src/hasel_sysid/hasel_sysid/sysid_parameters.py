@@ -11,4 +11,5 @@ PARAMETERS = (
     NodeParameter("reset", 2.0, "a longer gap begins a new run", "s", 0.01, 3600.0),
     NodeParameter("window", 5.0, "length of the sliding window of /hasel/error", "s", 0.1, 3600.0),
     NodeParameter("late", 0.5, "stamps that go back by more begin a new run", "s", 0.0, 60.0),
+    NodeParameter("frame_id", "swimmer", "frame of the stamped messages, within the node's namespace"),
 )

@@ -25,7 +25,8 @@ def angle_message(tracked: TrackedFrame, stamp_ns: int, frame_id: str) -> Bendin
     message = BendingAngle()
     message.header.stamp, message.header.frame_id = stamp(stamp_ns), frame_id
     message.sin_theta, message.theta, message.valid = tracked.sin_theta, tracked.theta, tracked.valid
-    message.sin_theta_std, message.doubt = tracked.sin_theta_std, int(tracked.markers.doubt)
+    message.sin_theta_standard_deviation = tracked.sin_theta_std
+    message.doubt = int(tracked.markers.doubt)
     message.marker_name = list(tracked.markers.names)
     message.marker_x = tracked.markers.positions[:, 0].tolist()
     message.marker_y = tracked.markers.positions[:, 1].tolist()

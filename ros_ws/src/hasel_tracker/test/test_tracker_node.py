@@ -159,7 +159,7 @@ def test_image_topic_services_and_parameters(observer, start, frames, tmp_path):
     assert seen.valid
     assert seen.header.stamp.sec == 1002
     assert [*seen.marker_name] == ["head", "middle", "tail"]
-    assert 0.0 < seen.sin_theta_std < 0.01
+    assert 0.0 < seen.sin_theta_standard_deviation < 0.01
     assert seen.sin_theta == pytest.approx(frames[40].sin_theta, abs=2e-3)
     assert [*seen.marker_x] == pytest.approx(frames[40].markers_px[:, 0], abs=0.2)
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from builtin_interfaces.msg import Time
 from hasel_interfaces.msg import BendingAngle, SupplyState
+from hasel_recording.drive_channel import HASEL_PAIR
 from hasel_recording.endpoints import Role, frame_of, publisher
 from hasel_recording.topics import MEASURED, NAMESPACE, STATE
 from rclpy.duration import Duration
@@ -18,6 +19,7 @@ from hasel_bringup.replay.clock import ReplayClock
 from hasel_bringup.replay.timeline import ReplayedFrame
 
 _SETTLED_S = 1.0
+_MUSCLES = [channel.name for channel in HASEL_PAIR]
 _UNKNOWN_PAIR = [math.nan] * 2
 
 
@@ -86,8 +88,10 @@ class ReplayNode(Node):
         stamp = Time(sec=seconds, nanosec=nanoseconds)
         if self._clock is not None:
             self._clock.publish(Clock(clock=stamp))
-        header = Header(stamp=stamp, frame_id=frame_of(self, "supply"))
-        state = SupplyState(header=header, commanded_voltage=list(frame.voltage), mode=SupplyState.ACTIVE)
+        state = SupplyState(
+            header=Header(stamp=stamp, frame_id=frame_of(self, "supply")), mode=SupplyState.ACTIVE
+        )
+        state.muscle, state.commanded_voltage = _MUSCLES, list(frame.voltage)
         state.measured_voltage = state.current = _UNKNOWN_PAIR
         self._states.publish(state)
         if frame.sin_theta is None:
@@ -95,5 +99,5 @@ class ReplayNode(Node):
         header = Header(stamp=stamp, frame_id=frame_of(self, "camera"))
         angle = BendingAngle(header=header, sin_theta=frame.sin_theta, valid=math.isfinite(frame.sin_theta))
         angle.theta = math.asin(max(-1.0, min(1.0, frame.sin_theta))) if angle.valid else math.nan
-        angle.sin_theta_std = math.nan
+        angle.sin_theta_standard_deviation = math.nan
         self._angles.publish(angle)

@@ -10,7 +10,7 @@ from hasel_sim.live.live_model import live_model
 from hasel_sim.live.live_simulator import LiveSimulator
 from hasel_sim.live.repeated_warnings import RepeatedWarnings
 from hasel_sim.node_parameters import NodeParameter, declare, words
-from hasel_sim.simulator_messages import angle_message, to_nanoseconds
+from hasel_sim.simulator_messages import angle_message, rig_voltage, to_nanoseconds
 from rclpy.node import Node
 
 from hasel_bringup.virtual_rig.camera_noise import CameraNoise
@@ -59,7 +59,7 @@ class VirtualBodyNode(Node):
             self.get_logger().warning(sentence)
 
     def _on_state(self, state: SupplyState) -> None:
-        answer = self._live.receive(to_nanoseconds(state.header.stamp), np.array(state.commanded_voltage))
+        answer = self._live.receive(to_nanoseconds(state.header.stamp), rig_voltage(state))
         self._warn(answer.sentence)
         for angle in answer.angles:
             if 0 <= angle.stamp_ns - self._last_ns < self._spacing_ns:

@@ -1,10 +1,12 @@
 """Recordings as messages in order of time."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hasel_bringup.errors import BringupError
 from hasel_bringup.replay.timeline import one_after_the_other, timeline
-from hasel_recording import DriveChannel, Recording, RecordingError
+from hasel_recording import DriveChannel, Recording, RecordingError, read_recording
 
 TIME = np.array([0.0, 0.1, 0.2])
 VOLTAGE = np.array([[10.0, 0.0], [10.0, 0.0], [0.0, -20.0]])
@@ -17,6 +19,18 @@ def test_a_frame_carries_its_voltage_and_angle():
     assert [frame.voltage for frame in frames] == [(10.0, 0.0), (10.0, 0.0), (0.0, -20.0)]
     assert frames[2].sin_theta == 0.3
     assert np.isnan(frames[1].sin_theta)
+
+
+@pytest.mark.filterwarnings("ignore::hasel_recording.RecordingWarning")  # of the frame before the first state
+def test_a_bag_of_old_messages_is_replayed():
+    """Every frame and every voltage of a bag from before the muscles had names goes onto the topics of today."""
+    old = Path(__file__).parents[3] / "hasel_recording" / "test" / "recordings" / "pairs_of_voltages.mcap"
+    recording = read_recording(old)
+    frames = timeline(recording)
+    assert [
+        frame.sin_theta for frame in frames if frame.sin_theta is not None
+    ] == recording.sin_theta.tolist()
+    assert {frame.voltage for frame in frames} >= {(4500.0, 0.0), (0.0, 4500.0)}
 
 
 def test_a_switch_between_frames_is_a_state_of_its_own():

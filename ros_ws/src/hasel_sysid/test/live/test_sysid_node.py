@@ -143,7 +143,7 @@ def test_what_was_heard_is_fitted_while_the_node_goes_on(talk, recording):
     found = {p.name: p.value for p in talk.fits[0].parameters}
     assert found == pytest.approx(TRUTH, rel=1e-3)
     assert load_model(talk.fits[0].model).values == pytest.approx(found)
-    assert talk.fits[0].mae_fit < 1e-4
+    assert talk.fits[0].mean_absolute_error < 1e-4
 
 
 def test_a_missing_effect_is_named(talk, swimmer, recording):

@@ -1,0 +1,36 @@
+import numpy as np
+from hasel_driver.faults import FaultCode
+from hasel_driver.messages import to_supply_state
+from hasel_driver.mode import Mode
+from hasel_driver.status import Status
+from hasel_driver.waveform import MUSCLES, POLARITIES, SHAPES
+from hasel_interfaces.action import RunExperiment
+from hasel_interfaces.msg import SupplyState
+
+
+def constants(kind: type, prefix: str = "") -> dict:
+    """The constants of a message whose names begin with a prefix, without it."""
+    names = [name for name in vars(type(kind)) if name.isupper() and "__" not in name and name[0] != "_"]
+    return {name.removeprefix(prefix): getattr(kind, name) for name in names if name.startswith(prefix)}
+
+
+def test_constants_are_those_of_the_driver():
+    """Whoever hears a fault or a mode finds its name in the message."""
+    assert constants(SupplyState, "FAULT_") == {code.name: code.value for code in FaultCode}
+    assert {mode.name: getattr(SupplyState, mode.name) for mode in Mode} == {m.name: m.value for m in Mode}
+
+
+def test_words_of_an_experiment_are_those_that_it_takes():
+    """Every constant of the goal is a word of waveform, polarity or muscles, and the other way round."""
+    words = list(constants(RunExperiment.Goal).values())
+    assert sorted(words) == sorted([*SHAPES, *POLARITIES, *MUSCLES])
+
+
+def test_state_names_muscles_and_frame():
+    """One voltage and one current for each muscle, in a named frame."""
+    status = Status(0.0, Mode.ARMED, None, True, (1.0, -2.0), (3.0, 4.0), (0.0, 0.0))
+    message = to_supply_state(status, frame_id="rig_1/supply")
+    assert message.header.frame_id == "rig_1/supply"
+    assert message.muscle == ["upper", "lower"]
+    assert list(message.commanded_voltage) == [1.0, -2.0]
+    assert np.size(message.current) == len(message.muscle)
