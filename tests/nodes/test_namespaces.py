@@ -47,8 +47,9 @@ def test_two_rigs_do_not_hear_each_other(tmp_path, environment, listener):
         listener.until(lambda: states["rig1"][-1].mode == SupplyState.FAULT, 20.0, drive)
         assert states["rig2"][-1].mode == SupplyState.ACTIVE
         assert not listener.states  # nobody speaks in the default namespace
-        supplies = {key for key in listener.diagnostics if key.endswith(": supply")}
-        assert supplies == {f"{name}/hasel_driver: supply" for name in states}
+        supplies = {f"{name}/hasel_driver: supply" for name in states}
+        listener.until(lambda: supplies <= listener.diagnostics.keys(), 60.0, check)
+        assert supplies == {key for key in listener.diagnostics if key.endswith(": supply")}
         assert first.stop("virtual_rig") == second.stop("virtual_rig") == 0
 
 
