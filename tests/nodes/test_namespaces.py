@@ -45,7 +45,7 @@ def test_two_rigs_do_not_hear_each_other(tmp_path, environment, listener):
             assert angles[name][-1].header.frame_id == f"{name}/camera"
         assert listener.call(Trigger, "/rig1/emergency_stop", 20.0, check).success
         listener.until(lambda: states["rig1"][-1].mode == SupplyState.FAULT, 20.0, drive)
-        assert states["rig2"][-1].mode == SupplyState.ACTIVE
+        listener.until(lambda: states["rig2"][-1].mode == SupplyState.ACTIVE, 20.0, drive)
         assert not listener.states  # nobody speaks in the default namespace
         supplies = {f"{name}/hasel_driver: supply" for name in states}
         listener.until(lambda: supplies <= listener.diagnostics.keys(), 60.0, check)
