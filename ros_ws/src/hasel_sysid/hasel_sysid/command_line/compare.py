@@ -15,7 +15,7 @@ from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import code_after, show
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.dataset import Experiment, for_model
-from hasel_sysid.report.from_results import comparison_content
+from hasel_sysid.report.from_results import comparison_content, never_fitted
 from hasel_sysid.report.write import write_report
 
 _FEW_FRAMES = 3000
@@ -38,11 +38,14 @@ def _compare(options: argparse.Namespace) -> int:
     seen = len(experiments)
     models = [chosen_model(name, [*experiments, *unseen]) for name in names]
     comparisons: list[Comparison] = []
+    firsts: list[str] = []
     try:
         jobs = options.jobs or _worth_it(models, [*experiments, *unseen])
         with executor(jobs, options.scheduler) as pool, progress_bar("compare") as progress:
             for done, (label, model) in enumerate(models):
-                _say_if_never_fitted(label, model)
+                firsts.append(never_fitted(label, model))
+                if firsts[-1]:
+                    print(f"note: {firsts[-1]}", file=sys.stderr)
 
                 def step(text: str, share: float, done: int = done) -> None:
                     progress(text, (done + share) / len(models))
@@ -51,10 +54,10 @@ def _compare(options: argparse.Namespace) -> int:
                 comparisons.append(compare(model, every[:seen], pool, every[seen:], label, step))
     except KeyboardInterrupt:
         if comparisons:
-            _finish(options, comparisons)
+            _finish(options, comparisons, firsts)
             print(f"{len(comparisons)} of {len(models)} models were compared", file=sys.stderr)
         raise
-    _finish(options, comparisons)
+    _finish(options, comparisons, firsts)
     return code_after(comparisons[0].set_up)
 
 
@@ -64,23 +67,13 @@ def _worth_it(models: Sequence[tuple[str, Model]], experiments: Sequence[Experim
     return 1 if frames < _FEW_FRAMES else None
 
 
-def _say_if_never_fitted(label: str, model: Model) -> None:
-    fitted = len(model.levels) or any(p.standard_error is not None for p in model.parameters.values())
-    if not fitted and model.free:
-        print(
-            f"note: model '{label}' was never fitted to any recording, so amplitudes and other free values are first "
-            "guesses: run fit to learn how well it can do",
-            file=sys.stderr,
-        )
-
-
-def _finish(options: argparse.Namespace, comparisons: Sequence[Comparison]) -> None:
+def _finish(options: argparse.Namespace, comparisons: Sequence[Comparison], firsts: Sequence[str]) -> None:
     show(comparisons)
     if options.json:
         first = comparisons[0].to_json()
         several = {"models": [c.to_json() for c in comparisons]} if len(comparisons) > 1 else {}
         write_json({**first, **several}, options.json)
-    report = write_report(comparison_content(comparisons), options.output)
+    report = write_report(comparison_content(comparisons, firsts), options.output)
     print(f"Wrote {report}.")
 
 

@@ -1,5 +1,6 @@
 """What a person needs of an answer on the terminal: verdict, values, error before and after, doubt, next run."""
 
+import math
 from collections.abc import Sequence
 
 from hasel_sim.model import Parameter
@@ -10,6 +11,9 @@ from hasel_sysid.improve import Improvement
 from hasel_sysid.report.from_improvement import said_of
 from hasel_sysid.report.numbers import error_text, interval_text
 from hasel_sysid.suggest import Suggestion
+
+_ON_BOUND = 1e-6
+"""Share of a parameter's range; a fit comes so near a bound that it wants to go beyond."""
 
 
 def improvement_lines(
@@ -58,6 +62,11 @@ def _values(found: Improvement, last: Comparison) -> list[str]:
 
 
 def _interval(parameter: Parameter) -> str:
+    span = parameter.upper - parameter.lower
+    for which, bound in (("lower", parameter.lower), ("upper", parameter.upper)):
+        if abs(parameter.value - bound) < _ON_BOUND * span < math.inf:
+            unit = "" if parameter.unit == "1" else f" {parameter.unit}"
+            return f"  {parameter.name} is on its {which} bound, {bound:g}{unit}"
     return f"  {parameter.name} = {interval_text(parameter.value, parameter.standard_error, parameter.unit)}"
 
 

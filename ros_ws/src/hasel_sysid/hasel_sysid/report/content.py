@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from hasel_sysid.compare.comparison import Comparison
+from hasel_sysid.report.provenance import Provenance
+from hasel_sysid.report.shape import Shapes
 
 
 @dataclass(frozen=True)
@@ -20,7 +22,7 @@ class KeyNumber:
 @dataclass(frozen=True)
 class RunOverlay:
     """One run: time [s] [n], measured sin theta [n], simulated sin theta [n] by what the model is called;
-    drive: its level with the unit, empty for a passive body.
+    drive: its level with the unit, empty for a passive body; driven: begin [s], end [s] and channel of its strokes.
     """
 
     name: str
@@ -30,6 +32,7 @@ class RunOverlay:
     unseen: bool = False
     drive: str = ""
     frequency: float = 0.0
+    driven: Sequence[tuple[float, float, int]] = ()
 
 
 @dataclass(frozen=True)
@@ -44,13 +47,18 @@ class Stage:
 
 @dataclass(frozen=True)
 class ParameterRow:
-    """A parameter in its SI unit; remark: an alarm such as "at its upper bound", empty when all is well."""
+    """A parameter in its SI unit; remark: an alarm such as "at its upper bound", empty when all is well.
+
+    meaning: in words; plausible: range that data sheets and literature give, with its source.
+    """
 
     name: str
     value: float
     standard_error: float | None
     unit: str
     remark: str = ""
+    meaning: str = ""
+    plausible: str = ""
 
 
 @dataclass(frozen=True)
@@ -81,8 +89,10 @@ class ReportContent:
     """All that one report shows.
 
     title, subtitle: of the page; verdict: the one sentence; good: whether that sentence is good news (None: neither);
-    runs: measured against simulated; comparisons: error table and where the models fail, the first one in detail;
-    stages with noise_floor [sin theta]: the error waterfall; ranking and groups: what is missing; remains: sentences.
+    first_of_all: what must be known before any number is read; runs: measured against simulated; comparisons: error
+    table and where the models fail; detailed: number of the one that is shown in detail (-1: the last);
+    shapes: the body as it swings; stages with noise_floor [sin theta]: the error waterfall; ranking and groups: what is
+    missing; remains: sentences; recordings: their files; made: command, versions and date.
     """
 
     title: str
@@ -92,6 +102,8 @@ class ReportContent:
     key_numbers: Sequence[KeyNumber] = ()
     runs: Sequence[RunOverlay] = ()
     comparisons: Sequence[Comparison] = ()
+    detailed: int = 0
+    shapes: Shapes | None = None
     stages: Sequence[Stage] = ()
     noise_floor: float | None = None
     ranking: Sequence[RankedRow] = ()
@@ -100,3 +112,11 @@ class ReportContent:
     remains: Sequence[str] = ()
     next_runs: Sequence[NextRun] = ()
     messages: Sequence[str] = field(default_factory=tuple)
+    first_of_all: Sequence[str] = ()
+    recordings: Sequence[str] = ()
+    made: Provenance | None = None
+
+    @property
+    def detail(self) -> Comparison:
+        """The comparison that is shown in detail."""
+        return self.comparisons[self.detailed]

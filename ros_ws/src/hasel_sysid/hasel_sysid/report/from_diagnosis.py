@@ -2,13 +2,16 @@
 
 from dataclasses import replace
 
-from hasel_sim.effects.registry import catalogue
+from hasel_sim.effects.base import Effect
+from hasel_sim.effects.registry import catalogue, find_effects
+from hasel_sim.errors import ModelError
 
 from hasel_sysid.compare.comparison import Comparison
-from hasel_sysid.diagnosis import Diagnosis
+from hasel_sysid.diagnosis import Diagnosis, Verdict
 from hasel_sysid.diagnosis.result import Finding
 from hasel_sysid.report.content import ParameterRow, RankedRow, ReportContent
 from hasel_sysid.report.from_results import comparison_content
+from hasel_sysid.report.parameter_words import of_effect
 
 
 def ranked_rows(diagnosis: Diagnosis) -> tuple[RankedRow, ...]:
@@ -17,21 +20,40 @@ def ranked_rows(diagnosis: Diagnosis) -> tuple[RankedRow, ...]:
 
 
 def _row(finding: Finding) -> RankedRow:
+    """What is absent has no estimate, and what it would imitate stands in its sentence: both are of another model."""
+    effect = _effect(finding)
+    told = finding.verdict is not Verdict.ABSENT and finding.is_plausible
+    declared = {} if effect is None else {p.name: p for p in effect.parameters}
     expected = [
-        ParameterRow(name.rpartition(".")[2], value, error, finding.units[name])
+        ParameterRow(
+            (own := name.rpartition(".")[2]),
+            value,
+            error,
+            finding.units[name],
+            plausible=of_effect(declared[own]) if own in declared else "",
+        )
         for name, (value, error) in finding.expected.items()
     ]
-    known = catalogue().get(finding.effect)
     return RankedRow(
         finding.effect,
         finding.verdict.value,
         finding.probability,
-        finding.error_removed,
-        expected,
+        float("nan") if finding.verdict is Verdict.ABSENT else finding.error_removed,
+        expected if told else (),
         finding.swallowed,
-        "" if known is None else known.physics,
+        "" if effect is None else effect.physics,
         str(finding),
     )
+
+
+def _effect(finding: Finding) -> Effect | None:
+    """The effect itself, of the catalogue or of a file of the user's."""
+    if finding.source is not None:
+        try:
+            return find_effects((finding.source,))[0]
+        except ModelError:
+            return None
+    return catalogue().get(finding.effect)
 
 
 def diagnosis_content(diagnosis: Diagnosis, comparison: Comparison) -> ReportContent:
@@ -44,7 +66,7 @@ def diagnosis_content(diagnosis: Diagnosis, comparison: Comparison) -> ReportCon
         verdict=str(first) if first else content.verdict,
         good=None,
         ranking=ranked_rows(diagnosis),
-        groups=diagnosis.groups,
+        groups=diagnosis.groups_in_question,
         remains=what_remains(diagnosis),
         noise_floor=diagnosis.measured.mean_absolute,
     )

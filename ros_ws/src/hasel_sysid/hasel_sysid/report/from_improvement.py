@@ -9,7 +9,7 @@ from hasel_sysid.improve.result import Improvement, Status
 from hasel_sysid.report.content import KeyNumber, NextRun, ReportContent, Stage
 from hasel_sysid.report.from_diagnosis import ranked_rows, what_remains
 from hasel_sysid.report.from_results import comparison_content, parameter_rows
-from hasel_sysid.report.numbers import error_text, percent
+from hasel_sysid.report.numbers import error_text, percent, value_with_error
 from hasel_sysid.suggest import Suggestion
 
 _SHOWN_SUGGESTIONS = 3
@@ -31,7 +31,7 @@ def improvement_content(
 
     comparisons: of every stage, the fitted baseline first; start: of the baseline before it was fitted.
     """
-    content = comparison_content(comparisons)
+    content = comparison_content(comparisons, detailed=-1)
     last = improvement.stages[-1]
     return replace(
         content,
@@ -42,7 +42,7 @@ def improvement_content(
         stages=_stages(comparisons, start),
         noise_floor=improvement.noise_floor,
         ranking=ranked_rows(improvement.diagnosis),
-        groups=improvement.diagnosis.groups,
+        groups=improvement.diagnosis.groups_in_question,
         parameters=parameter_rows(last.fit.model, dict.fromkeys(last.fit.at_bound, "on its bound")),
         remains=_remains(improvement),
         messages=tuple(last.fit.sentences),
@@ -120,8 +120,11 @@ def _stages(comparisons: Sequence[Comparison], start: Comparison | None) -> tupl
 
 
 def _values(comparison: Comparison, effect: str) -> str:
-    found = [p for name, p in comparison.model.parameters.items() if name.startswith(f"{effect}.")]
-    return ", ".join(str(p).removeprefix(f"{effect}.") for p in found)
+    found = {n: p for n, p in comparison.model.parameters.items() if n.startswith(f"{effect}.")}
+    return ", ".join(
+        f"{name.removeprefix(f'{effect}.')} = {value_with_error(p.value, p.standard_error, p.unit)}"
+        for name, p in found.items()
+    )
 
 
 def _remains(improvement: Improvement) -> tuple[str, ...]:

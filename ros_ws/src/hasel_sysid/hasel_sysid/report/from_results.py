@@ -8,7 +8,10 @@ from hasel_sim.model import Model
 
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.report.content import KeyNumber, ParameterRow, ReportContent, RunOverlay
+from hasel_sysid.report.figures.overlay import driven_stretches
 from hasel_sysid.report.numbers import count_text, error_text
+from hasel_sysid.report.parameter_words import meaning, plausible
+from hasel_sysid.report.shape import simulated_shapes
 
 if TYPE_CHECKING:
     from hasel_sysid.fit.result import FitResult
@@ -36,6 +39,11 @@ def overlays(comparisons: Sequence[Comparison]) -> tuple[RunOverlay, ...]:
                 run.unseen,
                 series.level_text if series.level else "",
                 series.frequency,
+                ()
+                if series.drive_time is None
+                else driven_stretches(
+                    series.drive_time, series.drive_values, series.time[0], series.time[-1]
+                ),
             )
         )
     return tuple(shown)
@@ -44,13 +52,37 @@ def overlays(comparisons: Sequence[Comparison]) -> tuple[RunOverlay, ...]:
 def parameter_rows(model: Model, remarks: dict[str, str] | None = None) -> tuple[ParameterRow, ...]:
     """Every parameter of a model; remarks by name."""
     return tuple(
-        ParameterRow(p.name, p.value, p.standard_error, p.unit, (remarks or {}).get(p.name, ""))
+        ParameterRow(
+            p.name,
+            p.value,
+            p.standard_error,
+            p.unit,
+            (remarks or {}).get(p.name, ""),
+            meaning(p.name, model),
+            plausible(p.name, model),
+        )
         for p in model.parameters.values()
     )
 
 
-def comparison_content(comparisons: Sequence[Comparison]) -> ReportContent:
-    """Report of one or several models against the same recordings; the first one in detail."""
+def never_fitted(label: str, model: Model) -> str:
+    """A sentence that must come first, of a model whose numbers are first guesses; empty for any other."""
+    fitted = len(model.levels) or any(p.standard_error is not None for p in model.parameters.values())
+    if fitted or not model.free:
+        return ""
+    return (
+        f"model '{label}' was never fitted to any recording, so amplitudes and other free values are first guesses: "
+        "run fit to learn how well it can do"
+    )
+
+
+def comparison_content(
+    comparisons: Sequence[Comparison], first_of_all: Sequence[str] = (), detailed: int = 0
+) -> ReportContent:
+    """Report of one or several models against the same recordings; one of them in detail.
+
+    first_of_all: what must be known before any number is read.
+    """
     first = comparisons[0]
     labels = ", ".join(c.label for c in comparisons)
     frames = sum(len(run.series.time) for run in first.runs)
@@ -62,6 +94,10 @@ def comparison_content(comparisons: Sequence[Comparison]) -> ReportContent:
         key_numbers=key_numbers(first),
         runs=overlays(comparisons),
         comparisons=tuple(comparisons),
+        detailed=detailed,
+        shapes=simulated_shapes(comparisons[detailed].model, first.runs),
+        first_of_all=tuple(f"{sentence[:1].upper()}{sentence[1:]}." for sentence in first_of_all if sentence),
+        recordings=tuple(f"{run.name}{' (unseen)' if run.unseen else ''}" for run in first.runs),
         parameters=parameter_rows(first.model),
     )
 

@@ -1,42 +1,47 @@
 """Write the report: one HTML file that needs no network."""
 
+import json
+from collections.abc import Sequence
+from dataclasses import replace
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import plotly.graph_objects as go
 from jinja2 import Environment, FunctionLoader, StrictUndefined
-from plotly.offline import get_plotlyjs
+from plotly.offline import get_plotlyjs, get_plotlyjs_version
 
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.report.content import ReportContent
 from hasel_sysid.report.figures.component_map import component_map_figure
-from hasel_sysid.report.figures.conditions import conditions_figure
-from hasel_sysid.report.figures.overlay import overlay_figure
+from hasel_sysid.report.figures.conditions import conditions_figures
+from hasel_sysid.report.figures.overlay import model_colours, overlay_figure
 from hasel_sysid.report.figures.phase_map import phase_map_figure
 from hasel_sysid.report.figures.ranking import ranking_figure
-from hasel_sysid.report.figures.residual_tests import residual_tests_figure
-from hasel_sysid.report.figures.waterfall import waterfall_figure
+from hasel_sysid.report.figures.residual_tests import residual_tests_figures
+from hasel_sysid.report.figures.shapes import shapes_figure
+from hasel_sysid.report.figures.style import model_colour
+from hasel_sysid.report.figures.waterfall import waterfall_figures
 from hasel_sysid.report.numbers import percent, value_with_error
+from hasel_sysid.report.packed import packed
+from hasel_sysid.report.provenance import provenance
 
 REPORT_FILE = "report.html"
-_CONFIG = {
-    "displaylogo": False,
-    "displayModeBar": "hover",
-    "responsive": True,
-    "modeBarButtonsToRemove": ["select2d", "lasso2d"],
-}
 
 
 def write_report(content: ReportContent, folder: Path) -> Path:
     """Write `report.html` into a folder, made if need be, and return its path."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / REPORT_FILE
-    path.write_text(render(content), encoding="utf-8")
+    path.write_text(
+        render(content if content.made else replace(content, made=provenance())), encoding="utf-8"
+    )
     return path
 
 
 def render(content: ReportContent) -> str:
-    """The whole page, plotly's code included once."""
+    """The whole page, plotly's code and the figures packed into it."""
     environment = Environment(
         loader=FunctionLoader(_template),
         autoescape=True,
@@ -45,39 +50,73 @@ def render(content: ReportContent) -> str:
         lstrip_blocks=True,
     )
     environment.filters |= {"percent": percent}
-    environment.globals |= {"value_with_error": value_with_error}
+    environment.globals |= {
+        "value_with_error": value_with_error,
+        "model_colours": model_colours,
+        "model_colour": model_colour,
+    }
+    figures = {name: figures for name, figures in _figures(content).items() if figures}
+    single = {f"{name}{n}": figure for name, each in figures.items() for n, figure in enumerate(each)}
     return environment.get_template("report.html").render(
         content=content,
-        figures={name: _html(figure) for name, figure in _figures(content).items() if figure is not None},
-        plotly_code=get_plotlyjs(),
+        figures={name: _places(name, each) for name, each in figures.items()},
+        plotly_code=packed(get_plotlyjs()) if figures else "",
+        plotly_version=get_plotlyjs_version(),
+        packed_figures=packed(_json(single)),
+        unpack=_template("unpack.js"),
         style=_template("style.css"),
     )
 
 
-def _figures(content: ReportContent) -> dict[str, go.Figure | None]:
-    figures: dict[str, go.Figure | None] = {}
+def _figures(content: ReportContent) -> dict[str, list[go.Figure]]:
+    """Figures of every place of the page; those of one place stand side by side where there is room."""
+    figures: dict[str, list[go.Figure]] = {}
     if content.stages:
-        figures["waterfall"] = waterfall_figure(content.stages, content.noise_floor)
-    if content.runs:
-        figures["overlay"] = overlay_figure(content.runs)
+        figures["waterfall"] = waterfall_figures(content.stages, content.noise_floor)
+    for number, run in enumerate(content.runs):
+        figures[f"run_{number}_"] = [overlay_figure(run)]
+    if content.shapes is not None:
+        figures["shapes"] = [shapes_figure(content.shapes)]
     if content.ranking:
-        figures["ranking"] = ranking_figure(content.ranking)
+        figures["ranking"] = [ranking_figure(content.ranking)]
     if content.comparisons:
-        first = content.comparisons[0]
-        figures["conditions"] = conditions_figure(content.comparisons) if _driven(first) else None
-        figures["phase"] = phase_map_figure(first.runs)
-        figures["components"] = component_map_figure(first.runs)
-        figures["residual_tests"] = residual_tests_figure(first.runs)
+        detail = content.detail
+        figures["conditions"] = conditions_figures(content.comparisons) if _driven(detail) else []
+        figures["phase"] = list(filter(None, [phase_map_figure(detail.runs)]))
+        figures["components"] = list(filter(None, [component_map_figure(detail.runs)]))
+        figures["residual_tests"] = residual_tests_figures(detail.runs)
     return figures
+
+
+def _places(name: str, figures: Sequence[go.Figure]) -> str:
+    each = [
+        f'<div class="figure" data-figure="{name}{n}" style="height:{figure.layout.height}px"></div>'
+        for n, figure in enumerate(figures)
+    ]
+    return each[0] if len(each) == 1 else f'<div class="pair">{"".join(each)}</div>'
+
+
+def _json(figures: dict[str, go.Figure]) -> str:
+    """All figures as plotly.js takes them, numbers to six digits."""
+    content = {name: {"data": figure.data, "layout": figure.layout} for name, figure in figures.items()}
+    return json.dumps(_plain(content), separators=(",", ":"))
+
+
+def _plain(value: Any) -> Any:
+    if hasattr(value, "to_plotly_json"):
+        value = value.to_plotly_json()
+    if isinstance(value, dict):
+        return {key: _plain(each) for key, each in value.items() if key != "template"}
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return [_plain(each) for each in value]
+    if isinstance(value, (float, np.floating)):
+        return float(f"{value:.6g}") if np.isfinite(value) else None
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def _driven(comparison: Comparison) -> bool:
     """Whether there are several runs with a drive, so that conditions can be compared."""
     return sum(run.series.level > 0 for run in comparison.runs) > 1
-
-
-def _html(figure: go.Figure) -> str:
-    return figure.to_html(full_html=False, include_plotlyjs=False, include_mathjax=False, config=_CONFIG)
 
 
 def _template(name: str) -> str:

@@ -1,6 +1,9 @@
 """The report is one page that needs nothing else."""
 
+import base64
+import json
 import re
+import zlib
 from html.parser import HTMLParser
 
 import numpy as np
@@ -10,9 +13,20 @@ from hasel_sim.run import Simulation
 from hasel_sysid.compare.compare import comparison_of
 from hasel_sysid.dataset import experiment
 from hasel_sysid.report.content import NextRun, ParameterRow, RankedRow, ReportContent, RunOverlay, Stage
-from hasel_sysid.report.figures.waterfall import waterfall_figure
+from hasel_sysid.report.figures.overlay import driven_stretches, overlay_figure
+from hasel_sysid.report.figures.style import CHANNELS
+from hasel_sysid.report.figures.waterfall import waterfall_figures
 from hasel_sysid.report.from_results import comparison_content
 from hasel_sysid.report.write import render, write_report
+from plotly.offline import get_plotlyjs
+
+
+def unpacked(page: str, name: str) -> str:
+    """What a packed script of the page holds."""
+    text = re.search(rf'id="{name}">([^<]*)<', page).group(1)
+    raw = base64.b85decode(text.translate(str.maketrans(",./", "<>&")))
+    return zlib.decompress(raw[4 : 4 + int.from_bytes(raw[:4], "big")]).decode()
+
 
 STAGES = (Stage("start", 0.08, 0.09), Stage("fit", 0.03, 0.05), Stage("+ quadratic_drag", 0.003, 0.004))
 
@@ -66,12 +80,17 @@ def test_page_loads_nothing(made_recording, angle, tmp_path):
     text = path.read_text(encoding="utf-8")
     page = _Page(text)
     assert page.loads == []
-    assert len(re.findall(r"plotly\.js v\d", text)) == 1
+    assert unpacked(text, "plotly") == get_plotlyjs()
+    assert len(text) < 2_000_000
     assert page.headings[0] == "model against 2 recordings"
     for heading in ("Measured against simulated", "Where it fails", "Error of every run", "Parameters"):
         assert heading in page.headings
     assert "0.260 ± 0.010 1/s" in page.cells
-    assert text.count('class="plotly-graph-div"') == 5
+    figures = json.loads(unpacked(text, "figures"))
+    assert set(figures) == set(re.findall(r'data-figure="(\w+)"', text))
+    assert {"run_0_0", "run_1_0", "shapes0", "phase0", "components0", "residual_tests0"} <= set(figures)
+    for word in ("How this was made", "Recordings", "Versions", "hasel_sysid"):
+        assert word in text
 
 
 def test_names_are_escaped(made_recording, angle):
@@ -86,7 +105,7 @@ def test_two_models_stand_side_by_side(made_recording, angle):
     models = [_comparison(made_recording, angle, label) for label in ("one", "two")]
     text = render(comparison_content(models))
     assert {"one", "two"} <= set(re.findall(r'<th class="number">(\w+)</th>', text))
-    assert '"name":"two"' in text
+    assert '"name":"two"' in unpacked(text, "figures")
 
 
 def test_sections_of_an_improvement():
@@ -123,29 +142,51 @@ def test_empty_content_is_a_page():
     """A title alone makes a valid page without figures."""
     text = render(ReportContent(title="Nothing yet"))
     assert _Page(text).headings == ["Nothing yet"]
-    assert 'class="plotly-graph-div"' not in text
+    assert 'class="figure"' not in text
 
 
 def test_waterfall_adds_up():
     """The bars start at the first error, change by the differences and end at what is left, on both kinds of runs."""
-    figure = waterfall_figure(STAGES, 0.0024)
-    assert [trace.name for trace in figure.data] == ["fitted runs", "unseen runs"]
-    for trace, errors in zip(figure.data, ([0.08, 0.03, 0.003], [0.09, 0.05, 0.004]), strict=True):
+    figures = waterfall_figures(STAGES, 0.0024)
+    assert [figure.data[0].name for figure in figures] == ["fitted runs", "unseen runs"]
+    for figure, errors in zip(figures, ([0.08, 0.03, 0.003], [0.09, 0.05, 0.004]), strict=True):
+        (trace,) = figure.data
         assert sum(trace.y[:-1]) == pytest.approx(errors[-1])
         assert trace.y[0] == errors[0]
         assert trace.measure == ("absolute", "relative", "relative", "total")
-    assert figure.layout.shapes[0].y0 == 0.0024
+        assert figure.layout.shapes[0].y0 == 0.0024
 
 
-def test_overlay_keeps_every_run():
-    """Each run has its measured points and each model's line; unseen ones say so."""
-    from hasel_sysid.report.figures.overlay import overlay_figure
+def test_what_must_be_known_comes_first(made_recording, angle):
+    """Before any number."""
+    text = render(comparison_content([_comparison(made_recording, angle)], ["it was never fitted", ""]))
+    assert text.index("It was never fitted.") < text.index('class="numbers"')
 
+
+def test_the_last_stage_is_shown_in_detail(made_recording, angle):
+    """What is left is of the model with all that was added, by name."""
+    stages = [_comparison(made_recording, angle, label) for label in ("fitted", "fitted + drag")]
+    text = render(comparison_content(stages, detailed=-1))
+    for heading in ("What is left, by part of the cycle (fitted + drag)", "command (fitted + drag)"):
+        assert heading in text
+
+
+def test_a_run_shows_residuals_before_and_after_and_the_angle_beside_its_sine():
+    """Dots measured, lines of every model above and what they leave below, the drive tinted, θ on the right."""
     time = np.arange(0, 1, 1 / 120)
-    runs = [
-        RunOverlay(f"r{n}", time, np.sin(time), {"a": np.cos(time), "b": 0 * time}, n == 3, "4500 V", 2.0)
-        for n in range(4)
-    ]
-    figure = overlay_figure(runs)
-    assert len(figure.data) == 12
-    assert figure.layout.annotations[3].text == "4500 V, 2 Hz · unseen"
+    driven = driven_stretches(np.array([0.0, 0.5]), np.array([[4500.0, 0.0], [0.0, 4500.0]]), 0.0, time[-1])
+    assert driven == [(0.0, 0.5, 0), (0.5, time[-1], 1)]
+    run = RunOverlay(
+        "r", time, 0.3 * np.sin(time), {"a": 0.2 * np.sin(time), "b": 0.3 * np.sin(time)}, driven=driven
+    )
+    figure = overlay_figure(run)
+    above = [trace for trace in figure.data if trace.yaxis in (None, "y")]
+    below = [trace for trace in figure.data if trace.yaxis == "y3"]
+    assert [trace.name for trace in above] == ["measured", "a", "b"]
+    assert [trace.name for trace in below] == ["a", "b"]
+    assert np.array(below[0].y) == pytest.approx(0.1 * np.sin(time), abs=2e-5)
+    assert np.array(below[1].y) == pytest.approx(0.0, abs=2e-5)
+    ticks = dict(zip(figure.layout.yaxis2.ticktext, figure.layout.yaxis2.tickvals, strict=True))
+    assert ticks["10°"] == pytest.approx(np.sin(np.deg2rad(10)))
+    assert {shape.fillcolor for shape in figure.layout.shapes} == set(CHANNELS[:2])
+    assert above[2].line.width < above[0].marker.size / 2

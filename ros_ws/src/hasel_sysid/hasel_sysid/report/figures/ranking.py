@@ -16,7 +16,7 @@ def ranking_figure(ranking: Sequence[RankedRow], most: int = 8) -> go.Figure:
     for name, colour, values in (
         ("probability", FITTED, [row.probability for row in shown]),
         (
-            "share of the error above the noise that it removes",
+            "error removed",
             MODELS[3],
             [row.error_removed for row in shown],
         ),
@@ -24,7 +24,7 @@ def ranking_figure(ranking: Sequence[RankedRow], most: int = 8) -> go.Figure:
         figure.add_trace(
             go.Bar(
                 y=names,
-                x=[100 * value for value in values],
+                x=[100 * value if value == value else None for value in values],
                 name=name,
                 orientation="h",
                 marker_color=colour,

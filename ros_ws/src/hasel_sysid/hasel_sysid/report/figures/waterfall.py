@@ -4,42 +4,36 @@ from collections.abc import Sequence
 
 import numpy as np
 import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
 from hasel_sysid.report.content import Stage
 from hasel_sysid.report.figures.style import DROP, FITTED, NOISE, RISE, UNSEEN, styled
 from hasel_sysid.report.numbers import change_text, error_text
 
 
-def waterfall_figure(stages: Sequence[Stage], noise_floor: float | None) -> go.Figure:
-    """One waterfall for the fitted runs and, where there are any, one for the unseen runs beside it."""
+def waterfall_figures(stages: Sequence[Stage], noise_floor: float | None) -> list[go.Figure]:
+    """One waterfall for the fitted runs and, where there are any, one for the unseen runs, at one scale."""
     groups = [("fitted runs", [s.error for s in stages], FITTED)]
     if any(stage.error_unseen is not None for stage in stages):
         groups.append(("unseen runs", [s.error_unseen for s in stages], UNSEEN))
-    floor = "" if noise_floor is None else f"; dashed: noise floor {error_text(noise_floor)}"
-    figure = make_subplots(
-        rows=1,
-        cols=len(groups),
-        subplot_titles=[name + floor for name, _, _ in groups],
-        shared_yaxes=True,
-        horizontal_spacing=0.05,
-    )
-    for column, (name, errors, colour) in enumerate(groups, start=1):
+    highest = max(error for _, errors, _ in groups for error in errors if error is not None)
+    floor = "" if noise_floor is None else f"<br><sup>dashed: noise floor {error_text(noise_floor)}</sup>"
+    figures = []
+    for name, errors, colour in groups:
         known = [
             (stage.label, error) for stage, error in zip(stages, errors, strict=True) if error is not None
         ]
-        _add_waterfall(figure, name, known, colour, column)
+        figure = go.Figure()
+        _add_waterfall(figure, name, known, colour)
         if noise_floor is not None:
-            line = {"color": NOISE, "dash": "dash", "width": 1.5}
-            figure.add_hline(y=noise_floor, line=line, row=1, col=column)
-    figure.update_yaxes(title_text="mean |Δ sin θ|", rangemode="tozero", col=1)
-    styled(figure, 400)
-    return figure.update_layout(showlegend=False)
+            figure.add_hline(y=noise_floor, line={"color": NOISE, "dash": "dash", "width": 1.5})
+        figure.update_yaxes(title_text="mean |Δ sin θ|", range=[0.0, 1.12 * highest])
+        styled(figure, 360)
+        title = {"text": name + floor, "font": {"size": 14}, "x": 0.5, "y": 0.96}
+        figures.append(figure.update_layout(showlegend=False, title=title, margin={"t": 58}))
+    return figures
 
 
-def _add_waterfall(
-    figure: go.Figure, name: str, known: Sequence[tuple[str, float]], colour: str, column: int
-) -> None:
+def _add_waterfall(figure: go.Figure, name: str, known: Sequence[tuple[str, float]], colour: str) -> None:
     """Bars for the first error, every change and what is left, each with its number above it."""
     errors = [error for _, error in known]
     changes = list(np.diff(errors))
@@ -53,8 +47,8 @@ def _add_waterfall(
         totals={"marker": {"color": colour}},
         connector={"line": {"color": "#c3c9cf", "width": 1}},
     )
-    figure.add_trace(bars, row=1, col=column)
+    figure.add_trace(bars)
     tops = [errors[0], *np.maximum(errors[:-1], errors[1:]), errors[-1]]
     texts = [error_text(errors[0]), *map(change_text, changes), f"<b>{error_text(errors[-1])}</b>"]
     for place, (top, text) in enumerate(zip(tops, texts, strict=True)):
-        figure.add_annotation(x=place, y=top, text=text, showarrow=False, yshift=10, row=1, col=column)
+        figure.add_annotation(x=place, y=top, text=text, showarrow=False, yshift=10)
