@@ -27,6 +27,7 @@ def waterfall_figures(stages: Sequence[Stage], noise_floor: float | None) -> lis
         if noise_floor is not None:
             figure.add_hline(y=noise_floor, line={"color": NOISE, "dash": "dash", "width": 1.5})
         figure.update_yaxes(title_text="mean |Δ sin θ|", range=[0.0, 1.12 * highest])
+        figure.update_xaxes(automargin=True)
         styled(figure, 360)
         title = {"text": name + floor, "font": {"size": 14}, "x": 0.5, "y": 0.96}
         figures.append(figure.update_layout(showlegend=False, title=title, margin={"t": 58}))

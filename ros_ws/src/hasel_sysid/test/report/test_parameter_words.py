@@ -1,0 +1,61 @@
+"""Words and plausible ranges beside the numbers of the report."""
+
+import numpy as np
+from hasel_sim.model import load_model
+from hasel_sysid.diagnosis.result import Finding, Verdict
+from hasel_sysid.report.from_diagnosis import ranked_rows
+from hasel_sysid.report.from_results import parameter_rows
+
+
+def test_every_parameter_has_a_meaning_and_effects_have_their_range_with_its_source():
+    """An amplitude in words; the charge time beside the range that its source gives."""
+    model = load_model("swimmer").with_levels(np.array([4500.0])).with_effects("charging_lag")
+    rows = {row.name: row for row in parameter_rows(model)}
+    assert rows["amplitude_4500"].meaning == "share by which a muscle shortens at 4500 of its drive"
+    assert all(row.meaning for row in rows.values())
+    assert rows["charging_lag.charge_time"].plausible.startswith("0 to 0.5 (")
+    assert rows["slope"].plausible == "0.02 to 50"
+
+
+def test_an_effect_of_the_users_own_brings_its_physics(tmp_path):
+    """From its file; an absent effect has no estimate, since that is of a model without the one that is missing."""
+    path = tmp_path / "mine.py"
+    path.write_text(
+        "from hasel_sim.effects.base import DriveEffect, EffectParameter\n\n\n"
+        "class Mine(DriveEffect):\n"
+        '    physics, equation = "Less voltage arrives.", "V <- (1 - k) V"\n'
+        '    parameters = (EffectParameter("k", "k", "1", 0.0, 0.0, 0.5, 0.1),)\n\n'
+        "    def respond(self, time, signal, p):\n"
+        "        return (1 - p.k) * signal\n"
+    )
+
+    class Found:
+        findings = (
+            Finding(
+                "Mine",
+                Verdict.MISSING,
+                0.9,
+                0.9,
+                {"Mine.k": (0.2, 0.01)},
+                {"Mine.k": "1"},
+                0.1,
+                0.01,
+                source=f"{path}:Mine",
+            ),
+            Finding(
+                "tether",
+                Verdict.ABSENT,
+                0.0,
+                0.9,
+                {"tether.stiffness": (9.0, 1.0)},
+                {"tether.stiffness": "N/m^2"},
+                0.1,
+                0.01,
+            ),
+        )
+
+    own, absent = ranked_rows(Found)
+    assert own.physics == "Less voltage arrives."
+    assert own.expected[0].plausible == "0 to 0.5"
+    assert absent.expected == ()
+    assert absent.error_removed != absent.error_removed
