@@ -33,4 +33,5 @@ if [ "${ROS_DISTRO:-}" = jazzy ]; then
 else
     .venv/bin/python setup/fix_wheel_paths.py
 fi
+touch .venv/COLCON_IGNORE # so that a `colcon build` around this checkout does not look into it
 echo "$requirements" >"$installed"

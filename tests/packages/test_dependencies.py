@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from ament_index_python.packages import get_packages_with_prefixes
+from catkin_pkg.package import parse_package
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = sorted(path.parent for path in (ROOT / "ros_ws" / "src").glob("*/package.xml"))
@@ -24,6 +25,9 @@ ROSDEP_KEYS = {
     "hypothesis": "python3-hypothesis",
     "jinja2": "python3-jinja2",
     "matplotlib": "python3-matplotlib",
+    "mcap": "mcap-ros2-support",
+    "mcap_ros2": "mcap-ros2-support",
+    "numba": "python3-numba",
     "numpy": "python3-numpy",
     "psutil": "python3-psutil",
     "pydantic": "python3-pydantic",
@@ -34,19 +38,30 @@ ROSDEP_KEYS = {
     "scipy": "python3-scipy",
     "serial": "python3-serial",
     "skimage": "python3-skimage",
+    "torch": "python3-torch",
     "yaml": "python3-yaml",
 }
+WITHOUT_ROSDEP_KEY = {"av", "distributed", "llvmlite", "plotly", "skfem", "statsmodels", "threadpoolctl"}
 NOT_ON_PYPI = {
     "launch",
     "launch_ros",
 }  # ROS 2 from apt brings them; who uses them elsewhere skips with the reason
+OPTIONAL_MODULES = {"torch"}  # the adjoint's derivatives and Adam, which are extras
+OWN = {path.name for path in PACKAGES}
 each_package = pytest.mark.parametrize("package", PACKAGES, ids=lambda path: path.name)
 
 
-def imported(folder: Path) -> Iterator[tuple[str, Path]]:
-    """Yield the top name of every import below a folder, and the file it stands in."""
+@cache
+def parsed(file: Path) -> ast.Module:
+    """Return a file's syntax tree."""
+    return ast.parse(file.read_text(encoding="utf-8"))
+
+
+def imported(folder: Path, at_once: bool = False) -> Iterator[tuple[str, Path]]:
+    """Yield the top name of every import below a folder and its file; at_once: not those within functions."""
     for file in folder.rglob("*.py"):
-        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        tree = parsed(file)
+        for node in tree.body if at_once else ast.walk(tree):
             if isinstance(node, ast.Import):
                 for alias in node.names:
                     yield alias.name.split(".")[0], file
@@ -54,10 +69,45 @@ def imported(folder: Path) -> Iterator[tuple[str, Path]]:
                 yield node.module.split(".")[0], file
 
 
+def imported_at_run_time(package: Path, at_once: bool = False) -> set[str]:
+    """Return what a package imports without its aids to testing; at_once: when its modules are imported."""
+    return {
+        name
+        for name, file in imported(package / package.name, at_once)
+        if "testing" not in file.relative_to(package).parts
+    }
+
+
+def imported_by_tests(package: Path) -> set[str]:
+    """Return what tests and aids to testing import."""
+    folders = (package / "test", package / package.name / "testing")
+    own = {path.stem for path in (package / "test").rglob("*.py")} | {package.name, "_pytest", "test"}
+    return {name for folder in folders for name, _ in imported(folder)} - own
+
+
+def requirements(setup: Path) -> tuple[set[str], dict[str, set[str]]]:
+    """Return the normalised names of install_requires and of every extra."""
+    (call,) = (
+        node
+        for node in ast.walk(ast.parse(setup.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "setup"
+    )
+    given = {keyword.arg: keyword.value for keyword in call.keywords}
+    required = {normalised(each) for each in ast.literal_eval(given["install_requires"])}
+    extras = ast.literal_eval(given["extras_require"])
+    return required, {name: {normalised(each) for each in names} for name, names in extras.items()}
+
+
 def declared(package: Path, *tags: str) -> set[str]:
     """Return what a package.xml names under these tags."""
     root = ElementTree.parse(package / "package.xml").getroot()
     return {element.text for tag in tags for element in root.iter(tag)}
+
+
+@cache
+def distributions() -> dict[str, list[str]]:
+    """Return the distributions that bring each module."""
+    return dict(packages_distributions())
 
 
 @cache
@@ -86,13 +136,53 @@ def test_imports_go_downwards(package):
 
 @each_package
 def test_imports_are_declared(package):
-    """What rosdep knows of the imports is in package.xml; what only tests import, at least for tests."""
+    """Each is a key of package.xml, one that only tests import at least for tests, or known to have no rosdep key."""
     run_time = declared(package, "depend", "exec_depend") | {package.name}
-    ros_packages = get_packages_with_prefixes()
-    for folder, known in ((package.name, run_time), ("test", run_time | declared(package, "test_depend"))):
-        names = {name for name, _ in imported(package / folder)}
-        keys = {ROSDEP_KEYS.get(name, name) for name in names if name in ROSDEP_KEYS or name in ros_packages}
+    for names, known in (
+        (imported_at_run_time(package), run_time),
+        (imported_by_tests(package), run_time | declared(package, "test_depend")),
+    ):
+        keys = {ROSDEP_KEYS.get(name, name) for name in names - sys.stdlib_module_names - WITHOUT_ROSDEP_KEY}
         assert keys - known == set()
+
+
+@each_package
+def test_manifest_is_valid(package):
+    """The parser of the ROS tools finds no fault, and every key is one of ROS 2 or of those that rosdep has."""
+    manifest = parse_package(package / "package.xml")
+    manifest.validate()
+    keys = {d.name for d in manifest.exec_depends + manifest.test_depends + manifest.build_depends}
+    rosdep = set(ROSDEP_KEYS.values()) | {"python3-pytest-timeout"}
+    assert keys - OWN - rosdep - NOT_ON_PYPI - get_packages_with_prefixes().keys() == set()
+    assert not any(d.name.startswith("python3-pytest") for d in manifest.exec_depends)
+
+
+@pytest.mark.skipif(
+    sys.version_info < (3, 11), reason="Python 3.10 cannot tell which distribution brings a module"
+)
+@each_package
+def test_imports_are_requirements_of_the_distribution(package):
+    """Modules import what is in install_requires, functions what may be an extra, tests what is in the extra `test`."""
+    if not (package / "setup.py").exists():
+        return
+    required, extras = requirements(package / "setup.py")
+    optional = required.union(*extras.values())
+    lazily = imported_at_run_time(package) - imported_at_run_time(package, at_once=True)
+    for names, known in (
+        (imported_at_run_time(package, at_once=True) - OPTIONAL_MODULES, required),
+        (lazily | (OPTIONAL_MODULES & imported_at_run_time(package)), optional),
+        (imported_by_tests(package), required | extras["test"]),
+    ):
+        missing = {
+            name
+            for name in names
+            - sys.stdlib_module_names
+            - get_packages_with_prefixes().keys()
+            - NOT_ON_PYPI
+            - OWN
+            if not known & {normalised(each) for each in distributions().get(name, [name])}
+        }
+        assert missing == set()
 
 
 @pytest.mark.skipif(
@@ -102,7 +192,6 @@ def test_imports_are_declared(package):
 def test_python_imports_are_pinned(package):
     """Every other package that code or tests import has its version in requirements.txt."""
     own = {path.stem for path in package.rglob("*.py")} | {package.name}
-    distributions = packages_distributions()
     unpinned = {
         f"{file.relative_to(ROOT)} imports {name}"
         for name, file in imported(package)
@@ -112,7 +201,7 @@ def test_python_imports_are_pinned(package):
         | get_packages_with_prefixes().keys()
         | NOT_ON_PYPI
         | {"setuptools"}
-        and not pinned() & {normalised(distribution) for distribution in distributions.get(name, [])}
+        and not pinned() & {normalised(distribution) for distribution in distributions().get(name, [])}
     }
     assert not unpinned
 
