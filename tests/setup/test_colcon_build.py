@@ -15,7 +15,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.timeout(1800)]  # a build of the mes
 
 @pytest.fixture(scope="module")
 def prefix(tmp_path_factory) -> Path:
-    """The messages built by a plain `colcon build`, beside what setup/install_wheels.sh leaves where ROS 2 is sourced."""
+    """The messages built by `colcon build`, beside what setup/install_wheels.sh leaves where ROS 2 is sourced."""
     checkout = tmp_path_factory.mktemp("checkout")
     site_packages = checkout / ".venv" / "lib" / f"python{sysconfig.get_python_version()}" / "site-packages"
     site_packages.mkdir(parents=True)
