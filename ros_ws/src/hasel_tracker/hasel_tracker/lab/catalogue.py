@@ -8,6 +8,7 @@ import numpy as np
 from hasel_tracker.lab.lab_camera import LabCamera
 from hasel_tracker.lab.lab_scene import BlueDot, LabScene
 from hasel_tracker.lab.lab_swimmer import LabSwimmer
+from hasel_tracker.lab.lab_things import Cable
 from hasel_tracker.tracking.tracker_settings import TrackerSettings
 
 RIGHT_WAY, TURNED = LabSwimmer(), LabSwimmer(start_px=(960.0, 360.0), heading_rad=np.pi)
@@ -144,7 +145,7 @@ ADVERSARIAL = (
         "tether across a dot's rim",
         lambda seed: LabScene(
             (replace(RIGHT_WAY, bend_rad=0.3),),
-            bars=((650.0, 0.0, 640.0 + 4.0 * seed, 720.0, 4.0),),
+            things=(Cable((650.0, 0.0), (640.0 + 4.0 * seed, 720.0)),),
             seed=seed,
             exposure_s=0.0,
         ),

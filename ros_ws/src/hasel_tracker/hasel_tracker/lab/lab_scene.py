@@ -9,10 +9,12 @@ import numpy as np
 
 from hasel_tracker.lab.lab_camera import LabCamera
 from hasel_tracker.lab.lab_swimmer import NAVY, LabSwimmer
+from hasel_tracker.lab.lab_things import Thing
 from hasel_tracker.lab.painting import Canvas
 
 WATER = (185.0, 190.0, 182.0)
 SUB_EXPOSURES = 3
+FLICKER_HZ = 7.3
 
 
 @dataclass(frozen=True)
@@ -44,8 +46,9 @@ class LabScene:
     """Everything before the camera. The first of `swimmers` is the one whose truth is given; there may be none.
 
     texture: contrast of a random ground in grey levels, 0 for plain water; grain_px: size of its grains. reflection:
-    (y of the wall [px], strength): the first swimmer, mirrored, seen in a pane before it. bars: dark lines (x0, y0, x1,
-    y1, width) before the swimmer, such as a tether. shadow: share of light that the swimmer's shadow takes.
+    (y of the wall [px], strength): the first swimmer, mirrored, seen in a pane before it. things: what lies over the
+    swimmers. shadow: share of light that the swimmer's shadow takes. flicker: by which share the light goes up and down
+    at FLICKER_HZ.
     """
 
     swimmers: tuple[LabSwimmer, ...] = (LabSwimmer(),)
@@ -60,7 +63,8 @@ class LabScene:
     light_fall: float = 0.25
     shadow: float = 0.2
     reflection: tuple[float, float] | None = None
-    bars: tuple[tuple[float, float, float, float, float], ...] = ()
+    things: tuple[Thing, ...] = ()
+    flicker: float = 0.0
     seed: int = 1
 
     def frames(self, count: int) -> Iterator[LabFrame]:
@@ -84,7 +88,7 @@ class LabScene:
         dots = np.mean([swimmer.dots(moment) for moment in moments], axis=0)
         radius, size = swimmer.dot_radius_px, np.array(self.size_px)
         inside = ((dots > radius) & (dots < size - 1 - radius)).all(axis=1)
-        seen = inside & ~swimmer.covered(time_s)
+        seen = inside & ~swimmer.covered(time_s) & ~self._under_things(dots, radius, time_s)
         return LabFrame(image, time_s, dots, seen, _sine(dots), swimmer.centre_line(time_s))
 
     @cached_property
@@ -119,10 +123,20 @@ class LabScene:
         for dot in self.dots:
             centre = np.array([dot.x, dot.y]) + np.multiply(dot.velocity, time_s)
             canvas.disc(centre, dot.radius, dot.colour)
-        for x0, y0, x1, y1, width in self.bars:
-            line = np.linspace([x0, y0], [x1, y1], 40)
-            canvas.strip(line, np.full(40, width / 2), (35.0, 33.0, 30.0))
-        return canvas.picture
+        for thing in self.things:
+            thing.paint(canvas, time_s)
+        return canvas.picture * (1.0 + self.flicker * np.sin(2.0 * np.pi * FLICKER_HZ * time_s))
+
+    def _under_things(self, dots: np.ndarray, radius: float, time_s: float) -> np.ndarray:
+        """Which dots (m,) something else lies over, be it their rim alone."""
+        hiding = [thing for thing in self.things if thing.covers]
+        if not hiding:
+            return np.zeros(len(dots), bool)
+        canvas = Canvas(np.zeros((*self.size_px[::-1], 3)))
+        for thing in hiding:
+            thing.paint(canvas, time_s)
+        rows, columns = np.nonzero(canvas.picture.max(axis=2) > 1.0)
+        return np.array([bool((np.hypot(columns - x, rows - y) < radius + 1.0).any()) for x, y in dots])
 
 
 def _sine(dots: np.ndarray) -> float:

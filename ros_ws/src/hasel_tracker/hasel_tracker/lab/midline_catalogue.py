@@ -8,6 +8,7 @@ import numpy as np
 from hasel_tracker.lab.catalogue import RIGHT_WAY, TAIL, LabCase, one_seed, scattered_dots
 from hasel_tracker.lab.lab_camera import LabCamera
 from hasel_tracker.lab.lab_scene import LabScene
+from hasel_tracker.lab.lab_things import Cable
 from hasel_tracker.tracking.tracker_settings import TrackerSettings
 
 BARE = replace(RIGHT_WAY, marked=False, body_colour=(58.0, 56.0, 54.0))
@@ -48,6 +49,6 @@ MIDLINE = (
           LabScene((replace(BARE, hidden=((TAIL, 0.1, 0.2),), cover_colour=(170.0, 175.0, 168.0)),),
                    frame_rate_hz=60.0, shadow=0.0),
           least_frames=18),
-    _bare("tether across the body", LabScene((BARE,), bars=((650.0, 0.0, 640.0, 720.0, 4.0),)), expected=False),
+    _bare("tether across the body", LabScene((BARE,), things=(Cable((650.0, 0.0), (640.0, 720.0)),)), expected=False),
     _bare("no swimmer, eight dots", scattered_dots(3, 8, ()), expected=False),
 )  # fmt: skip
