@@ -11,9 +11,9 @@ from rich.table import Table
 from hasel_tracker.bench.accuracy import CONDITIONS, Accuracy, measure_accuracy
 from hasel_tracker.bench.robustness import CASES, Robustness, measure_robustness
 from hasel_tracker.bench.speed import Speed, measure_speed
-from hasel_tracker.lab.catalogue import ADVERSARIAL, SEVERAL_SEEDS
-from hasel_tracker.lab.catalogue import CASES as LAB_CASES
+from hasel_tracker.lab.catalogue import ADVERSARIAL, REAL
 from hasel_tracker.lab.midline_catalogue import MIDLINE
+from hasel_tracker.lab.unforeseen import DECEIVING, UNFORESEEN
 from hasel_tracker.lab.wrong_while_valid import Honesty, measure_honesty
 
 CSRT_FRAMES = 12
@@ -43,6 +43,7 @@ class BenchReport:
     csrt: Accuracy
     robustness: list[Robustness]
     honesty: list[Honesty]
+    deceiving: list[Honesty]
     speed: Speed
 
     def bars(self) -> list[Bar]:
@@ -65,7 +66,11 @@ class BenchReport:
     def print(self, console: Console) -> None:
         """Print the tables."""
         console.print(
-            self._accuracy_table(), self._honesty_table(), self._robustness_table(), self._bars_table()
+            self._accuracy_table(),
+            _honesty_table("Laboratory scenes of another renderer, 1280 × 720", self.honesty),
+            _honesty_table("Scenes that deceive by their nature; no bar", self.deceiving),
+            self._robustness_table(),
+            self._bars_table(),
         )
         console.print(f"Speed at 1080p, one core: {self.speed}")
 
@@ -76,6 +81,7 @@ class BenchReport:
             "csrt": _plain(self.csrt),
             "robustness": [_plain(each) for each in self.robustness],
             "honesty": [_plain(each) for each in self.honesty],
+            "deceiving": [_plain(each) for each in self.deceiving],
             "speed": _plain(self.speed),
             "bars": [_plain(each) | {"met": bool(each.met)} for each in self.bars()],
         }
@@ -88,25 +94,6 @@ class BenchReport:
             pixels = [f"{value:.4f}" for value in each.marker_rms_px]
             angle = [f"{each.sin_theta_rms:.1e}", f"{each.sin_theta_spread:.1e}"]
             table.add_row(each.condition, *pixels, *angle, f"{100 * each.lost_share:.0f} %")
-        return table
-
-    def _honesty_table(self) -> Table:
-        table = Table(title="Laboratory scenes of another renderer, 1280 × 720")
-        for heading in (
-            "scene",
-            "frames",
-            "px rms",
-            "sin θ rms",
-            "σ of sin θ said",
-            "lost",
-            "wrong while valid",
-        ):
-            table.add_column(heading, justify="left" if heading == "scene" else "right")
-        for each in self.honesty:
-            table.add_row(
-                each.case, str(each.frames), _shown(each.rms_px, ".3f"), _shown(each.sin_theta_rms, ".1e"),
-                _shown(each.sin_theta_std, ".1e"), _shown(100 * each.lost_share, ".0f", " %"), str(each.wrong),
-            )  # fmt: skip
         return table
 
     def _robustness_table(self) -> Table:
@@ -130,6 +117,26 @@ class BenchReport:
         return table
 
 
+def _honesty_table(title: str, results: list[Honesty]) -> Table:
+    table = Table(title=title)
+    for heading in (
+        "scene",
+        "frames",
+        "px rms",
+        "sin θ rms",
+        "σ of sin θ said",
+        "lost",
+        "wrong while valid",
+    ):
+        table.add_column(heading, justify="left" if heading == "scene" else "right")
+    for each in results:
+        table.add_row(
+            each.case, str(each.frames), _shown(each.rms_px, ".3f"), _shown(each.sin_theta_rms, ".1e"),
+            _shown(each.sin_theta_std, ".1e"), _shown(100 * each.lost_share, ".0f", " %"), str(each.wrong),
+        )  # fmt: skip
+    return table
+
+
 def run_bench(frames: int, told: Callable[[str], None]) -> BenchReport:
     """Run everything; `told` is given a sentence after each part."""
     speed = measure_speed()
@@ -146,11 +153,14 @@ def run_bench(frames: int, told: Callable[[str], None]) -> BenchReport:
         robustness.append(measure_robustness(case, frames))
         told(str(robustness[-1]))
     honesty = []
-    for case in (*LAB_CASES, *MIDLINE):
-        seeds = LAB_SEEDS if case in ADVERSARIAL and case.name in SEVERAL_SEEDS else 1
+    for case in (*ADVERSARIAL, *UNFORESEEN, *REAL, *MIDLINE):
+        seeds = LAB_SEEDS if case in (*ADVERSARIAL, *UNFORESEEN) else 1
         honesty.append(measure_honesty(case, max(case.least_frames, frames // 3), seeds))
         told(str(honesty[-1]))
-    return BenchReport(accuracies, csrt, robustness, honesty, speed)
+    deceiving = [measure_honesty(case, case.least_frames, LAB_SEEDS) for case in DECEIVING]
+    for each in deceiving:
+        told(str(each))
+    return BenchReport(accuracies, csrt, robustness, honesty, deceiving, speed)
 
 
 def _shown(value: float, form: str, unit: str = "") -> str:

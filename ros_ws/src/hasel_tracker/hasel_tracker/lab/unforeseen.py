@@ -166,21 +166,28 @@ def _drifting_dots(random: np.random.Generator, plain: LabScene) -> LabScene:
     return replace(plain, swimmers=(replace(swimmer, hidden=hidden),), dots=tuple(dots))
 
 
-UNFORESEEN = tuple(
-    LabCase(f"unforeseen: {name}", _drawn(make), least_frames=FRAMES, expected=expected)
-    for name, make, expected in (
-        ("light from one side", _light_from_one_side, True),
-        ("a hand", _hand(SKIN), False),
-        ("a hand in a blue glove", _hand(BLUE_GLOVE), False),
-        ("blue cables", _blue_cable, False),
-        ("moving glare", _glare, False),
-        ("motion blur 8 to 16 ms", _motion_blur, True),
-        ("bubbles over the dots", _bubbles, False),
-        ("flickering, noisy light", _flicker, True),
-        ("a ruler with blue marks", _ruler, False),
-        ("a second swimmer without dots, loose dots", _second_bare, False),
-        ("sixty blue specks", _specks, False),
-        ("one marker hidden, loose dots", _one_hidden, False),
-        ("dots drift past a hidden marker", _drifting_dots, False),
-    )
+def _case(
+    name: str, make: Callable[[np.random.Generator, LabScene], LabScene], expected: bool = False
+) -> LabCase:
+    return LabCase(name, _drawn(make), expected, least_frames=FRAMES)
+
+
+UNFORESEEN = (
+    _case("light from one side", _light_from_one_side, expected=True),
+    _case("a hand", _hand(SKIN)),
+    _case("a hand in a blue glove", _hand(BLUE_GLOVE)),
+    _case("blue cables", _blue_cable),
+    _case("moving glare", _glare),
+    _case("motion blur, 8 to 16 ms", _motion_blur, expected=True),
+    _case("bubbles over the dots", _bubbles),
+    _case("flickering, noisy light", _flicker, expected=True),
+    _case("a ruler with blue marks", _ruler),
+    _case("sixty blue specks", _specks),
+)
+# Beyond what the dots' colour and the body's shade can tell: a loose dot on or beside the body, in place of a marker
+# that is out of sight, or another body of the same shade along the swimmer.
+DECEIVING = (
+    _case("a marker out of sight from the start, four loose dots", _one_hidden),
+    _case("three dots drift past a marker while it is hidden", _drifting_dots),
+    _case("a second swimmer without dots over the first, loose dots", _second_bare),
 )

@@ -5,10 +5,10 @@ import numpy as np
 
 from hasel_tracker.tracking.doubt import Doubt
 from hasel_tracker.tracking.marker_set import MarkerSet
+from hasel_tracker.tracking.tag_border import border_corners
 from hasel_tracker.tracking.tracker_settings import TrackerSettings
 
 REGION_SIDES = 3.0
-SIDES_PER_SIGMA = 200.0  # a tag's centre is off by about 1/200 of its side on rendered pictures
 
 
 class AprilTagTracker:
@@ -18,7 +18,7 @@ class AprilTagTracker:
         self.note = f"tags 0 to {settings.marker_count - 1} of the family 36h11, from head to tail"
         self._count = settings.marker_count
         parameters = cv2.aruco.DetectorParameters()
-        parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
+        parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_CONTOUR
         dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
         self._detector = cv2.aruco.ArucoDetector(dictionary, parameters)
         self._last: dict[int, np.ndarray] = {}
@@ -39,8 +39,8 @@ class AprilTagTracker:
         self._last = seen if doubt is Doubt.NONE else {}
         positions, sigma = np.full((self._count, 2), np.nan), np.full(self._count, np.nan)
         for tag, corners in seen.items():
-            positions[tag] = _crossing(corners)
-            sigma[tag] = np.linalg.norm(corners[1] - corners[0]) / SIDES_PER_SIGMA
+            fine, sigma[tag] = border_corners(grey, corners)
+            positions[tag] = _crossing(fine)
         return MarkerSet(positions, np.isfinite(sigma).astype(float), sigma, doubt)
 
     def _near(self, grey: np.ndarray, corners: np.ndarray) -> list[tuple[int, np.ndarray]]:

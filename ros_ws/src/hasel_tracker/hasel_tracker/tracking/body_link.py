@@ -61,9 +61,11 @@ def body_link(image: np.ndarray, first: np.ndarray, last: np.ndarray, radius_px:
     step = max(STEP_SHARE * length, 1.0)
     offset = np.arange(-np.ceil(reach / step), np.ceil(reach / step) + 1) * step
     points = first + station[:, None, None] * along + offset[None, :, None] * across
+    # Beyond the picture's edge it is taken to go on as at the edge: black would be a contrast of its own.
     colours = cv2.remap(
-        image, points[..., 0].astype(np.float32), points[..., 1].astype(np.float32), cv2.INTER_LINEAR
-    ).astype(np.float32)  # (stations, offsets, 3)
+        image, points[..., 0].astype(np.float32), points[..., 1].astype(np.float32), cv2.INTER_LINEAR,
+        borderMode=cv2.BORDER_REPLICATE,
+    ).astype(np.float32)  # (stations, offsets, 3)  # fmt: skip
     candidates, centre, band = _paths(station, length, step), len(offset) // 2, 2.0 * radius_px / step
     most, width = -np.inf, 0.0
     for gap in beside:

@@ -8,7 +8,9 @@ from hasel_tracker.tracking.blobs import Blob
 
 MOST_CANDIDATES = 8
 MOST_LOST = 2
-CHORD_TOLERANCE = 0.2
+CHORD_TOLERANCE = (
+    0.1  # a body that keeps its length and turns by 100° shortens its chords by 3 %; the rest is perspective
+)
 LARGEST_AREA_RATIO = 2.0
 LARGEST_TURN_RAD = 2.1
 

@@ -1,6 +1,6 @@
 """Which blobs are a row of markers along one body: alike, apart, not folded, and with the body between them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,8 @@ LARGEST_AREA_RATIO = 2.2
 LARGEST_CHORD_RATIO = 4.0
 LARGEST_TURN_RAD = 2.1
 CLOSEST_RADII = 3.0
+ON_THE_WAY_RADII = 1.5
+RIVAL_SHARE_OF_CHORD = 0.4
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,7 @@ def possible_rows(blobs: list[Blob], count: int) -> list[tuple[int, ...]]:
     areas = np.log([blob.area for blob in blobs])
     radii = np.array([blob.radius for blob in blobs])
     apart = np.linalg.norm(centres[:, None] - centres[None, :], axis=2)
+    between = _between(centres, areas, radii, apart)
     rows = [(0.0, (index,)) for index in range(len(blobs))]
     for _ in range(count - 1):
         longer = []
@@ -58,10 +61,26 @@ def possible_rows(blobs: list[Blob], count: int) -> list[tuple[int, ...]]:
                 if index in row:
                     continue
                 more = _step_cost(row, index, centres, areas, radii, apart)
-                if np.isfinite(more):
+                if np.isfinite(more) and not between[row[-1], index]:
                     longer.append((cost + more, (*row, index)))
         rows = sorted(longer)[: MOST_ROWS * 2]
     return [row for _, row in rows if row[0] < row[-1]]
+
+
+def _between(centres: np.ndarray, areas: np.ndarray, radii: np.ndarray, apart: np.ndarray) -> np.ndarray:
+    """Whether a like blob lies on the way from one to another (n, n): such two are no neighbours along a body."""
+    along = centres[None, :] - centres[:, None]
+    length = np.maximum(apart, 1e-9)
+    there = centres[None, None, :] - centres[:, None, None]  # (from, to, blob, 2)
+    share = (there * along[:, :, None]).sum(axis=3) / length[..., None] ** 2
+    aside = (
+        np.abs(there[..., 0] * along[:, :, None, 1] - there[..., 1] * along[:, :, None, 0])
+        / length[..., None]
+    )
+    like = np.abs(areas[None, :] - areas[:, None]) < np.log(LARGEST_AREA_RATIO)  # (from, blob)
+    clear = CLOSEST_RADII * radii / length[..., None]
+    on_way = (share > clear) & (share < 1.0 - clear) & (aside < ON_THE_WAY_RADII * radii)
+    return (on_way & like[:, None, :]).any(axis=2)
 
 
 def _step_cost(
@@ -87,6 +106,37 @@ def _step_cost(
     if abs(uneven) > np.log(LARGEST_CHORD_RATIO) or turn > LARGEST_TURN_RAD:
         return np.inf
     return float(cost + (uneven / 0.4) ** 2 + (turn / 0.8) ** 2)
+
+
+def rival_near(
+    blobs: list[Blob],
+    positions: np.ndarray,
+    numbers: Iterable[int],
+    area: float,
+    link: Callable[[Blob, Blob], BodyLink],
+) -> bool:
+    """Whether the body leads to a blob so near one of these markers that it, or what it hides, may be the marker.
+
+    positions: (m, 2) [px] of all markers, of about `area` [px²]. Such a blob may be two things that touch: it need be
+    neither round nor of the right size, unless it is small.
+    """
+    radius = np.sqrt(area / np.pi)
+    near_px = RIVAL_SHARE_OF_CHORD * np.linalg.norm(np.diff(positions, axis=0), axis=1).min()
+    others = [
+        blob
+        for blob in blobs
+        if blob.area * LARGEST_AREA_RATIO > area
+        and np.linalg.norm(positions - blob.centre, axis=1).min() > radius
+    ]
+    for number in numbers:
+        neighbours = [
+            Blob(positions[n], area, 1.0) for n in (number - 1, number + 1) if 0 <= n < len(positions)
+        ]
+        for blob in others:
+            near = np.linalg.norm(positions[number] - blob.centre) < near_px
+            if near and all(link(each, blob).seen for each in neighbours):
+                return True
+    return False
 
 
 def rows_on_a_body(

@@ -1,5 +1,6 @@
 """Find the markers in one picture with nothing known but what they look like, or refuse and say why."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import cv2
@@ -8,7 +9,7 @@ import numpy as np
 from hasel_tracker.tracking.blobs import Blob, blobs_in_frame
 from hasel_tracker.tracking.body_link import BodyLink, body_link
 from hasel_tracker.tracking.doubt import Doubt
-from hasel_tracker.tracking.marker_row import MarkerRow, marker_candidates, rows_on_a_body
+from hasel_tracker.tracking.marker_row import MarkerRow, marker_candidates, rival_near, rows_on_a_body
 from hasel_tracker.tracking.tracker_settings import TrackerSettings
 
 WORDS = (
@@ -16,6 +17,10 @@ WORDS = (
 )
 NUMBERS = dict(enumerate(WORDS, start=2))
 DARK_PICTURE = 60.0
+ADVICE = (
+    "point at the right ones with --at, look only within a part of the picture with --roi, or say how many there are "
+    "with --markers"
+)
 
 
 @dataclass(frozen=True)
@@ -50,13 +55,13 @@ def search_start(image: np.ndarray, settings: TrackerSettings) -> StartSearch:
 
     rows = rows_on_a_body(candidates, settings.marker_count, link)
     word = NUMBERS[settings.marker_count]
+    if len(rows) == 1 and _has_rival(rows[0], blobs, link):
+        note = "another blob of marker colour lies so near a marker that it may be the marker; " + ADVICE
+        return StartSearch(None, Doubt.AMBIGUOUS, note, len(looked))
     if len(rows) == 1:
         return StartSearch(rows[0], Doubt.NONE, "", len(looked))
     if rows:
-        note = (
-            f"more than one row of {word} dots lies on a body ({len(candidates)} dots seen); say which with --at or "
-            "--roi, or how many there are with --markers"
-        )
+        note = f"more than one row of {word} dots lies on a body ({len(candidates)} dots seen); {ADVICE}"
         return StartSearch(None, Doubt.AMBIGUOUS, note, len(looked))
     note = (
         f"found {len(blobs)} blobs of marker colour, of which no {word} look like markers in a row on a body"
@@ -64,3 +69,8 @@ def search_start(image: np.ndarray, settings: TrackerSettings) -> StartSearch:
     if cv2.mean(image[::8, ::8])[1] < DARK_PICTURE:
         note += "; the picture is dark: learn the colour with `calibrate colour --at`"
     return StartSearch(None, Doubt.NONE, note, len(looked))
+
+
+def _has_rival(row: MarkerRow, blobs: list[Blob], link: Callable[[Blob, Blob], BodyLink]) -> bool:
+    area = float(np.median([blob.area for blob in row.blobs]))
+    return rival_near(blobs, row.centres, range(len(row.blobs)), area, link)

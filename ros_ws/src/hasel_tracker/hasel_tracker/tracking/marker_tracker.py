@@ -1,9 +1,10 @@
 """Follow the markers from frame to frame; find them at the start and when lost; say when that is in doubt."""
 
-
 import numpy as np
 
 from hasel_tracker.errors import TrackerError
+from hasel_tracker.tracking.blobs import Blob
+from hasel_tracker.tracking.body_link import BodyLink, body_link
 from hasel_tracker.tracking.body_watch import BodyWatch
 from hasel_tracker.tracking.doubt import Doubt
 from hasel_tracker.tracking.head_order import HeadOrder, as_before
@@ -17,6 +18,7 @@ from hasel_tracker.tracking.lost_markers import (
 from hasel_tracker.tracking.marker_finder import MarkerFinder, Measure
 from hasel_tracker.tracking.marker_judgement import accepted, event, qualities
 from hasel_tracker.tracking.marker_memory import MarkerMemory, places
+from hasel_tracker.tracking.marker_row import rival_near
 from hasel_tracker.tracking.marker_set import MarkerSet
 from hasel_tracker.tracking.marker_start import StartSearch, search_start, whole_frame_blobs
 from hasel_tracker.tracking.tracker_settings import TrackerSettings
@@ -28,6 +30,7 @@ FORGET_AFTER_S = 1.0
 LOOK_EVERYWHERE_AFTER_S = 0.3
 SEARCH_PERIOD_S = 0.1
 CHEAP_SEARCH_LINKS = 8
+MISSED_RADII, MISSED_PX = 0.5, 5.0
 
 
 class MarkerTracker:
@@ -43,6 +46,7 @@ class MarkerTracker:
         self._trust = Trust()
         self._memory: MarkerMemory | None = None
         self._body: BodyWatch | None = None
+        self._back: set[int] = set()
 
     @property
     def radius_px(self) -> float:
@@ -100,6 +104,14 @@ class MarkerTracker:
         if not all(found):
             x, y = points[found.index(None)]
             raise TrackerError(f"The dot at {x:.0f},{y:.0f} has no clear edge; choose another frame.")
+        for (x, y), each in zip(points, found, strict=True):
+            off = float(np.hypot(*(each.centre - (x, y))))
+            if off > max(MISSED_RADII * np.sqrt(each.area / np.pi), MISSED_PX):
+                raise TrackerError(
+                    f"What is seen at {x:.0f},{y:.0f} has its middle {off:.0f} px away, at "
+                    f"{each.centre[0]:.0f},{each.centre[1]:.0f}: point at a dot's middle, in a frame in which nothing "
+                    "lies over or beside it."
+                )
         return found
 
     def _start(self, image: np.ndarray, time_s: float) -> MarkerSet:
@@ -137,6 +149,7 @@ class MarkerTracker:
     def _begin(self, found: Measured, time_s: float) -> None:
         self._memory = MarkerMemory(found, time_s, self.settings.region_px)
         self._trust = Trust()
+        self._back = set()
 
     # -- following --------------------------------------------------------------------------------------------------
 
@@ -152,6 +165,7 @@ class MarkerTracker:
             measured = self._found_again(image, measured, time_s)
         seen = accepted(measured, predicted, memory, self.settings.minimum_quality)
         positions = np.where(seen[:, None], places(measured), np.nan)
+        self._back |= set(np.flatnonzero(seen & ~memory.seen))
         doubt, vouched = self._judged(image, positions, event(positions, predicted, memory, rivals), time_s)
         areas = np.array([np.nan if each is None else each.area for each in measured])
         memory.remember(positions, areas, predicted, time_s, sure=self._trust.pending is Doubt.NONE)
@@ -185,6 +199,8 @@ class MarkerTracker:
         if not np.isfinite(positions).all():
             self._trust.interrupt()
             return Doubt.NONE, 0
+        if self._back and self._rival_near(image, positions):
+            happened = Doubt.AMBIGUOUS
         if happened is Doubt.AMBIGUOUS:
             return self._trust.shake(happened, recoverable=False), 0
         unsure = self._trust.pending is not Doubt.NONE or happened is not Doubt.NONE
@@ -196,8 +212,17 @@ class MarkerTracker:
             return self._trust.shake(self._trust.pending or happened), 0
         doubt, vouched = self._trust.agree()
         if doubt is Doubt.NONE:
+            self._back = set()
             self._head.learn(self._memory.chords_px)
         return doubt, vouched
+
+    def _rival_near(self, image: np.ndarray, positions: np.ndarray) -> bool:
+        blobs = whole_frame_blobs(image, self._finder.settings)
+
+        def link(first: Blob, last: Blob) -> BodyLink:
+            return body_link(image, first.centre, last.centre, self.radius_px)
+
+        return rival_near(blobs, positions, self._back, float(np.median(self._memory.areas)), link)
 
     def _as_set(self, measured: Measured, seen: np.ndarray, doubt: Doubt, vouched: int) -> MarkerSet:
         positions = np.where(seen[:, None], places(measured), np.nan)

@@ -1,7 +1,8 @@
 """Scenes of another renderer in which a wrong angle was once called valid, and pictures of real laboratories."""
 
 import pytest
-from hasel_tracker.lab.catalogue import ADVERSARIAL, REAL, SEVERAL_SEEDS
+from hasel_tracker.lab.catalogue import ADVERSARIAL, REAL
+from hasel_tracker.lab.unforeseen import UNFORESEEN
 from hasel_tracker.lab.wrong_while_valid import measure_honesty
 
 QUICK = (
@@ -13,12 +14,24 @@ QUICK = (
 @pytest.mark.parametrize("case", ADVERSARIAL, ids=lambda case: case.name)
 def test_no_wrong_angle_is_called_valid(case):
     """Whatever else is blue, hidden, reflected or alike at both ends: no valid angle is off by more than 0.01."""
-    honesty = measure_honesty(case, case.least_frames, 2 if case.name in SEVERAL_SEEDS else 1)
+    honesty = measure_honesty(case, case.least_frames, 2 if case.least_frames < 10 else 1)
     assert honesty.wrong == 0, str(honesty)
     if case.expected:
-        assert honesty.lost_share < 0.5, str(honesty)
-    if case.name.startswith(("no swimmer", "three blue dots", "body without taper, head on", "two swimmers")):
+        assert honesty.lost_share <= 0.5, str(honesty)
+    if (
+        case.name.startswith(("no swimmer", "three blue dots", "two swimmers"))
+        or case.name == "body without taper"
+    ):
         assert honesty.valid == 0, str(honesty)
+
+
+@pytest.mark.parametrize("case", UNFORESEEN, ids=lambda case: case.name)
+def test_scenes_without_a_rule_of_their_own(case):
+    """Hands, cables, glare, bubbles, rulers, anywhere over a swimmer anywhere: no wrong angle is called valid."""
+    honesty = measure_honesty(case, 10)
+    assert honesty.wrong == 0, str(honesty)
+    if case.expected:
+        assert honesty.valid, str(honesty)
 
 
 @pytest.mark.parametrize("case", [each for each in REAL if each.name in QUICK], ids=lambda case: case.name)
