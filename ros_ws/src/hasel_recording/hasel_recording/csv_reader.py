@@ -11,6 +11,7 @@ from hasel_recording.csv_columns import Columns, understand
 from hasel_recording.csv_numbers import CsvNumbers
 from hasel_recording.csv_text import CsvText, read_text
 from hasel_recording.drive_channel import HASEL_PAIR, DriveChannel
+from hasel_recording.drive_end import until_drive_ends
 from hasel_recording.errors import RecordingError, RecordingWarning
 from hasel_recording.marker_angle import sin_theta_from_markers
 from hasel_recording.recording import MARKER_NAMES, Recording
@@ -29,6 +30,7 @@ def read_csv(path: Path, mapping: Mapping[str, str] | None = None, own_drive: bo
     columns = understand(text.names, meant_names(mapping or {}, text.names, str(path), own_drive), str(path))
     for name in columns.unused:
         warnings.warn(f"{path}: column {name!r} is not used.", RecordingWarning, stacklevel=3)
+    text = until_drive_ends(text, columns)
     numbers = CsvNumbers(text)
     time_s = numbers.times(columns.time)
     markers = _markers(columns, numbers)

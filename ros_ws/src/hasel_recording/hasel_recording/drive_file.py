@@ -2,7 +2,7 @@
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +21,31 @@ from hasel_recording.recording import Recording
 from hasel_recording.stand_in import as_meant
 
 
+@dataclass(frozen=True)
+class RecordedDrive:
+    """Values [k, channels] in SI units, each from its time_s [k] to the next. start_ns: time 0 since the epoch [ns], if
+    it is known. stand_in: a sentence where voltages stand for another quantity, or ''."""
+
+    channels: tuple[DriveChannel, ...]
+    time_s: np.ndarray
+    values: np.ndarray
+    start_ns: int | None = None
+    stand_in: str = ""
+
+
+def read_drive(
+    path: Path, mapping: Mapping[str, str] | None = None, metadata: Mapping[str, str] | None = None
+) -> RecordedDrive:
+    """Read the drive alone of a .csv or .mcap file; raises RecordingError.
+
+    mapping: as of column_map.parse_map; metadata: header lines of the run, which those of the file go before.
+    """
+    if not path.is_file():
+        raise RecordingError(f"There is no drive file {path}: check the name.")
+    read = _read_mcap if path.suffix.lower() == ".mcap" else _read_csv
+    return read(path, mapping or {}, metadata or {})
+
+
 def with_drive(recording: Recording, path: Path, mapping: Mapping[str, str] | None = None) -> Recording:
     """Return the recording with the drive of another file in place of its own.
 
@@ -31,8 +56,8 @@ def with_drive(recording: Recording, path: Path, mapping: Mapping[str, str] | No
     """
     if not path.is_file():
         raise RecordingError(f"{recording.name}: there is no drive file {path}: check the name.")
-    read = _read_mcap if path.suffix.lower() == ".mcap" else _read_csv
-    channels, time_s, values, stand_in = read(path, mapping or {}, recording.metadata)
+    drive = read_drive(path, mapping, recording.metadata)
+    channels, time_s, values = drive.channels, drive.time_s, drive.values
     _check_cover(recording, path, channels, time_s, values)
     row = np.searchsorted(time_s, recording.time_s, side="right") - 1
     held = np.where(row[:, None] >= 0, values[np.maximum(row, 0)], 0.0)
@@ -45,13 +70,11 @@ def with_drive(recording: Recording, path: Path, mapping: Mapping[str, str] | No
         drive_signal=held,
         drive_time_s=time_s[first:],
         drive_values=values[first:],
-        understood=(*recording.understood, *filter(None, [said, stand_in])),
+        understood=(*recording.understood, *filter(None, [said, drive.stand_in])),
     )
 
 
-def _read_csv(
-    path: Path, mapping: Mapping[str, str], metadata: Mapping[str, str]
-) -> tuple[tuple[DriveChannel, ...], np.ndarray, np.ndarray, str]:
+def _read_csv(path: Path, mapping: Mapping[str, str], metadata: Mapping[str, str]) -> RecordedDrive:
     text = read_text(path)
     text = replace(text, metadata={**metadata, **text.metadata})
     meant = meant_names(mapping, text.names, str(path), all_here=False)
@@ -64,18 +87,17 @@ def _read_csv(
             f"{path} has no drive, only {', '.join(text.names)}: expected columns such as voltage_upper_v or "
             "pressure_chamber_kpa, or say which they are with --map."
         )
-    return channels, time_s, values, stand_in
+    return RecordedDrive(channels, time_s, values, stand_in=stand_in)
 
 
-def _read_mcap(
-    path: Path, mapping: Mapping[str, str], metadata: Mapping[str, str]
-) -> tuple[tuple[DriveChannel, ...], np.ndarray, np.ndarray, str]:
+def _read_mcap(path: Path, mapping: Mapping[str, str], metadata: Mapping[str, str]) -> RecordedDrive:
     file = read_file(path)
     drive = stamped_drive(file)
     if drive is None:
         raise RecordingError(f"{path} has neither /hasel/state nor /hasel/drive: give the drive's recording.")
     channels, values, stand_in = as_meant(drive.channels, drive.values, metadata, str(path))
-    return channels, seconds(drive.stamps, time_origin(file, drive.stamps)), values, stand_in
+    origin = time_origin(file, drive.stamps)
+    return RecordedDrive(channels, seconds(drive.stamps, origin), values, origin or None, stand_in)
 
 
 def _check_cover(

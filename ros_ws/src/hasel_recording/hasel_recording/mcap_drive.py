@@ -16,12 +16,16 @@ from hasel_recording.topics import DRIVE, STATE, TOPIC_TYPES
 
 @dataclass(frozen=True)
 class StampedDrive:
-    """The drive on a topic: values [k, channels] in SI units, each from its stamp [ns] [k] to the next."""
+    """The drive on a topic: values [k, channels] in SI units, each from its stamp [ns] [k] to the next.
+
+    ended_ns: from when on it is not known any more (all channels NaN up to the last message), or None.
+    """
 
     topic: str
     channels: tuple[DriveChannel, ...]
     stamps: np.ndarray
     values: np.ndarray
+    ended_ns: int | None = None
 
     def at(self, stamps: np.ndarray) -> np.ndarray:
         """Values [n, channels] at stamps [ns] [n], none of them before the first."""
@@ -54,7 +58,8 @@ def stamped_messages(file: McapFile, topic: str) -> tuple[list[Any], np.ndarray]
 def stamped_drive(file: McapFile) -> StampedDrive | None:
     """Return the drive of a file, None where there is none; raises RecordingError for one that is not understood.
 
-    States at the beginning whose voltage the supply did not know yet (NaN) are left out.
+    States at the beginning whose voltage the supply did not know yet (NaN) are left out; values of which none is known
+    up to the last message are where the drive ended.
     """
     messages, stamps = stamped_messages(file, DRIVE)
     if messages:
@@ -112,6 +117,10 @@ def _checked(
     skipped: int = 0,
 ) -> StampedDrive:
     values = np.array(values, dtype=float).reshape(len(stamps), len(channels))
+    known = np.flatnonzero(~np.isnan(values).all(axis=1))
+    count = known[-1] + 1 if known.size else len(stamps)
+    ended_ns = int(stamps[count]) if count < len(stamps) else None
+    stamps, values = stamps[:count], values[:count]
     bad = np.flatnonzero(~np.isfinite(values).all(axis=1))
     if bad.size:
         units = "/".join(dict.fromkeys(channel.unit for channel in channels))
@@ -119,4 +128,4 @@ def _checked(
             f"{file.path}: message {skipped + bad[0] + 1} on {topic} commands {values[bad[0]].tolist()} {units}, "
             "but numbers are expected: was the supply in a fault? Record the run again."
         )
-    return StampedDrive(topic, channels, stamps, values)
+    return StampedDrive(topic, channels, stamps, values, ended_ns)

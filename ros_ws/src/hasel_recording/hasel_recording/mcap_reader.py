@@ -18,7 +18,7 @@ from hasel_recording.topics import MARKERS, MEASURED, SIMULATED, STATE, TOPIC_TY
 def read_mcap(path: Path) -> Recording:
     """Read one run, sampled at the stamps of the measured angle.
 
-    Frames before the first known drive are left out with a RecordingWarning.
+    Frames before the first known drive, and from its end on, are left out with a RecordingWarning.
     """
     file = read_file(path)
     measured, frame_ns = stamped_messages(file, MEASURED)
@@ -27,8 +27,7 @@ def read_mcap(path: Path) -> Recording:
     drive = stamped_drive(file)
     if drive is None and nearest(STATE, set(file.messages) - set(TOPIC_TYPES)):
         raise file.missing(STATE)
-    driven = np.ones(len(frame_ns), dtype=bool) if drive is None else frame_ns >= drive.stamps[0]
-    _warn_of_undriven(path, driven, drive)
+    driven = _driven(path, frame_ns, drive)
     origin = time_origin(file, frame_ns[:1] if drive is None else np.append(frame_ns[:1], drive.stamps[:1]))
     markers, unit, names = _markers(file, measured, frame_ns)
     simulated, simulated_ns = stamped_messages(file, SIMULATED)
@@ -62,18 +61,24 @@ def _angles(messages: list[Any]) -> np.ndarray:
     return np.array([message.sin_theta if message.valid else np.nan for message in messages])
 
 
-def _warn_of_undriven(path: Path, driven: np.ndarray, drive: StampedDrive | None) -> None:
-    if not driven.any():
+def _driven(path: Path, frame_ns: np.ndarray, drive: StampedDrive | None) -> np.ndarray:
+    """Return in which frames the drive is known, [n]; says which are left out."""
+    if drive is None:
+        return np.ones(len(frame_ns), dtype=bool)
+    early = frame_ns < drive.stamps[0]
+    late = np.zeros_like(early) if drive.ended_ns is None else frame_ns >= drive.ended_ns
+    if (early | late).all():
         raise RecordingError(
-            f"{path}: every frame comes before the first {drive.topic} whose values are known: "
-            "start the driver before the run."
+            f"{path}: no frame comes while the values on {drive.topic} are known: start the driver before the run."
         )
-    if not driven.all():
-        warnings.warn(
-            f"{path}: {np.count_nonzero(~driven)} frames before the first {drive.topic} were left out.",
-            RecordingWarning,
-            stacklevel=4,
-        )
+    for left_out, where in ((early, f"before the first {drive.topic}"), (late, "after the drive's end")):
+        if left_out.any():
+            warnings.warn(
+                f"{path}: {np.count_nonzero(left_out)} frames {where} were left out.",
+                RecordingWarning,
+                stacklevel=4,
+            )
+    return ~(early | late)
 
 
 def _drive(

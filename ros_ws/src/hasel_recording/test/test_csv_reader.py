@@ -137,6 +137,19 @@ def test_a_blank_or_nan_angle_is_a_missing_one(tmp_path):
     assert run.drive_time_s is None
 
 
+def test_frames_after_the_drives_end_are_left_out_aloud(tmp_path):
+    """Rows at the end without a drive are not read, and said to be; a blank cell anywhere else is an error."""
+    path = tmp_path / "ended.csv"
+    path.write_text(GOOD + "0.1,0,3500,0.2\n0.2,,,0.3\n0.3,,nan,0.4\n")
+    with pytest.warns(RecordingWarning, match="2 frames after the drive's end were left out"):
+        run = read_recording(path)
+    assert run.time_s.tolist() == [0.0, 0.1]
+    assert run.voltage.tolist() == [[3500, 0], [0, 3500]]
+    path.write_text(GOOD + "0.1,,,0.2\n0.2,0,0,0.3\n")
+    with pytest.raises(RecordingError, match="a blank cell in column voltage_upper_v"):
+        read_recording(path)
+
+
 def test_any_number_of_markers(tmp_path):
     """Five markers in millimetres keep their order along the body; one that was not seen is NaN, its angle too."""
     names = ("head", "neck", "middle", "fin_root", "tail")

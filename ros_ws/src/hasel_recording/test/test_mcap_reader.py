@@ -163,6 +163,18 @@ def test_frames_before_the_supply_knew_its_voltage_are_left_out(recorder):
     assert run.voltage[:, 0].tolist() == [0.0, 4000.0]
 
 
+def test_frames_after_the_drives_end_are_left_out_aloud(recorder):
+    """From where no voltage is known up to the end, frames are not read, and that is said."""
+    recorder.write(STATE, state(3000, 0), 0)
+    recorder.write(STATE, state(math.nan, math.nan), 20)
+    for stamp in (0, 10, 20, 30):
+        recorder.write(MEASURED, angle(0.1 + stamp / 100), stamp)
+    with pytest.warns(RecordingWarning, match="2 frames after the drive's end were left out"):
+        run = read(recorder)
+    assert run.sin_theta.tolist() == [0.1, 0.2]
+    assert run.voltage.tolist() == [[3000, 0], [3000, 0]]
+
+
 def test_a_drive_signal_is_refused_where_it_is_not_understood(recorder):
     """Other channels in mid-run, and units that are not SI, are one sentence each."""
     recorder.write(DRIVE, {"channel": ["pressure_chamber_mbar"], "value": [1.0]}, 1)

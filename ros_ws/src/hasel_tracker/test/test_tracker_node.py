@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 import pytest
 import rclpy
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from hasel_interfaces.msg import BendingAngle
 from hasel_tracker.node_messages import angle_message, parameter_descriptor
 from hasel_tracker.node_parameters import PARAMETERS, SEARCH_NAMES
@@ -191,6 +191,13 @@ def test_image_topic_services_and_parameters(observer, start, frames, tmp_path):
     assert set_parameter("hue_high", 130).successful
     assert observer.call(Trigger, "/hasel/hasel_tracker/restart", Trigger.Request()).success
     assert [show(frames[40].image, stamp_s).valid for stamp_s in (1005, 1006, 1007)] == [False, False, True]
+    show(frames[40].image, 1011)  # three images between the stamps never came
+    lost = "3 frames were dropped"
+    observer.wait(lambda: any(lost in report.status[0].message for report in observer.reports))
+    assert (
+        next(r for r in observer.reports if lost in r.status[0].message).status[0].level
+        == DiagnosticStatus.WARN
+    )
 
     request = DescribeParameters.Request(names=["frame_rate"])
     described = observer.call(

@@ -198,4 +198,14 @@ REAL = (
         "30 frames/s, 4 Hz",
         one_seed(LabScene((replace(RIGHT_WAY, frequency_hz=4.0, bend_rad=0.6),), frame_rate_hz=30.0)),
     ),
+    *(
+        LabCase(
+            f"AprilTags of {side_px} px",
+            one_seed(
+                LabScene((replace(RIGHT_WAY, tags=True, dot_radius_px=side_px / 2.4, half_width_px=45.0),))
+            ),
+            method="apriltag",
+        )
+        for side_px in (24, 60)
+    ),
 )

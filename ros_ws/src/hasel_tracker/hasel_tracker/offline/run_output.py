@@ -1,18 +1,29 @@
 """Write a tracked run as a recording that compare, fit and diagnose read."""
 
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from hasel_recording import McapRecorder, Recording, RecordingError, RecordingWarning, write_recording
+from hasel_recording import (
+    HASEL_PAIR,
+    DriveChannel,
+    McapRecorder,
+    Recording,
+    RecordingError,
+    RecordingWarning,
+    write_recording,
+)
 from hasel_recording.bending_angle_message import bending_angle_message
 from hasel_recording.mcap_writer import state_message
-from hasel_recording.topics import MEASURED, STATE
+from hasel_recording.topics import DRIVE, MEASURED, STATE
 
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.offline.drive import Alignment, Drive, until_drive_ends
+from hasel_tracker.offline.drive import Alignment, Drive, after_the_drive
 from hasel_tracker.offline.tracked_run import TrackedRun
 from hasel_tracker.tracking.marker_set import marker_names
+
+AFTER_S = 2e-9  # what is known still holds at the end itself
 
 
 def write_run(
@@ -22,8 +33,8 @@ def write_run(
     origin = float(run.time_s[0])
     shifted, ended = None, ""
     if drive is not None:
-        run, ended = until_drive_ends(run, drive, alignment)
-        shifted = Drive(drive.time_s + alignment.lag_s - origin, drive.voltage)
+        ended = after_the_drive(run, drive, alignment)
+        shifted = replace(drive, time_s=drive.time_s + alignment.lag_s - origin)
         metadata = metadata | {"drive_lag_s": f"{alignment.lag_s:.6f}", "drive_merged": alignment.means}
     try:
         if path.suffix.lower() == ".mcap":
@@ -36,11 +47,19 @@ def write_run(
 
 def _write_csv(path: Path, run: TrackedRun, drive: Drive | None, metadata: dict[str, str]) -> str:
     time_s = run.time_s - run.time_s[0]
-    voltage = None if drive is None else drive.at(time_s)
+    signal, channels = (None, HASEL_PAIR) if drive is None else (drive.at(time_s), drive.channels)
     markers, unit = (run.markers_px, "px") if run.markers_m is None else (run.markers_m, "m")
     names = marker_names(markers.shape[1])
     recording = Recording(
-        path.stem, time_s, run.sin_theta, voltage, markers, unit, metadata=metadata, marker_names=names
+        path.stem,
+        time_s,
+        run.sin_theta,
+        signal,
+        markers,
+        unit,
+        metadata,
+        channels=channels,
+        marker_names=names,
     )
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", RecordingWarning)
@@ -52,7 +71,7 @@ def _write_mcap(path: Path, run: TrackedRun, drive: Drive | None, metadata: dict
     time_s = run.time_s - run.time_s[0]
     messages = [(float(when), MEASURED, _angle(run, index)) for index, when in enumerate(time_s)]
     if drive is not None:
-        messages += _states(drive, time_s[-1])
+        messages += _drive_messages(drive, time_s[-1])
     start_ns = (run.start_stamp_ns or 0) + round(float(run.time_s[0]) * 1e9) if run.start_stamp_ns else 0
     with McapRecorder(path, metadata, time_origin_ns=start_ns) as recorder:
         for when, topic, message in sorted(messages, key=lambda each: each[0]):
@@ -72,12 +91,19 @@ def _angle(run: TrackedRun, index: int) -> dict[str, object]:
     )
 
 
-def _states(drive: Drive, end_s: float) -> list[tuple[float, str, dict[str, object]]]:
-    """The voltage at the start and every change of it up to the end of the run."""
-    within = (drive.time_s > 0.0) & (drive.time_s <= end_s)
-    times = np.concatenate([[0.0], drive.time_s[within]])
-    voltages = np.vstack([drive.at(np.zeros(1)), drive.voltage[within]])
+def _drive_messages(drive: Drive, end_s: float) -> list[tuple[float, str, dict[str, object]]]:
+    """The drive at the start, every change of it up to the end of the run, and from where on it is not known."""
+    changes = drive.time_s[(drive.time_s > 0.0) & (drive.time_s <= end_s)]
+    times = np.concatenate(
+        [[0.0], changes, [] if drive.end_s >= end_s else [max(drive.end_s, 0.0) + AFTER_S]]
+    )
     return [
-        (float(when), STATE, state_message(voltage.tolist()))
-        for when, voltage in zip(times, voltages, strict=True)
+        (float(when), *_drive_message(drive.channels, values.tolist()))
+        for when, values in zip(times, drive.at(times), strict=True)
     ]
+
+
+def _drive_message(channels: tuple[DriveChannel, ...], values: list[float]) -> tuple[str, dict[str, object]]:
+    if channels == HASEL_PAIR:
+        return STATE, state_message(values)
+    return DRIVE, {"channel": [channel.column for channel in channels], "value": values}

@@ -73,6 +73,23 @@ def test_cut_annotate_and_merge(folder, capsys):
     assert len(list(VideoSource("seen.mp4"))) == 84
 
 
+def test_merge_by_a_lamp_in_view(folder, capsys):
+    """A lamp that lights with the drive's first step gives the lag to half a frame."""
+    assert render(["frames", *SMALL]) == 0
+    paths = sorted(folder.glob("frames/*.png"))
+    for number, path in enumerate(paths):
+        image = cv2.imread(str(path))
+        cv2.circle(image, (600, 30), 10, (255, 255, 255) if number >= 48 else (40, 40, 40), cv2.FILLED)
+        cv2.imwrite(str(path), image)
+    (folder / "drive.csv").write_text("time_s,voltage_upper_v,voltage_lower_v\n0,0,0\n0.1,5000,0\n0.6,0,0\n")
+    arguments = ["frames", "-o", "run.csv", "--frame-rate", "120", "--drive", "drive.csv"]
+    assert track([*arguments, "--led", "592,22,16,16"]) == 0
+    assert "(from the lamp in view)" in capsys.readouterr().out
+    run = read_recording("run.csv")
+    assert float(run.metadata["drive_lag_s"]) == pytest.approx(0.4 - 0.1, abs=0.51 / 120)
+    assert np.flatnonzero(run.voltage[:, 0] > 0.0)[0] in (47, 48)
+
+
 def test_motion_of_a_recording_comes_back(folder):
     """sin θ from a simulated recording, drawn and tracked, comes back within 0.003."""
     times = np.arange(60) / 120.0
@@ -143,7 +160,7 @@ def test_metres_from_a_known_distance(folder, capsys):
         (track, ["nothing.mp4", "-o", "run.csv"], "nothing.mp4 does not exist"),
         (track, ["grey", "-o", "run.csv", "--frame-rate", "30"], "No frame of grey gives an angle"),
         (track, ["grey", "-o", "run.txt"], "neither .csv nor .mcap"),
-        (track, ["grey", "-o", "run.csv", "--drive", "no.csv"], "There is no drive recording no.csv"),
+        (track, ["grey", "-o", "run.csv", "--drive", "no.csv"], "There is no drive file no.csv"),
         (render, ["out.mp4", "--motion", "no.csv"], "no.csv"),
         (render, ["out.xyz", *SMALL], "end its name in .mp4"),
         (render, ["out.mp4", "--background", "no.png"], "background no.png is not a readable image"),

@@ -1,14 +1,15 @@
 import numpy as np
 import pytest
-from hasel_recording import Recording, read_recording, write_recording
+from hasel_recording import Recording, RecordingWarning, read_recording, write_recording
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.offline.drive import (
     Drive,
+    after_the_drive,
     align_by_hand,
     align_by_lamp,
+    align_by_response,
     align_by_stamp,
     read_drive,
-    until_drive_ends,
 )
 from hasel_tracker.offline.run_output import write_run
 from hasel_tracker.offline.tracked_run import TrackedRun
@@ -56,13 +57,41 @@ def test_a_lag_by_hand_or_by_a_lamp():
         align_by_lamp(run, drive, np.full(240, 20.0))
 
 
-def test_frames_after_the_drive_are_left_out_aloud():
-    """Where the drive's recording ends before the video the voltage is not known: the run ends there, aloud."""
+@pytest.mark.parametrize("suffix", ["csv", "mcap"])
+def test_after_the_drive_nothing_is_held(tmp_path, suffix):
+    """Where the drive's recording ends before the video, 3005 V are not held: the frames stay, their drive is NaN, a
+    sentence says so, and what reads the recording leaves them out aloud."""
     drive = Drive(np.arange(100) / 100.0, np.full((100, 2), 3005.0))
-    cut, said = until_drive_ends(run_of(0.5), drive, align_by_hand(0.0, run_of(0.5), drive))
-    assert cut.time_s[-1] == pytest.approx(1.0, abs=1 / 120)
+    run, path = run_of(0.5), tmp_path / f"run.{suffix}"
+    alignment = align_by_hand(0.0, run, drive)
+    said = after_the_drive(run, drive, alignment)
     assert "ends 0.992 s before the video" in said
-    assert until_drive_ends(cut, drive, align_by_hand(0.0, cut, drive)) == (cut, "")
+    assert "last 119 frames" in said
+    assert said in write_run(path, run, drive, alignment, {})
+    with pytest.warns(RecordingWarning, match="119 frames after the drive's end were left out"):
+        recording = read_recording(path)
+    assert recording.time_s[-1] == pytest.approx(1.0)
+    assert (recording.voltage == 3005.0).all()
+    if suffix == "csv":
+        rows = [line.split(",") for line in path.read_text().splitlines() if not line.startswith("#")]
+        assert len(rows) == 241
+        assert rows[-1][1:3] == ["", ""]
+        assert float(rows[-1][-1]) == run.sin_theta[-1]
+    short = run.between(0.0, 0.9)
+    assert after_the_drive(short, drive, alignment) == ""
+
+
+@pytest.mark.parametrize("suffix", ["csv", "mcap"])
+def test_a_pressure_is_merged_as_well(tmp_path, suffix):
+    """Whatever drives the body is kept with its channel's name and SI unit; its lag is given by hand."""
+    (tmp_path / "pump.csv").write_text("time_ms,pressure_chamber_kpa\n0,0\n1000,25\n2500,0\n")
+    drive, run, path = read_drive(tmp_path / "pump.csv"), run_of(1.0), tmp_path / f"run.{suffix}"
+    with pytest.raises(TrackerError, match="the drive has pressure_chamber_pa; give --lag"):
+        align_by_response(run, drive)
+    write_run(path, run, drive, align_by_hand(-0.5, run, drive), {})
+    recording = read_recording(path)
+    assert [channel.column for channel in recording.channels] == ["pressure_chamber_pa"]
+    assert recording.drive_signal[[30, 90], 0].tolist() == [0.0, 25e3]
 
 
 def test_stamps_decide_where_both_have_them():
@@ -98,10 +127,13 @@ def test_merged_run_reads_back(tmp_path, suffix, stamp_ns):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("time_s,voltage_upper_v\n0,1\n", "no column voltage_lower_v"),
-        ("time_s,voltage_upper_v,voltage_lower_v\n0,abc,0\n", "a row that is not numbers"),
-        ("time_s,voltage_upper_v,voltage_lower_v\n1,0,0\n0,0,0\n", "does not increase"),
-        ("time_s,voltage_upper_v,voltage_lower_v\n", "no rows"),
+        ("time_s\n0\n", "has no drive, only time_s"),
+        (
+            "time_s,voltage_upper_v,voltage_lower_v\n0,abc,0\n",
+            "line 2: 'abc' in column voltage_upper_v is not a number",
+        ),
+        ("time_s,voltage_upper_v,voltage_lower_v\n1,0,0\n0,0,0\n", "does not come after 1"),
+        ("time_s,voltage_upper_v,voltage_lower_v\n", "no frames"),
     ],
 )
 def test_unusable_drives_are_explained(tmp_path, text, message):
