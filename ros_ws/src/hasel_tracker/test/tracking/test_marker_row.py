@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hasel_tracker.tracking.blobs import Blob
 from hasel_tracker.tracking.body_link import BodyLink
-from hasel_tracker.tracking.marker_row import marker_candidates, possible_rows, rows_on_a_body
+from hasel_tracker.tracking.marker_row import marker_candidates, possible_rows, rival_near, rows_on_a_body
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -66,3 +66,28 @@ def test_only_rows_with_a_body_between_the_dots_count():
     same = lambda a, b: SEEN if abs(a.centre[1] - b.centre[1]) < 120.0 else UNSEEN  # noqa: E731
     assert len(rows_on_a_body(blobs, 3, same)) == 2
     assert len(rows_on_a_body(blobs[:3], 3, same)) == 1
+
+
+def test_neighbours_have_no_other_dot_between_them():
+    """Of four like dots in a line no row of three skips one; a speck between two dots does not part them."""
+    line = [blob(200.0 + 150.0 * number, 300.0) for number in range(4)]
+    assert {tuple(sorted(row)) for row in possible_rows(line, 3)} == {(0, 1, 2), (1, 2, 3)}
+    speck = blob(425.0, 302.0, area=60.0)
+    assert (0, 1, 2) in possible_rows([*line[:3], speck], 3)
+
+
+@pytest.mark.parametrize(
+    ("other", "link", "rival"),
+    [
+        (blob(1460.0, 500.0), SEEN, True),
+        (blob(1460.0, 500.0, area=1500.0, roundness=0.3), SEEN, True),  # two things that touch
+        (blob(1460.0, 500.0), UNSEEN, False),
+        (blob(1460.0, 500.0, area=60.0), SEEN, False),
+        (blob(1500.0, 100.0), SEEN, False),
+    ],
+)
+def test_a_rival_lies_near_a_marker_and_on_the_body(other, link, rival):
+    """Something of a marker's size or more beside a marker, to which the body leads, may be the marker instead."""
+    blobs = [*(blob(*point) for point in BODY), other]
+    assert rival_near(blobs, BODY, range(3), 450.0, lambda a, b: link) is rival
+    assert not rival_near(blobs[:3], BODY, range(3), 450.0, lambda a, b: link)
