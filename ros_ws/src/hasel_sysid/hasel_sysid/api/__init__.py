@@ -1,0 +1,22 @@
+"""The steps in Python: `import hasel_sysid.api as h`, then h.load, h.model, h.simulate, h.fit, h.diagnose, h.improve.
+
+Results print as sentences and plot; docs/api.md lists them.
+"""
+
+from hasel_sysid.api.results import Diagnosed, Fitted, Improved, Recordings, Simulated
+from hasel_sysid.api.steps import diagnose, fit, improve, load, model, save, simulate
+
+__all__ = [
+    "Diagnosed",
+    "Fitted",
+    "Improved",
+    "Recordings",
+    "Simulated",
+    "diagnose",
+    "fit",
+    "improve",
+    "load",
+    "model",
+    "save",
+    "simulate",
+]

@@ -1,0 +1,96 @@
+"""Results of the steps: each prints as sentences and plots."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from hasel_sim.model import Model
+
+from hasel_sysid.api.drawing import draw_comparisons, draw_ranking, draw_recordings, draw_stages
+from hasel_sysid.api.picture import Picture
+from hasel_sysid.compare import Comparison
+from hasel_sysid.dataset import Experiment
+from hasel_sysid.diagnosis import Diagnosis
+from hasel_sysid.fit import FitResult
+from hasel_sysid.improve import Improvement
+
+
+class Recordings(tuple[Experiment, ...]):
+    """Recordings that were read; a tuple, so that they can be chosen from by number and added."""
+
+    def __getitem__(self, which):
+        """One of them, or some of them for a slice."""
+        found = super().__getitem__(which)
+        return Recordings(found) if isinstance(which, slice) else found
+
+    def __add__(self, other: Sequence[Experiment]) -> "Recordings":
+        return Recordings((*self, *other))
+
+    def __str__(self) -> str:
+        return "\n".join(str(each.recording) for each in self)
+
+    def plot(self) -> Picture:
+        """Measured sin θ of every recording."""
+        return draw_recordings(self)
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """Recordings simulated with a model. comparison: errors of every run, and where the model fails."""
+
+    comparison: Comparison
+
+    @property
+    def model(self) -> Model:
+        """The model that was simulated."""
+        return self.comparison.model
+
+    def __str__(self) -> str:
+        return "\n".join([str(self.comparison), *(f"  {line}" for line in self.comparison.where.sentences())])
+
+    def plot(self, *others: "Simulated") -> Picture:
+        """Measured against simulated, with other models beside this one."""
+        return draw_comparisons([self.comparison, *(other.comparison for other in others)])
+
+
+@dataclass(frozen=True)
+class Fitted(Simulated):
+    """A fitted model. result: values, standard errors, and what the recordings do not determine."""
+
+    result: FitResult
+
+    def __str__(self) -> str:
+        return f"{self.result}\n{super().__str__()}"
+
+
+@dataclass(frozen=True)
+class Diagnosed:
+    """Which effects are missing. diagnosis: what is said of each; fitted: the model that was diagnosed."""
+
+    diagnosis: Diagnosis
+    fitted: FitResult
+
+    def __str__(self) -> str:
+        return "\n".join(filter(None, [str(self.diagnosis), str(self.diagnosis.adequacy or "")]))
+
+    def plot(self) -> Picture:
+        """The most probable effects, with the share of the error that each removes."""
+        return draw_ranking(self.diagnosis)
+
+
+@dataclass(frozen=True)
+class Improved:
+    """A model with what was missing. improvement: all stages, verdict and reasons."""
+
+    improvement: Improvement
+
+    @property
+    def model(self) -> Model:
+        """The last stage's."""
+        return self.improvement.model
+
+    def __str__(self) -> str:
+        return str(self.improvement)
+
+    def plot(self) -> Picture:
+        """The error falling, on fitted and on unseen runs."""
+        return draw_stages(self.improvement.stages, self.improvement.noise_floor)
