@@ -28,6 +28,8 @@ from hasel_sysid.report.packed import packed
 from hasel_sysid.report.provenance import provenance
 
 REPORT_FILE = "report.html"
+Figure = go.Figure | dict[str, Any]
+"""Plotly's, or what plotly.js takes."""
 
 
 def write_report(content: ReportContent, folder: Path) -> Path:
@@ -68,9 +70,9 @@ def render(content: ReportContent) -> str:
     )
 
 
-def _figures(content: ReportContent) -> dict[str, list[go.Figure]]:
+def _figures(content: ReportContent) -> dict[str, list[Figure]]:
     """Figures of every place of the page; those of one place stand side by side where there is room."""
-    figures: dict[str, list[go.Figure]] = {}
+    figures: dict[str, list[Figure]] = {}
     if content.stages:
         figures["waterfall"] = waterfall_figures(content.stages, content.noise_floor)
     for number, run in enumerate(content.runs):
@@ -88,17 +90,24 @@ def _figures(content: ReportContent) -> dict[str, list[go.Figure]]:
     return figures
 
 
-def _places(name: str, figures: Sequence[go.Figure]) -> str:
+def _places(name: str, figures: Sequence[Figure]) -> str:
     each = [
-        f'<div class="figure" data-figure="{name}{n}" style="height:{figure.layout.height}px"></div>'
+        f'<div class="figure" data-figure="{name}{n}" style="height:{_layout(figure)["height"]}px"></div>'
         for n, figure in enumerate(figures)
     ]
     return each[0] if len(each) == 1 else f'<div class="pair">{"".join(each)}</div>'
 
 
-def _json(figures: dict[str, go.Figure]) -> str:
+def _layout(figure: Figure) -> Any:
+    return figure["layout"] if isinstance(figure, dict) else figure.layout
+
+
+def _json(figures: dict[str, Figure]) -> str:
     """All figures as plotly.js takes them, numbers to six digits."""
-    content = {name: {"data": figure.data, "layout": figure.layout} for name, figure in figures.items()}
+    content = {
+        name: figure if isinstance(figure, dict) else {"data": figure.data, "layout": figure.layout}
+        for name, figure in figures.items()
+    }
     return json.dumps(_plain(content), separators=(",", ":"))
 
 

@@ -7,6 +7,7 @@ import zlib
 from html.parser import HTMLParser
 
 import numpy as np
+import plotly.graph_objects as go
 import pytest
 from hasel_sim.model import load_model
 from hasel_sim.run import Simulation
@@ -180,13 +181,15 @@ def test_a_run_shows_residuals_before_and_after_and_the_angle_beside_its_sine():
         "r", time, 0.3 * np.sin(time), {"a": 0.2 * np.sin(time), "b": 0.3 * np.sin(time)}, driven=driven
     )
     figure = overlay_figure(run)
-    above = [trace for trace in figure.data if trace.yaxis in (None, "y")]
-    below = [trace for trace in figure.data if trace.yaxis == "y3"]
-    assert [trace.name for trace in above] == ["measured", "a", "b"]
-    assert [trace.name for trace in below] == ["a", "b"]
-    assert np.array(below[0].y) == pytest.approx(0.1 * np.sin(time), abs=2e-5)
-    assert np.array(below[1].y) == pytest.approx(0.0, abs=2e-5)
-    ticks = dict(zip(figure.layout.yaxis2.ticktext, figure.layout.yaxis2.tickvals, strict=True))
+    above = [trace for trace in figure["data"] if trace["yaxis"] == "y"]
+    below = [trace for trace in figure["data"] if trace["yaxis"] == "y3"]
+    assert [trace["name"] for trace in above] == ["measured", "a", "b"]
+    assert [trace["name"] for trace in below] == ["a", "b"]
+    assert np.array(below[0]["y"]) == pytest.approx(0.1 * np.sin(time), abs=2e-5)
+    assert np.array(below[1]["y"]) == pytest.approx(0.0, abs=2e-5)
+    right = figure["layout"]["yaxis2"]
+    ticks = dict(zip(right["ticktext"], right["tickvals"], strict=True))
     assert ticks["10°"] == pytest.approx(np.sin(np.deg2rad(10)))
-    assert {shape.fillcolor for shape in figure.layout.shapes} == set(CHANNELS[:2])
-    assert above[2].line.width < above[0].marker.size / 2
+    assert {shape["fillcolor"] for shape in figure["layout"]["shapes"]} == set(CHANNELS[:2])
+    assert above[2]["line"]["width"] < above[0]["marker"]["size"] / 2
+    go.Figure(figure)  # raises where plotly knows a name or a value otherwise

@@ -1,60 +1,62 @@
 """Measured against simulated angle of one run, and below it what each model leaves."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
-import plotly.graph_objects as go
-from plotly.subplots import make_subplots
 
 from hasel_sysid.report.content import RunOverlay
 from hasel_sysid.report.decimate import decimate
-from hasel_sysid.report.figures.style import CHANNELS, MEASURED, model_colour, styled
+from hasel_sysid.report.figures.style import CHANNELS, MEASURED, base_layout, model_colour, plain_axis
 
 _HEIGHT, _MOST_POINTS, _MOST_SHADES = 330, 400, 60
 _DEGREES = (1, 2, 5, 10, 15, 30)
 """Steps of the angle's axis."""
 
 
-def overlay_figure(run: RunOverlay) -> go.Figure:
-    """sin θ with θ beside it, dots measured and lines simulated; below, measured minus simulated before and after."""
-    figure = make_subplots(
-        rows=2,
-        cols=1,
-        shared_xaxes=True,
-        row_heights=[0.64, 0.36],
-        vertical_spacing=0.05,
-        specs=[[{"secondary_y": True}], [{}]],
-    )
-    labels = list(run.simulated)
+def overlay_figure(run: RunOverlay) -> dict[str, Any]:
+    """sin θ with θ beside it, dots measured and lines simulated; below, measured minus simulated before and after.
+
+    There is one for every run, so it is written as plotly.js takes it: plotly's own checks cost a second for twelve.
+    """
     time, measured = _points(run.time, run.measured)
     dots = {"color": MEASURED, "size": 5, "opacity": 0.45}
-    figure.add_trace(
-        go.Scatter(x=time, y=measured, name="measured", meta="measured", mode="markers", marker=dots),
-        row=1,
-        col=1,
-    )
+    traces = [_trace(time, measured, "measured", "y", mode="markers", marker=dots, meta="measured")]
+    labels = list(run.simulated)
     for number, label in enumerate(labels):
         last = number == len(labels) - 1
         line = {"color": model_colour(number, len(labels)), "width": 1.4 if last else 1.1}
-        for row, series in ((1, run.simulated[label]), (2, run.measured - run.simulated[label])):
-            x, y = _points(run.time, series)
-            trace = go.Scatter(
-                x=x,
-                y=y,
-                name=label,
-                legendgroup=label,
-                showlegend=row == 1,
-                mode="lines",
-                line=line if last else {**line, "dash": "dot"},
-            )
-            figure.add_trace(trace, row=row, col=1)
-    _add_degrees(figure, run)
-    _shade(figure, run)
-    figure.update_xaxes(title_text="time [s]", title_standoff=4, row=2)
-    figure.update_yaxes(title_text="sin θ", title_standoff=4, row=1, col=1, secondary_y=False)
-    figure.update_yaxes(title_text="residual", title_standoff=4, row=2, col=1)
-    styled(figure, _HEIGHT)
-    return figure.update_layout(showlegend=False, margin={"l": 58, "r": 46, "t": 8, "b": 38})
+        line |= {} if last else {"dash": "dot"}
+        for axis, series in (("y", run.simulated[label]), ("y3", run.measured - run.simulated[label])):
+            traces.append(_trace(*_points(run.time, series), label, axis, mode="lines", line=line))
+    span, ticks = _angle_axis(run)
+    # an axis without a trace is not drawn
+    traces.append(_trace(time[:1], span[:1], "", "y2", mode="markers", opacity=0, hoverinfo="skip"))
+    layout = {
+        **base_layout(_HEIGHT),
+        "showlegend": False,
+        "margin": {"l": 58, "r": 46, "t": 8, "b": 38},
+        "xaxis": plain_axis(
+            anchor="y3", title={"text": "time [s]", "standoff": 4}, ticks="outside", ticklen=4
+        ),
+        "yaxis": plain_axis(domain=[0.4, 1.0], range=span, title={"text": "sin θ", "standoff": 4}),
+        "yaxis2": plain_axis(
+            overlaying="y",
+            side="right",
+            range=span,
+            showgrid=False,
+            tickvals=[float(np.sin(np.deg2rad(tick))) for tick in ticks],
+            ticktext=[f"{tick}°" for tick in ticks],
+            title={"text": "θ", "standoff": 2},
+        ),
+        "yaxis3": plain_axis(domain=[0.0, 0.34], title={"text": "residual", "standoff": 4}),
+        "shapes": _shades(run),
+    }
+    return {"data": traces, "layout": layout}
+
+
+def _trace(time: list[float], series: list[float], name: str, axis: str, **more: Any) -> dict[str, Any]:
+    return {"type": "scatter", "x": time, "y": series, "name": name, "xaxis": "x", "yaxis": axis, **more}
 
 
 def model_colours(run: RunOverlay) -> list[tuple[str, str, bool]]:
@@ -71,46 +73,36 @@ def _points(time: np.ndarray, series: np.ndarray) -> tuple[list[float], list[flo
     return np.round(time, 4).tolist(), np.round(series, 5).tolist()
 
 
-def _add_degrees(figure: go.Figure, run: RunOverlay) -> None:
-    """The angle itself on the right, at the same heights as its sine."""
+def _angle_axis(run: RunOverlay) -> tuple[list[float], list[int]]:
+    """Range of sin θ, and the whole angles [deg] that are marked within it."""
     shown = np.concatenate([run.measured, *run.simulated.values()])
     low, high = float(np.nanmin(shown)), float(np.nanmax(shown))
     margin = 0.06 * (high - low) or 0.01
-    span = [low - margin, high + margin]
     widest = np.rad2deg(np.arcsin(min(1.0, max(abs(low), abs(high)))))
     step = next((each for each in _DEGREES if widest / each <= 3.5), _DEGREES[-1])
     ticks = [n * step for n in range(-90 // step, 90 // step + 1)]
-    ticks = [tick for tick in ticks if span[0] <= np.sin(np.deg2rad(tick)) <= span[1]]
-    figure.add_trace(
-        go.Scatter(x=[run.time[0]], y=[low], mode="markers", opacity=0, hoverinfo="skip", showlegend=False),
-        row=1,
-        col=1,
-        secondary_y=True,
-    )
-    figure.update_yaxes(range=span, row=1, col=1)
-    figure.update_yaxes(
-        tickvals=[float(np.sin(np.deg2rad(tick))) for tick in ticks],
-        ticktext=[f"{tick}°" for tick in ticks],
-        title_text="θ",
-        title_standoff=2,
-        showgrid=False,
-        row=1,
-        col=1,
-        secondary_y=True,
-    )
+    span = [low - margin, high + margin]
+    return span, [tick for tick in ticks if span[0] <= np.sin(np.deg2rad(tick)) <= span[1]]
 
 
-def _shade(figure: go.Figure, run: RunOverlay) -> None:
+def _shades(run: RunOverlay) -> list[dict[str, Any]]:
     """A tint behind both plots while a channel is driven."""
-    for (begin, end, channel), _ in zip(run.driven, range(_MOST_SHADES), strict=False):
-        figure.add_vrect(
-            x0=begin,
-            x1=end,
-            fillcolor=CHANNELS[channel % len(CHANNELS)],
-            opacity=0.13,
-            line_width=0,
-            layer="below",
-        )
+    return [
+        {
+            "type": "rect",
+            "xref": "x",
+            "yref": "paper",
+            "x0": begin,
+            "x1": end,
+            "y0": 0,
+            "y1": 1,
+            "fillcolor": CHANNELS[channel % len(CHANNELS)],
+            "opacity": 0.13,
+            "line": {"width": 0},
+            "layer": "below",
+        }
+        for begin, end, channel in run.driven[:_MOST_SHADES]
+    ]
 
 
 def driven_stretches(

@@ -1,5 +1,7 @@
 """One look for all figures."""
 
+from typing import Any
+
 import plotly.graph_objects as go
 
 MEASURED = "#30363d"
@@ -17,18 +19,31 @@ def model_colour(number: int, count: int) -> str:
     return MODELS[0] if number == count - 1 else MODELS[1 + number % (len(MODELS) - 1)]
 
 
+_AXIS = {"gridcolor": GRID, "zerolinecolor": GRID, "linecolor": "#c3c9cf"}
+
+
+def base_layout(height: int) -> dict[str, Any]:
+    """Fonts, colours and margins of every figure; height in pixels."""
+    return {
+        "height": height,
+        "autosize": True,
+        "font": {"family": FONT, "size": 13, "color": "#24292f"},
+        "paper_bgcolor": "rgba(0,0,0,0)",
+        "plot_bgcolor": "rgba(0,0,0,0)",
+        "margin": {"l": 60, "r": 20, "t": 44, "b": 48},
+        "hoverlabel": {"font": {"family": FONT}},
+        "legend": {"orientation": "h", "y": 1.0, "yanchor": "top", "x": 0.05, "yref": "container"},
+    }
+
+
+def plain_axis(**more: Any) -> dict[str, Any]:
+    """An axis of a figure that is written as plain dictionaries."""
+    return {**_AXIS, **more}
+
+
 def styled(figure: go.Figure, height: int) -> go.Figure:
     """Apply fonts, grid and margins; height in pixels."""
-    figure.update_layout(
-        height=height,
-        autosize=True,
-        font={"family": FONT, "size": 13, "color": "#24292f"},
-        paper_bgcolor="rgba(0,0,0,0)",
-        plot_bgcolor="rgba(0,0,0,0)",
-        margin={"l": 60, "r": 20, "t": 44, "b": 48},
-        hoverlabel={"font": {"family": FONT}},
-        legend={"orientation": "h", "y": 1.0, "yanchor": "top", "x": 0.05, "yref": "container"},
-    )
-    figure.update_xaxes(gridcolor=GRID, zerolinecolor=GRID, linecolor="#c3c9cf", ticks="outside", ticklen=4)
-    figure.update_yaxes(gridcolor=GRID, zerolinecolor=GRID, linecolor="#c3c9cf")
+    figure.update_layout(base_layout(height))
+    figure.update_xaxes(_AXIS, ticks="outside", ticklen=4)
+    figure.update_yaxes(_AXIS)
     return figure
