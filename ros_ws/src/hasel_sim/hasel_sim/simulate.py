@@ -1,5 +1,6 @@
 """Simulate runs with a model, with derivatives of the angle by any of its parameters."""
 
+import warnings
 from collections.abc import Sequence
 
 import numpy as np
@@ -20,6 +21,12 @@ def simulate(model: Model, run: Run, slopes_by: Sequence[str] = (), keep_shapes:
     slopes_by: names of parameters by which sin theta is differentiated, exactly to the tolerance of the steps.
     Raises SimulationError when the motion cannot be followed, ModelError for an unknown parameter.
     """
+    if model.has_muscles and not len(model.levels) and run.schedule is not None and run.schedule.signal.any():
+        warnings.warn(
+            f"model '{model.name}' has no amplitudes, so nothing that drives run '{run.name}' contracts its muscles: "
+            "give it some with model.with_levels([…]), or fit it",
+            stacklevel=2,
+        )
     (result,) = simulate_many([(model, run)], slopes_by, keep_shapes)
     if isinstance(result, Exception):
         raise result

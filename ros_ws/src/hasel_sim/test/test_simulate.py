@@ -133,3 +133,11 @@ def test_a_heavy_tip_that_is_let_go_from_far_is_followed():
     model = model.with_numerics(mesh_density=0.5, quadrature_order=2, steps_per_second=120.0)
     run = Run("let go", np.arange(0.0, 0.2, 1 / 120), None, "static_equilibrium", 3.0)
     assert np.isfinite(simulate(model, run).sin_theta).all()
+
+
+def test_a_driven_model_without_amplitudes_is_said():
+    """It would stay straight without a word: with_levels was forgotten."""
+    time = np.arange(5) / 120
+    driven = Run("driven", time, DriveSchedule(np.zeros(1), np.array([[5500.0, 0.0]])))
+    with pytest.warns(UserWarning, match="has no amplitudes"):
+        simulate(load_model("swimmer"), driven)

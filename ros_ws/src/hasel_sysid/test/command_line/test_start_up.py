@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from hasel_sysid.command_line import parsers
@@ -48,3 +49,42 @@ def test_every_executable_has_its_options(name, monkeypatch, capsys):
 def test_the_methods_of_fit_are_all_there():
     """The choices are written out so that --help need not import the methods."""
     assert sorted(METHODS) == list(parsers.FIT_METHODS)
+
+
+RUNS = sorted((Path(__file__).resolve().parents[5] / "data" / "unseen_rig" / "quadratic_drag").glob("*.csv"))
+SECONDS, MEGABYTES, SLOWER = 3.0, 300.0, 5.0
+"""Of processor and of memory that comparing twelve runs may take; how much slower a busy machine may count."""
+
+
+def used(*arguments: str) -> tuple[float, float]:
+    """Processor time [s] and largest memory [MB] of a fresh interpreter and all that it starts."""
+    program = (
+        "import resource, subprocess, sys\n"
+        "subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)\n"
+        "used = resource.getrusage(resource.RUSAGE_CHILDREN)\n"
+        "print(used.ru_utime + used.ru_stime, used.ru_maxrss / 1024)"
+    )
+    command = [sys.executable, "-c", program, sys.executable, *arguments]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    seconds, megabytes = map(float, done.stdout.split())
+    return seconds, megabytes
+
+
+def test_comparing_twelve_runs_takes_seconds(tmp_path):
+    """Loops compiled before; the report is written too."""
+    compare = ("-m", "hasel_sysid.command_line.compare", *map(str, RUNS), "--output", str(tmp_path))
+    used(*compare)
+    seconds, megabytes = used(*compare)
+    assert len(RUNS) == 12
+    assert seconds < SLOWER * SECONDS
+    assert megabytes < 1.2 * MEGABYTES
+    assert (tmp_path / "report.html").stat().st_size < 2_000_000
+
+
+def test_help_takes_a_part_of_a_second():
+    """Of any command."""
+    program = (
+        "import sys; sys.argv = ['improve', '--help']\n"
+        "from hasel_sysid.command_line.entry import improve\nimprove()"
+    )
+    assert used("-c", program)[0] < SLOWER * 0.5
