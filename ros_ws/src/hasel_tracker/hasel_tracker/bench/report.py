@@ -17,7 +17,7 @@ from hasel_tracker.lab.unforeseen import DECEIVING, UNFORESEEN
 from hasel_tracker.lab.wrong_while_valid import Honesty, measure_honesty
 
 CSRT_FRAMES = 12
-LAB_SEEDS, DRAWN_SEEDS = 10, 3
+LAB_SEEDS, DRAWN_SEEDS, DECEIVING_SEEDS = 10, 3, 20
 
 
 @dataclass(frozen=True)
@@ -157,7 +157,7 @@ def run_bench(frames: int, told: Callable[[str], None]) -> BenchReport:
         seeds = LAB_SEEDS if case in ADVERSARIAL else DRAWN_SEEDS if case in UNFORESEEN else 1
         honesty.append(measure_honesty(case, max(case.least_frames, frames // 3), seeds))
         told(str(honesty[-1]))
-    deceiving = [measure_honesty(case, case.least_frames, DRAWN_SEEDS) for case in DECEIVING]
+    deceiving = [measure_honesty(case, case.least_frames, DECEIVING_SEEDS) for case in DECEIVING]
     for each in deceiving:
         told(str(each))
     return BenchReport(accuracies, csrt, robustness, honesty, deceiving, speed)
