@@ -3,9 +3,10 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help build test test-slow lint format demo bench bench-far bench-hidden clean
+.PHONY: help build test test-slow lint format docs demo bench bench-far bench-hidden clean
 
 ENVIRONMENT := . setup/environment.bash
+PACKAGES := hasel_recording hasel_driver hasel_tracker hasel_sim hasel_sysid hasel_bringup
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 16
@@ -14,8 +15,8 @@ build: ## install the Python packages and build the ROS 2 workspace
 	@setup/install_wheels.sh
 	@$(ENVIRONMENT) && python setup/build_workspace.py
 
-lint: build ## check style and format
-	@$(ENVIRONMENT) && python -m ruff check . && python -m ruff format --check .
+lint: build ## check style, format and types
+	@$(ENVIRONMENT) && python -m ruff check . && python -m ruff format --check . && python -m mypy
 
 format: build ## rewrite the code in the project's format
 	@$(ENVIRONMENT) && { python -m ruff check --fix .; python -m ruff format .; }
@@ -25,6 +26,11 @@ test: lint ## lint, then every test but the slow ones
 
 test-slow: build ## the slow tests
 	@$(ENVIRONMENT) && python -m pytest -m slow
+
+docs: build ## write the reference from the docstrings, build/docs/index.html
+	@$(ENVIRONMENT) && python -m pip install --quiet --disable-pip-version-check -r docs/requirements.txt
+	@$(ENVIRONMENT) && python -m pdoc --no-show-source -o build/docs $(PACKAGES)
+	@echo "Written: build/docs/index.html"
 
 demo: build ## fit the swimmer, compare on unseen runs, replay one, write report.html (BODY=DIR: measured bodies too)
 	@bin/ros2-run hasel_bringup demo $(foreach folder,$(BODY) $(BEAM),--body $(folder))

@@ -62,7 +62,9 @@ def grounding_times(client: RosClient, rig: Rig, count: int) -> list[float]:
     return times_s
 
 
-def report(name: str, values_s: Sequence[float], bar_s: float, percentile: float) -> tuple[str, bool]:
+def report(
+    name: str, values_s: Sequence[float] | np.ndarray, bar_s: float, percentile: float
+) -> tuple[str, bool]:
     """One line with median, high percentile or maximum, and the bar; and whether it is met."""
     high_s = float(np.percentile(values_s, percentile))
     label = "maximum" if percentile == 100 else f"{percentile:g}th percentile"

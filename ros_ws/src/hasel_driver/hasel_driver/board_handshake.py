@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from typing import TypeVar
 
 from hasel_driver import protocol
 from hasel_driver.errors import PortError, ProtocolError
@@ -16,6 +17,7 @@ RESET_S = 0.3  # a reset at opening has begun by then: telemetry after it comes 
 ANSWER_TIMEOUT_S = 1.0
 GROUND_TIMEOUT_S = 0.5  # for a muscle that was charged when the port was opened
 KEEPS_FAULT = {"INTERLOCK", "DISCREPANCY", "UNPROVEN"}
+_Message = TypeVar("_Message", protocol.Reply, protocol.Event, protocol.Telemetry)
 
 
 class BoardHandshake:
@@ -70,7 +72,7 @@ class BoardHandshake:
                 return
 
     def _inherited_fault(self) -> Fault | None:
-        report = self._await(lambda message: isinstance(message, protocol.Telemetry), "telemetry")
+        report = self._await(protocol.Telemetry, lambda message: True, "telemetry")
         return Fault(board_fault(report.fault_code)) if report.mode is Mode.FAULT else None
 
     def _apply(self, limits: Limits) -> None:
@@ -98,7 +100,8 @@ class BoardHandshake:
         self._sequence = (self._sequence + 1) % protocol.SEQUENCE_MODULUS
         self._port.write(protocol.encode_command(self._sequence, *words))
         return self._await(
-            lambda message: isinstance(message, protocol.Reply) and message.sequence == self._sequence,
+            protocol.Reply,
+            lambda reply: reply.sequence == self._sequence,
             f"answer to {' '.join(str(word) for word in words)}",
         )
 
@@ -107,11 +110,11 @@ class BoardHandshake:
             f"The board on {self._port.path} answered {' '.join(reply.words)} to {text}: reset it and try again."
         )
 
-    def _await(self, wanted: Callable[[protocol.Line], bool], what: str) -> protocol.Line:
+    def _await(self, kind: type[_Message], wanted: Callable[[_Message], bool], what: str) -> _Message:
         deadline_s = self._clock() + ANSWER_TIMEOUT_S
         while self._clock() < deadline_s:
             for message in self._messages():
-                if wanted(message):
+                if isinstance(message, kind) and wanted(message):
                     return message
         raise PortError(
             f"The device on {self._port.path} sent no {what} within {ANSWER_TIMEOUT_S} s: check that it is"

@@ -13,6 +13,7 @@ from hasel_recording.topics import COMMAND, NAMESPACE, STATE
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.publisher import Publisher
 from std_srvs.srv import Trigger
 
 from hasel_driver.errors import RefusedError
@@ -30,7 +31,7 @@ class ConsoleLink:
         self._node = rclpy.create_node("hasel_console", namespace=NAMESPACE)
         self._state: SupplyState | None = None
         self._heard_s = 0.0
-        self._commands = None
+        self._commands: Publisher | None = None
         subscription(self._node, SupplyState, STATE, self._take, Role.SAMPLES)
         self._clients: dict[str, Any] = {}
         self._executor = SingleThreadedExecutor()

@@ -240,7 +240,8 @@ class DriverNode(LifecycleNode):
         thread = self._thread
         inputs = self._inputs
         holders = inputs.holders.names(inputs.stop_topic.present())
-        status, details = None, {"emergency_stop_held_by": ", ".join(holders) or "nobody"}
+        status: Status | None = None
+        details: dict[str, object] = {"emergency_stop_held_by": ", ".join(holders) or "nobody"}
         details |= self.history.summary()
         if thread is not None:
             supervisor = thread.supervisor

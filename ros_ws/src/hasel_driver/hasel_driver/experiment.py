@@ -97,8 +97,9 @@ class Experiment:
     def _begin_drive_when_rested(self) -> None:
         if self.elapsed_s >= self.plan.rest_s:
             self._drive_began_s = self._clock()
-            if self._on_board:
-                self._supervisor.start(self.plan.waveform)
+            waveform = self.plan.waveform
+            if self._on_board and isinstance(waveform, Waveform):
+                self._supervisor.start(waveform)
 
     def _drive(self, mode: Mode) -> None:
         driven_s = self._clock() - self._drive_began_s

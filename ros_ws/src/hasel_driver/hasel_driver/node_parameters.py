@@ -2,6 +2,7 @@
 
 import difflib
 from collections.abc import Callable
+from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
@@ -43,7 +44,7 @@ def values(node: Node) -> dict:
     }
 
 
-def _check_change(parameter: Parameter, value: object, in_use: bool, lower: Callable[[float], None]) -> None:
+def _check_change(parameter: Parameter, value: Any, in_use: bool, lower: Callable[[float], None]) -> None:
     parameter.check(value)
     if not in_use:
         return

@@ -2,6 +2,7 @@
 
 import difflib
 from dataclasses import dataclass
+from typing import Any
 
 from hasel_driver.errors import LimitError
 
@@ -20,7 +21,7 @@ class Parameter:
     high: float | None = None
     choices: tuple[str, ...] = ()
 
-    def check(self, value: object) -> None:
+    def check(self, value: Any) -> None:
         """Raises LimitError for a value of another kind, or outside range or choices."""
         kind = self._kind(value)
         if kind != self._kind(self.default) and (kind, self._kind(self.default)) != (
@@ -39,7 +40,7 @@ class Parameter:
                 f"{self.name} is {value!r}, one of {', '.join(self.choices)} was expected.{hint}"
             )
 
-    def convert(self, value: object) -> object:
+    def convert(self, value: Any) -> Any:
         """A whole number as a float where a float is meant."""
         return float(value) if isinstance(self.default, float) else value
 

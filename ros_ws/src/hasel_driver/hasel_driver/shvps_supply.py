@@ -61,7 +61,8 @@ class ShvpsSupply(Supply):
     def service(self, now_s: float, heartbeat: bool) -> list[Reading]:
         for channel in self._channels:
             channel.service(now_s)
-        rounds = tuple(channel.round for channel in self._channels)
+        upper, lower = (channel.round for channel in self._channels)
+        rounds = (upper, lower)
         if any(new <= old for new, old in zip(rounds, self._rounds, strict=True)):
             return []
         self._rounds = rounds

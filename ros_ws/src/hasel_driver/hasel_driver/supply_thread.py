@@ -74,7 +74,12 @@ class SupplyThread(threading.Thread):
         future: Future = Future()
         deadline_s = time.monotonic() + timeout_s
         begun = self.call(lambda: self._expectations.append(_Expectation(condition, deadline_s, future)))
-        begun.add_done_callback(lambda done: done.exception() and future.set_exception(done.exception()))
+
+        def refuse(done: Future) -> None:
+            if done.exception():
+                future.set_exception(done.exception())
+
+        begun.add_done_callback(refuse)
         return future
 
     def host_is_alive(self, part: str) -> None:

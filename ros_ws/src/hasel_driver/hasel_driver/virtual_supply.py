@@ -198,8 +198,8 @@ def main() -> None:
     parser.add_argument("--capacitance-nf", type=float, default=0.5, help="capacitance of each muscle [nF]")
     own = itertools.takewhile(lambda word: word != "--ros-args", sys.argv[1:])  # launch files add some
     arguments = parser.parse_args(list(own))
-    muscles = tuple(VirtualMuscle(capacitance_f=arguments.capacitance_nf * 1e-9) for _ in range(2))
-    supply = VirtualSupply(VirtualBoard(muscles), PseudoTerminal(arguments.link), _tell)
+    upper, lower = (VirtualMuscle(capacitance_f=arguments.capacitance_nf * 1e-9) for _ in range(2))
+    supply = VirtualSupply(VirtualBoard((upper, lower)), PseudoTerminal(arguments.link), _tell)
     commands = b""
     listening = True
     try:

@@ -36,7 +36,7 @@ def convert_main(arguments: Sequence[str] | None = None) -> int:
             f"--output {options.output} is one file for {len(options.recordings)} recordings: name a folder"
         )
 
-    def work(path: Path, drive: Path | None) -> str:
+    def work(path: Path, drive: str | Path | None) -> str:
         target = convert(path, options.output, replace=options.force, mapping=options.map, drive=drive)
         return f"{path} -> {target}"
 
@@ -66,7 +66,7 @@ def _description(recording: Recording) -> str:
     return "\n".join(lines)
 
 
-def _for_each(options: argparse.Namespace, work: Callable[[Path, Path | None], str]) -> int:
+def _for_each(options: argparse.Namespace, work: Callable[[Path, str | Path | None], str]) -> int:
     """Print the work's result for each recording; errors and warnings go to stderr, one line each."""
     try:
         drives = drive_of_each(options.recordings, options.drive)

@@ -28,7 +28,7 @@ def convert(
     *,
     replace: bool = False,
     mapping: Mapping[str, str] | None = None,
-    drive: Path | None = None,
+    drive: str | Path | None = None,
 ) -> Path:
     """Convert CSV to MCAP or MCAP to CSV and return the new file; raises RecordingError.
 

@@ -22,6 +22,7 @@ from rclpy.node import Node
 from std_msgs.msg import Header
 
 from hasel_sysid.errors import SysidError
+from hasel_sysid.live import running_error
 from hasel_sysid.live.epochs import Epochs, StreamEpoch
 from hasel_sysid.live.fitting import chosen_recordings, diagnose_recordings, fit_recordings, status
 from hasel_sysid.live.heard import Heard
@@ -42,7 +43,8 @@ class SysidNode(Node):
         self._epoch = {topic: StreamEpoch(epochs, late) for topic in (STATE, MEASURED, SIMULATED)}
         self._pairing, self._heard = Pairing(gap), Heard(reset)
         self._errors, self._starts = RunningErrors(reset, window), DriveStarts()
-        self._pairs, self._latest, self._busy, self._doing = 0, None, threading.Lock(), ""
+        self._latest: running_error.RunningError | None = None
+        self._pairs, self._busy, self._doing = 0, threading.Lock(), ""
         self._frame_id = frame_of(self, self._value("frame_id"))
         self._error = publisher(self, RunningError, ERROR, Role.EVERY_SAMPLE)
         self._fit = publisher(self, Fit, FIT, Role.RESULTS)

@@ -3,7 +3,7 @@
 import json
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from pathlib import Path
 
 from hasel_sim.errors import SimulationError
@@ -71,7 +71,8 @@ def run_cases(
 def _in_turn(
     cases: Sequence[Case], explain: Explain, pool: Executor, at_once: int
 ) -> Iterator[tuple[Case, tuple[Outcome, dict, dict]]]:
-    waiting, running = list(reversed(cases)), {}
+    waiting = list(reversed(cases))
+    running: dict[Future, Case] = {}
     while waiting or running:
         while waiting and len(running) < at_once:
             case = waiting.pop()

@@ -5,6 +5,7 @@ import os
 import sys
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 from hasel_recording import RecordingError, read_recording
@@ -79,7 +80,7 @@ class Demo:
         for body, fitted, unseen in self.bodies:
             self._step(
                 f"A measured body: fit the {body.name.replace('_', ' ')} to {_runs(fitted)}, judge on {_runs(unseen)}",
-                lambda body=body, fitted=fitted, unseen=unseen: self._measured(body, fitted, unseen),
+                partial(self._measured, body, fitted, unseen),
             )
         minutes, seconds = divmod(round(time.monotonic() - begun), 60)
         self._console.print(

@@ -87,7 +87,8 @@ class Conversation:
             time.sleep(0.001)
 
     def _take(self) -> None:
-        kinds = {protocol.Event: self.events, protocol.Telemetry: self.reports, protocol.Reply: self._replies}
+        kinds: dict[type, list] = {protocol.Event: self.events, protocol.Telemetry: self.reports}
+        kinds[protocol.Reply] = self._replies
         for line in self._lines.feed(self._port.read()):
             message = protocol.parse_device_line(line)
             kinds[type(message)].append(message)

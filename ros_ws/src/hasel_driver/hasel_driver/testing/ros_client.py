@@ -44,7 +44,7 @@ class RosClient:
         self.heard: deque[SupplyState] = deque(maxlen=10_000)
         self.node.create_subscription(SupplyState, "/hasel/state", self._take_state, 200)
         self.commands = self.node.create_publisher(Actuation, "/hasel/command", 100)
-        self._stop = None
+        self._stop: Any = None
         self._clients: dict[str, Any] = {}
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)

@@ -1,6 +1,6 @@
 """The model: a validated description, its effects and its parameters; never changed, only copied with changes."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import SimpleNamespace
@@ -132,7 +132,7 @@ class Model:
             parameters[name] = replace(self.parameter(name), value=float(value), standard_error=error)
         return replace(self, parameters=parameters)
 
-    def with_levels(self, levels: np.ndarray | Mapping[str, np.ndarray]) -> "Model":
+    def with_levels(self, levels: np.ndarray | Sequence[float] | Mapping[str, np.ndarray]) -> "Model":
         """A copy with an amplitude for each of these levels; known ones keep their value, others are dropped.
 
         levels: of every channel in its SI unit, or by the name of a channel for those that contract alike.

@@ -36,7 +36,7 @@ def identify(problem: Problem, model: Model, method: str, progress: Progress | N
 
 def _left_without_effect(fit: FitResult) -> dict[str, float]:
     """Typical values of the effects of which every fitted parameter ended on a bound that is its null, by name."""
-    typical = {}
+    typical: dict[str, float] = {}
     for effect in fit.model.effects:
         sizes = [
             p for p in effect.parameters if not p.scan and f"{effect.id}.{p.name}" in fit.evaluation.names

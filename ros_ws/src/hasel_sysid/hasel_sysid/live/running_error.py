@@ -65,9 +65,8 @@ class RunningErrors:
         self._last = pair
         if self._count == len(self._differences):
             size = max(1024, 2 * self._count)
-            self._differences, self._stamps = (
-                np.resize(kept, size) for kept in (self._differences, self._stamps)
-            )
+            self._differences = np.resize(self._differences, size)
+            self._stamps = np.resize(self._stamps, size)
         self._differences[self._count], self._stamps[self._count] = pair.difference, pair.stamp_ns
         self._count += 1
         so_far, stamps = self._differences[: self._count], self._stamps[: self._count]

@@ -17,7 +17,7 @@ class Pooled:
     scatter: float
 
 
-def pool(values: Sequence[float], errors: Sequence[float]) -> Pooled:
+def pool(values: Sequence[float] | np.ndarray, errors: Sequence[float] | np.ndarray) -> Pooled:
     """Random-effects mean of values [n] with standard errors [n] (DerSimonian and Laird, 1986)."""
     value, variance = np.asarray(values, float), np.maximum(np.asarray(errors, float) ** 2, 1e-30)
     weight = 1.0 / variance
