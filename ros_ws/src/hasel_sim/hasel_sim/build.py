@@ -184,24 +184,26 @@ class Builder:
             return ForceSlope(self._force_law(effect, above), self._force_law(effect, below), width)
         if effect.regions:
             return StressSlope(self._stress_law(effect, above), self._stress_law(effect, below), width)
-        solids = [self._solid({**self._values, identity: changed}) for changed in (above, below)]
-        return SolidSlope(*solids, width)
+        more_solid, less_solid = (
+            self._solid({**self._values, identity: changed}) for changed in (above, below)
+        )
+        return SolidSlope(more_solid, less_solid, width)
 
     def _constant_slope(self, name: str) -> ResidualSlope:
         if name.endswith(REST_CONTRACTION):
             names = [muscle.name for muscle in self.model.description.muscles]
             return ContractionSlope(names.index(name.split(".")[1]))
         more, less, width = difference_points(constant_parameter(self.model, name), self.model.values[name])
-        systems = [
+        above, below = (
             Builder(self.model.with_values({name: value}), self.nodes).system() for value in (more, less)
-        ]
-        return SystemSlope(*systems, width)
+        )
+        return SystemSlope(above, below, width)
 
     def outline_slope(self, index: int) -> ResidualSlope:
         """The derivative of the residual by one outline coefficient, which moves nodes, masses, skin and all."""
         shift = _OUTLINE_STEP * self.mesh.outline_slope[index]
-        systems = [Builder(self.model, self.nodes + sign * shift).system() for sign in (1.0, -1.0)]
-        return SystemSlope(*systems, 2 * _OUTLINE_STEP)
+        above, below = (Builder(self.model, self.nodes + sign * shift).system() for sign in (1.0, -1.0))
+        return SystemSlope(above, below, 2 * _OUTLINE_STEP)
 
 
 def difference_points(parameter: EffectParameter, value: float) -> tuple[float, float, float]:

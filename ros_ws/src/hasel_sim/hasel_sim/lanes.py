@@ -121,7 +121,7 @@ def step_together(
                 slopes_after.put(~found, slopes, ~found)
         for index in np.flatnonzero(wanted & ~found):
             try:
-                lanes[index].follow(stepper, step, index, after, slopes_after)
+                lanes[index].follow(stepper, step, index, after, slopes_after)  # type: ignore[call-overload]
             except SimulationError as error:
                 errors[index], ends[index] = error, 0
         state, slopes = after, slopes_after

@@ -1,6 +1,7 @@
 """A picture of a body's mesh: its regions, muscles, spine and markers."""
 
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 
@@ -40,7 +41,7 @@ def draw_mesh(model: Model) -> Figure:
     axes.set_ylabel("y [mm]")
     elements, nodes = len(mesh.elements), len(mesh.nodes)
     axes.set_title(f"{model.name}: {elements} elements, {nodes} nodes")
-    handles += axes.get_legend_handles_labels()[0]
+    handles += axes.get_legend_handles_labels()[0]  # type: ignore[arg-type]
     figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 6), frameon=False)
     return figure
 
@@ -75,7 +76,11 @@ def _add_elements(axes, mesh: Mesh, model: Model) -> list[Patch]:
         PolyCollection(list(outlines), facecolors=list(colours), edgecolors="white", linewidths=0.5)
     )
     for number, region in enumerate(description.body.regions, start=1):
-        style = {"facecolor": "none", "edgecolor": "#333333", "hatch": HATCHES[(number - 1) % len(HATCHES)]}
+        style: dict[str, Any] = {
+            "facecolor": "none",
+            "edgecolor": "#333333",
+            "hatch": HATCHES[(number - 1) % len(HATCHES)],
+        }
         axes.add_collection(PolyCollection(list(outlines[mesh.material == number]), linewidths=0.0, **style))
         handles.append(Patch(label=f"region {region.name}", linewidth=0.0, **style))
     return handles

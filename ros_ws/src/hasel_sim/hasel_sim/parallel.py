@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
+from functools import partial
 
 from threadpoolctl import threadpool_limits
 
@@ -72,7 +73,7 @@ def executor(jobs: int | None = None, scheduler: str | None = None) -> Iterator[
         return
     context = multiprocessing.get_context("forkserver")
     with ProcessPoolExecutor(count, mp_context=context, initializer=_start_worker) as pool:
-        pool.workers = count
+        pool.workers = count  # type: ignore[attr-defined]
         try:
             yield pool
         except BaseException:
@@ -88,7 +89,7 @@ def submit_all(
     for numbers in _batches(runs, getattr(pool, "workers", 1)):
         cases = [(model, runs[number]) for number in numbers]
         batch = pool.submit(simulate_many, cases, tuple(slopes_by))
-        batch.add_done_callback(lambda done, numbers=numbers: _hand_on(done, [futures[n] for n in numbers]))
+        batch.add_done_callback(partial(_hand_on, futures=[futures[n] for n in numbers]))
     return futures
 
 

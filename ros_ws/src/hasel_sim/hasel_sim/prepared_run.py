@@ -61,7 +61,8 @@ class PreparedRun:
             self.stepper = Stepper(self.builder.system(), numerics.tolerance_m)
             self.rows = marker_rows(model, self.builder.mesh)
             self.residual_slopes = [self.builder.residual_slope(name) for name in names]
-            self._chain, self._starts = DriveChain(model), {}
+            self._chain = DriveChain(model)
+            self._starts: dict = {}
         else:
             self.builder, self.stepper, self.rows = like.builder, like.stepper, like.rows
             self.residual_slopes, self._chain, self._starts = like.residual_slopes, like._chain, like._starts

@@ -43,7 +43,8 @@ class SimulatorNode(Node):
         _warm_up(LiveSimulator(model, **options))
         self._frame_id = frame_of(self, self._value("frame_id"))
         self._body = BodyMessage(self.live.mesh, len(self.live.markers), self._frame_id)
-        self._pace, self._counts = Pace(), Counter()
+        self._pace = Pace()
+        self._counts: Counter[str] = Counter()
         self._next_angle_ns = self._next_shape_s = 0
         self._angles = publisher(self, BendingAngle, SIMULATED, Role.EVERY_SAMPLE)
         self._shapes = publisher(self, MarkerArray, SWIMMER, Role.SHAPES)

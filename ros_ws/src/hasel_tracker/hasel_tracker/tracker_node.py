@@ -5,6 +5,7 @@ import sys
 import time
 from datetime import datetime
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -76,7 +77,7 @@ class TrackerNode(Node):
             self._camera.close()
         self._live.stop()
 
-    def _value(self, name: str) -> object:
+    def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
 
     def _open(self, source: str) -> LiveTracker:
@@ -151,7 +152,7 @@ class TrackerNode(Node):
         name = self.get_fully_qualified_name().lstrip("/")
         message = DiagnosticArray()
         message.header.stamp = self.get_clock().now().to_msg()
-        details = {"dropped frames": dropped, "broken frames": self._live.broken_frames}
+        details: dict[str, Any] = {"dropped frames": dropped, "broken frames": self._live.broken_frames}
         if camera is not None:
             details["camera"] = camera.given
         if self._live.recording is not None:

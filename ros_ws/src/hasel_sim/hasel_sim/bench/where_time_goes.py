@@ -23,7 +23,7 @@ def shares(model: Model) -> list[tuple[str, float]]:
     simulate(model, box_run(0.05))
     profile = cProfile.Profile()
     profile.runcall(simulate, model, box_run())
-    rows = pstats.Stats(profile).stats
+    rows = pstats.Stats(profile).stats  # type: ignore[attr-defined]
     total = sum(row[2] for row in rows.values())
     found = {
         label: sum(

@@ -40,7 +40,7 @@ def _check_stress(effect: MaterialEffect, null: SimpleNamespace, typical: Simple
     unknown = [name for name in effect.depends_on if name not in ("deformation", "rate")]
     expect(not unknown, effect, f"depends on {unknown}", "name deformation, rate or both in depends_on")
     for name in {"deformation", "rate"} - set(effect.depends_on):
-        moved = replace(at, **{name: parts[name] + 0.01 * rng.standard_normal((n, 2, 2))})
+        moved = replace(at, **{name: parts[name] + 0.01 * rng.standard_normal((n, 2, 2))})  # type: ignore[arg-type]
         expect(
             same(called(effect, "first_piola", (n, 2, 2), moved, typical), on),
             effect,

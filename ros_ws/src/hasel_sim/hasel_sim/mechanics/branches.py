@@ -30,7 +30,7 @@ class Branches:
     def __len__(self) -> int:
         return len(self.ratio)
 
-    def factors(self, step: float | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def factors(self, step: float | np.ndarray | Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
         """What a step [s] leaves of Q, and what it adds per C : (E1 - E0), both [branches, lanes]."""
         r = step / self.time
         return np.exp(-r), self.ratio * -np.expm1(-r) / r

@@ -69,7 +69,7 @@ class StepCoefficients:
     def beside(each: Sequence["StepCoefficients"]) -> "StepCoefficients":
         """Those of several lanes, whose steps may differ in length: every coefficient an array [lanes]."""
         names = (field.name for field in fields(StepCoefficients))
-        return StepCoefficients(**{name: np.array([getattr(c, name) for c in each]) for name in names})
+        return StepCoefficients(**{name: np.array([getattr(c, name) for c in each]) for name in names})  # type: ignore[arg-type]
 
     def halved(self) -> "StepCoefficients":
         """Those of a step of half the length."""

@@ -52,4 +52,4 @@ class Memory:
     """What the internal branches carry over a step: their history [elements, points, 3, lanes], the time since [s]."""
 
     history: np.ndarray | None = None
-    step: float | Sequence[float] = 0.0
+    step: float | np.ndarray | Sequence[float] = 0.0

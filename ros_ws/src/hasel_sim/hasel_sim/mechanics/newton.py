@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from hasel_sim.mechanics.banded import BandMatrix
+from hasel_sim.mechanics.banded import BandFactors, BandMatrix
 from hasel_sim.mechanics.compiled import (
     clear_band,
     combine,
@@ -75,7 +75,7 @@ class Newton:
         self._residual, self._stress = np.empty((1, *nodal)), np.empty((*points, 3, lanes))
         self._solid = *solid.places, solid.muscle, solid.plane_stress
         self._matrix = BandMatrix(system.mesh.reach, 2 * system.held, lanes)
-        self._factors = None
+        self._factors: BandFactors | None = None
         self._none = np.zeros((0, *points[1:], 3, lanes))
         self._at_rest = np.zeros((1, lanes))
 

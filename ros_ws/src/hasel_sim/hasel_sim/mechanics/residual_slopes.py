@@ -1,7 +1,7 @@
 """Derivative of the residual by one parameter at a fixed motion, by central differences of only what it changes."""
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -32,7 +32,7 @@ class ResidualSlope(Protocol):
         """
 
     @staticmethod
-    def beside(each: Sequence["ResidualSlope"]) -> "ResidualSlope":
+    def beside(each: Sequence[Any]) -> "ResidualSlope":
         """The same parameter of several bodies, one lane after the other."""
 
 
@@ -98,13 +98,13 @@ class ForceSlope:
 class _Difference:
     """Two of a kind, for a little more and a little less of a parameter, and the width between [lanes]."""
 
-    kind: type
+    kind: Any
 
     def __init__(self, more, less, width: float | np.ndarray) -> None:
         self.more, self.less, self.width = more, less, np.atleast_1d(width)
 
     @classmethod
-    def beside(cls, each: Sequence["_Difference"]) -> "_Difference":
+    def beside(cls, each: Sequence["_Difference"]) -> Any:
         """Those of several bodies, one lane after the other."""
         more, less = (cls.kind.beside([getattr(slope, name) for slope in each]) for name in ("more", "less"))
         return cls(more, less, np.concatenate([slope.width for slope in each]))
@@ -126,7 +126,7 @@ class StressSlope(_Difference):
 class SolidSlope(_Difference):
     """A parameter of the solid's constants, rest shape or branches."""
 
-    kind = Solid
+    kind: Any = Solid
 
     def __init__(self, more: Solid, less: Solid, width: float | np.ndarray) -> None:
         super().__init__(more, less, width)

@@ -90,7 +90,7 @@ class Solid:
         )
         return out
 
-    def table(self, step: float | np.ndarray) -> np.ndarray:
+    def table(self, step: float | np.ndarray | Sequence[float]) -> np.ndarray:
         """Coefficients for the compiled loops when the branches have run for `step` [s] since the last known state.
 
         A step of 0 means at rest for ever: the branches have relaxed.

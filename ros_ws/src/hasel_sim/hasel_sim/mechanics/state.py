@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 
+@dataclass
 class _Lanes:
     """Arrays with the lanes as their last axis, or None."""
 

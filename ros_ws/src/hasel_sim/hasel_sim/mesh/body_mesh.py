@@ -89,7 +89,7 @@ def _body(strip: StripBuilder, shape: StripShape, x: np.ndarray, layers: int) ->
         columns.append(strip.column(position, levels, slopes))
     for index in range(0, len(x) - 1, 2):
         labels = [_label(shape, x[index + 1], name) for name in names]
-        strip.add_elements(*columns[index : index + 3], labels)
+        strip.add_elements(columns[index], columns[index + 1], columns[index + 2], labels)
     return columns
 
 
@@ -113,5 +113,5 @@ def _fin(strip: StripBuilder, shape: StripShape, root: np.ndarray, density: floa
         columns.append(strip.column(position, levels, np.zeros((len(shape.outline), len(levels)))))
     for index in range(0, len(x) - 1, 2):
         label = (Region.SPINE, 0, _label(shape, x[index + 1], "spine")[2])
-        strip.add_elements(*columns[index : index + 3], [label])
+        strip.add_elements(columns[index], columns[index + 1], columns[index + 2], [label])
     return columns[-1]

@@ -3,7 +3,7 @@
 import numpy as np
 
 
-def half_height(coefficients: np.ndarray, largest_half_height: float, s: np.ndarray) -> np.ndarray:
+def half_height(coefficients: np.ndarray, largest_half_height: float, s: float | np.ndarray) -> np.ndarray:
     """Half height [m] of the outline at s = x / length, a polynomial in s scaled with the largest half height."""
     return largest_half_height * np.polynomial.polynomial.polyval(s, coefficients)
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from hasel_sim.errors import nearest_name
 
@@ -31,7 +31,8 @@ def _spine(d: Description) -> Iterator[str]:
 
 
 def _places(d: Description) -> Iterator[str]:
-    for kind, parts in (("muscles", d.muscles), ("body.regions", d.body.regions)):
+    named: dict[str, Sequence[Any]] = {"muscles": d.muscles, "body.regions": d.body.regions}
+    for kind, parts in named.items():
         for part in parts:
             yield from _on_the_body(kind, part, d)
         for one, other in combinations(parts, 2):

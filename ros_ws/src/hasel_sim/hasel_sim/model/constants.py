@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from pydantic import BaseModel
 
@@ -43,6 +43,9 @@ def unit_of(path: str) -> str:
     return next((unit for ending, unit in _UNITS.items() if path.endswith(ending)), "1")
 
 
+_Section = TypeVar("_Section", bound=BaseModel)
+
+
 def with_constants(description: Description, values: dict[str, float]) -> Description:
     """The description with other values at some paths, not validated again."""
     for path, value in values.items():
@@ -50,7 +53,7 @@ def with_constants(description: Description, values: dict[str, float]) -> Descri
     return description
 
 
-def _changed(section: BaseModel, path: list[str], value: float) -> BaseModel:
+def _changed(section: _Section, path: list[str], value: float) -> _Section:
     head, *rest = path
     old = getattr(section, head)
     if not rest:

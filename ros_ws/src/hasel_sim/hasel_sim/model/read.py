@@ -126,7 +126,7 @@ def save_model(model: Model, path: str | Path) -> None:
     content["effects"] = [_named_from(folder, effect) for effect in model.effects]
     content["parameters"] = {name: _entry(parameter) for name, parameter in model.parameters.items()}
     yaml = YAML(typ="safe")
-    yaml.sort_base_mapping_type_on_output = False
+    yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]
     yaml.default_flow_style = False
     with Path(path).open("w") as file:
         yaml.dump(content, file)

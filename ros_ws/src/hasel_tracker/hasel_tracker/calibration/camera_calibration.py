@@ -65,7 +65,7 @@ class CameraCalibration:
             )
         try:
             return cls(
-                tuple(int(each) for each in values["image_size_px"]),
+                tuple(int(each) for each in values["image_size_px"]),  # type: ignore[arg-type]
                 np.array(values["camera_matrix"], float).reshape(3, 3),
                 np.array(values["distortion"], float).reshape(5),
                 np.array(values["pixel_to_plane"], float).reshape(3, 3),
@@ -96,4 +96,5 @@ def scale_calibration(
             f"The points are {apart_px:.1f} px and {distance_m:g} m apart; expected two points and a positive distance."
         )
     scale = distance_m / apart_px
-    return CameraCalibration(tuple(image_size_px), np.eye(3), np.zeros(5), np.diag([scale, scale, 1.0]), 0.0)
+    width, height = image_size_px
+    return CameraCalibration((width, height), np.eye(3), np.zeros(5), np.diag([scale, scale, 1.0]), 0.0)

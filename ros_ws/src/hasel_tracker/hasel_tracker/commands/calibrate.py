@@ -116,7 +116,7 @@ def _board(options: argparse.Namespace) -> None:
 
 def _distance(options: argparse.Namespace) -> None:
     image = _image(options.frame)
-    calibration = scale_calibration(*np.array(options.between), options.metres, image.shape[1::-1])
+    calibration = scale_calibration(*np.array(options.between), options.metres, image.shape[1::-1])  # type: ignore[call-arg]
     calibration.save(options.output)
     print(
         f"{1e3 * calibration.pixel_to_plane[0, 0]:.5g} mm per pixel; lens and perspective are not corrected."

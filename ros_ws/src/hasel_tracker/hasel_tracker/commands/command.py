@@ -45,4 +45,5 @@ def region(text: str) -> tuple[int, int, int, int]:
     values = [int(part) for part in text.split(",")]
     if len(values) != 4 or min(values) < 0:
         raise argparse.ArgumentTypeError(f"'{text}' is not a region X,Y,WIDTH,HEIGHT in pixels")
-    return tuple(values)
+    left, top, width, height = values
+    return left, top, width, height

@@ -223,7 +223,8 @@ def _box(text: str) -> tuple[int, int, int, int]:
     values = [int(part) for part in text.split(",")]
     if len(values) != 4 or min(values[2:]) < 4:
         raise argparse.ArgumentTypeError(f"'{text}' is not a box X,Y,WIDTH,HEIGHT in pixels")
-    return tuple(values)
+    left, top, width, height = values
+    return left, top, width, height
 
 
 if __name__ == "__main__":

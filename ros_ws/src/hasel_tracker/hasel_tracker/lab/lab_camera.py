@@ -26,7 +26,7 @@ class LabCamera:
             mosaic = np.empty(light.shape[:2], np.float32)
             for row, column, channel in ((0, 0, 2), (0, 1, 1), (1, 0, 1), (1, 1, 0)):
                 mosaic[row::2, column::2] = light[row::2, column::2, channel]
-            mosaic += random.normal(0.0, self.noise_levels, mosaic.shape).astype(np.float32)
+            mosaic += np.float32(random.normal(0.0, self.noise_levels, mosaic.shape))
             raw = np.clip(np.rint(mosaic), 0, 255).astype(np.uint8)
             image = cv2.demosaicing(raw, cv2.COLOR_BayerBG2BGR)  # OpenCV names the pattern by its second row
         else:

@@ -80,7 +80,7 @@ class LabScene:
         if self.exposure_s:
             moments = time_s + self.exposure_s * ((np.arange(SUB_EXPOSURES) + 0.5) / SUB_EXPOSURES - 0.5)
         light = sum(self._light(moment) for moment in moments) / len(moments)
-        image = self.camera.take(light, random)
+        image = self.camera.take(light, random)  # type: ignore[arg-type]
         if not self.swimmers:
             nothing = np.full((3, 2), np.nan)
             return LabFrame(image, time_s, nothing, np.zeros(3, bool), np.nan, nothing)

@@ -20,7 +20,8 @@ FINGERS = ((-0.9, 0.55, 0.9), (-0.3, 0.15, 1.15), (0.05, -0.05, 1.25), (0.4, -0.
 class Thing(Protocol):
     """Painted over the swimmers. `covers`: whether what lies under it cannot be seen."""
 
-    covers: bool
+    @property
+    def covers(self) -> bool: ...
 
     def paint(self, canvas: Canvas, time_s: float) -> None: ...
 

@@ -1,6 +1,7 @@
 """Corrections by hand: frames, and where the markers are in them."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import yaml
@@ -23,7 +24,7 @@ def read_fixes(path: Path) -> dict[int, np.ndarray]:
     return dict(_fix(path, entry) for entry in content)
 
 
-def _fix(path: Path, entry: object) -> tuple[int, np.ndarray]:
+def _fix(path: Path, entry: Any) -> tuple[int, np.ndarray]:
     try:
         frame, points = int(entry["frame"]), np.array(entry["at"], float)
         if frame < 0 or points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():

@@ -14,7 +14,9 @@ STATION_COUNT = 96
 class Motion(Protocol):
     """Anything that can say where the centre line is."""
 
-    duration_s: float
+    @property
+    def duration_s(self) -> float:
+        """How long it lasts [s]."""
 
     def centre_line(self, time_s: float) -> np.ndarray:
         """Centre line [m] from nose to fin tip at equal material distances, shape (n, 2), y up."""

@@ -77,7 +77,7 @@ class CameraSource:
 
     def _configure(self, exposure: float | None) -> None:
         # The pixel format comes first: it decides which sizes and rates there are.
-        self._capture.set(cv2.CAP_PROP_FOURCC, cv2.VideoWriter_fourcc(*self.asked.pixel_format))
+        self._capture.set(cv2.CAP_PROP_FOURCC, cv2.VideoWriter_fourcc(*self.asked.pixel_format))  # type: ignore[attr-defined]
         self._capture.set(cv2.CAP_PROP_FRAME_WIDTH, self.asked.width)
         self._capture.set(cv2.CAP_PROP_FRAME_HEIGHT, self.asked.height)
         self._capture.set(cv2.CAP_PROP_FPS, self.asked.frame_rate_hz)

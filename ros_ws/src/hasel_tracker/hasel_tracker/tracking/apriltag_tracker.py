@@ -26,7 +26,8 @@ class AprilTagTracker:
     def update(self, image: np.ndarray, time_s: float) -> MarkerSet:
         """Tags in an 8-bit BGR image: near where each was in the last frame, or else anywhere."""
         grey = cv2.cvtColor(image, cv2.COLOR_BGR2GRAY)
-        seen, doubt = {}, Doubt.NONE
+        seen: dict[int, np.ndarray] = {}
+        doubt = Doubt.NONE
         for number, corners in self._last.items():
             seen |= {tag: each for tag, each in self._near(grey, corners) if tag == number}
         if len(seen) < self._count:

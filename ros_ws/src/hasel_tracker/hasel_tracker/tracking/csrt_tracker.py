@@ -51,7 +51,7 @@ class CsrtTracker:
         if boxes is None:
             return MarkerSet.lost(self._count)
         for box in boxes:
-            tracker = cv2.TrackerCSRT_create()
+            tracker = cv2.TrackerCSRT_create()  # type: ignore[attr-defined]
             tracker.init(image, box)
             self._trackers.append(tracker)
         return MarkerSet(

@@ -37,7 +37,7 @@ class HeadOrder:
         if not self._known and not isinstance(self._said, str):
             return nearer_to(centres, self._said), "the head is at the end nearest to the point given"
         if not self._known and self._said != "auto":
-            return on_side(centres, self._said), f"the head is on the {self._said}, as set"
+            return on_side(centres, str(self._said)), f"the head is on the {self._said}, as set"
         thicker = thicker_first(row.links)
         if thicker is not None:
             return thicker, "the head is where the body is thicker"

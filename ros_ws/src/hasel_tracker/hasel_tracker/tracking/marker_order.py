@@ -75,6 +75,6 @@ def misplaced(positions: np.ndarray, residual_px: np.ndarray, chords: np.ndarray
     return blame
 
 
-def _wrong_chords(wrong: np.ndarray, marker: int) -> float:
+def _wrong_chords(wrong: np.ndarray, marker: int | np.integer) -> float:
     """Share of a marker's chords that are wrong."""
     return float(wrong[max(marker - 1, 0) : marker + 1].mean())

@@ -1,5 +1,7 @@
 """Follow the markers from frame to frame; find them at the start and when lost; say when that is in doubt."""
 
+from typing import Any
+
 import numpy as np
 
 from hasel_tracker.errors import TrackerError
@@ -171,7 +173,7 @@ class MarkerTracker:
         memory.remember(positions, areas, predicted, time_s, sure=self._trust.pending is Doubt.NONE)
         return self._as_set(measured, seen, doubt, vouched)
 
-    def _follow(self, image: np.ndarray, number: int, predicted: np.ndarray) -> tuple[object, bool]:
+    def _follow(self, image: np.ndarray, number: int, predicted: np.ndarray) -> tuple[Any, bool]:
         """The marker near its prediction, and whether something like it is about as near."""
         memory = self._memory
         wider = max(WIDER_REGION * self.settings.region_px, WIDER_REACH * memory.reach_px)

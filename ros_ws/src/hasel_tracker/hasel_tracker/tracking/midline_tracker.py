@@ -80,7 +80,7 @@ class MidlineTracker:
         if not self._started_before and not isinstance(head, str):
             return nearer_to(ends, head), "the head is at the end nearest to the point given"
         if not self._started_before and head != "auto":
-            return on_side(ends, head), f"the head is on the {head}, as set"
+            return on_side(ends, head), f"the head is on the {head}, as set"  # type: ignore[arg-type]
         thicker = _thicker_first(line)
         return thicker, ALIKE if thicker is None else BY_THICKNESS
 

@@ -145,9 +145,7 @@ def _pieces(over: np.ndarray, sign: int) -> tuple[np.ndarray, list[_Piece]]:
     """Labels (h, w) and the pieces that are no specks, largest first."""
     _, labels, stats, _ = cv2.connectedComponentsWithStats(over.astype(np.uint8), connectivity=8)
     kept = np.flatnonzero(stats[:, cv2.CC_STAT_AREA] > LEAST_AREA_SHARE * over.size)
-    pieces = [
-        _Piece(tuple(int(v) for v in stats[n, :4]), int(stats[n, 4]), int(n), sign) for n in kept if n > 0
-    ]
+    pieces = [_Piece(_box(stats[n]), int(stats[n, 4]), int(n), sign) for n in kept if n > 0]
     return labels, sorted(pieces, key=lambda piece: -piece.area)
 
 
@@ -167,3 +165,8 @@ def _cut_out(step: np.ndarray, labels: np.ndarray, piece: _Piece, threshold: flo
     filled = step[part].copy()
     filled[(mask > 0) & (own == 0)] = 2.0 * threshold
     return Silhouette(filled, mask, threshold, np.array([left, top], float), piece.sign > 0)
+
+
+def _box(row: np.ndarray) -> tuple[int, int, int, int]:
+    left, top, width, height = (int(value) for value in row[:4])
+    return left, top, width, height

@@ -42,7 +42,9 @@ def preview(image: np.ndarray, tracked: TrackedFrame, width_px: int) -> np.ndarr
     return annotate(small, replace(tracked, markers=markers))
 
 
-def _mark(drawn: np.ndarray, markers: MarkerSet, number: int, size: float, thickness: int) -> None:
+def _mark(
+    drawn: np.ndarray, markers: MarkerSet, number: int | np.integer, size: float, thickness: int
+) -> None:
     position, quality = markers.positions[number], markers.quality[number]
     radius = round(max(24 * size, 9) * 2**PIXEL_FRACTION_BITS)
     last = len(markers.positions) - 1
@@ -54,7 +56,7 @@ def _mark(drawn: np.ndarray, markers: MarkerSet, number: int, size: float, thick
     _text(drawn, f"{short} {quality:.2f}", label, 0.9 * size)
 
 
-def _text(drawn: np.ndarray, text: str, corner: np.ndarray, scale: float) -> None:
+def _text(drawn: np.ndarray, text: str, corner: np.ndarray | tuple[float, float], scale: float) -> None:
     x, y = int(corner[0]), int(corner[1])
     scale, thickness = max(scale, 0.4), max(round(1.6 * scale), 1)
     (width, height), below = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, scale, thickness)
