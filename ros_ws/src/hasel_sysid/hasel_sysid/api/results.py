@@ -22,7 +22,7 @@ class Recordings(tuple[Experiment, ...]):
         found = super().__getitem__(which)
         return Recordings(found) if isinstance(which, slice) else found
 
-    def __add__(self, other: Sequence[Experiment]) -> "Recordings":
+    def __add__(self, other: Sequence[Experiment]) -> "Recordings":  # type: ignore[override]
         return Recordings((*self, *other))
 
     def __str__(self) -> str:

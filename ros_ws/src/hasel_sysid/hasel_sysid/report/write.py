@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import plotly.graph_objects as go
@@ -28,7 +28,7 @@ from hasel_sysid.report.packed import packed
 from hasel_sysid.report.provenance import provenance
 
 REPORT_FILE = "report.html"
-Figure = go.Figure | dict[str, Any]
+Figure: TypeAlias = go.Figure | dict[str, Any]
 """Plotly's, or what plotly.js takes."""
 
 
