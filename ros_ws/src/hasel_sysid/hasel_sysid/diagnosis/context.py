@@ -1,7 +1,7 @@
 """What every verdict of a diagnosis rests on."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -10,6 +10,7 @@ from hasel_sim.effects.base import Effect
 from hasel_sysid.diagnosis.explained import share_left
 from hasel_sysid.diagnosis.left_out import foretells_better
 from hasel_sysid.diagnosis.signature import Signature
+from hasel_sysid.diagnosis.trial import Trial
 from hasel_sysid.fit.result import FitResult
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.projection import orthonormal
@@ -24,7 +25,8 @@ class Context:
     """Everything a verdict rests on.
 
     effects: what is judged; squares: sum of squared residuals reached with each; changes: of the simulated series by
-    finer numerics; noise: what a right model may leave, discrepancy allowed for; measured: the noise alone.
+    finer numerics; noise: what a right model may leave, discrepancy allowed for; measured: the noise alone; trials: the
+    best of every effect.
     """
 
     effects: Sequence[Effect]
@@ -37,6 +39,7 @@ class Context:
     chance: float
     changes: dict[str, np.ndarray]
     measured: NoiseModel | None = None
+    trials: Mapping[str, Trial] = field(default_factory=dict)
 
     @property
     def base(self) -> float:

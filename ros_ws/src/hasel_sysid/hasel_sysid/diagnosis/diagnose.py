@@ -51,8 +51,9 @@ def diagnose(
     floor = expected_squares(base.jacobian, noise, base.runs)
     chance = p_value(base.sum_of_squares - lowest_squares(fit, finals), by_noise)
     changes = changes_by_refinement(problem, base) if chance < SIGNIFICANT else {}
+    of_effect = {t.start.effect.id: t for t in best}
     found = judged(
-        Context(effects, fit, finals, signatures, squares, noise, floor, chance, changes, measured)
+        Context(effects, fit, finals, signatures, squares, noise, floor, chance, changes, measured, of_effect)
     )
     named = found.best is not None and found.best.verdict is Verdict.MISSING
     described = adequacy((found.best.fit if named else fit).evaluation, noise)

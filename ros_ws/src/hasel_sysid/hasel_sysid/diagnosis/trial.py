@@ -6,15 +6,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
-from scipy.optimize import lsq_linear
 
 from hasel_sysid.diagnosis.candidates import Start
 from hasel_sysid.diagnosis.significance import drops
 from hasel_sysid.draft import draft
+from hasel_sysid.fit.bounded import bounded_change
 from hasel_sysid.problem import Evaluation, Problem
 from hasel_sysid.projection import orthonormal
 
-_MOST_CHANGE = 0.5
+MOST_CHANGE = 0.5
 """A single step changes no baseline parameter by more than this share: beyond, the derivatives say nothing."""
 _TOO_ROUGH = 0.15
 """Share of the simulated motion by which a draft may be wrong."""
@@ -130,20 +130,15 @@ def _bounded_step(
     value = np.array([p.value for p in parameters])
     lower = np.array([p.lower for p in parameters]) - value
     upper = np.array([p.upper for p in parameters]) - value
+    reach = np.where(limited(model, names), MOST_CHANGE * np.abs(value), np.inf)
+    change, squares = bounded_change(residual, jacobian, np.maximum(lower, -reach), np.minimum(upper, reach))
+    return dict(zip(names, value + change, strict=True)), squares
+
+
+def limited(model: Model, names: Sequence[str]) -> np.ndarray:
+    """Which parameters [names] a single step may change by a share of their value only: those of no effect."""
     of_effects = {f"{effect.id}.{p.name}" for effect in model.effects for p in effect.parameters}
-    limited = np.array([name not in of_effects for name in names])
-    reach = np.where(limited, _MOST_CHANGE * np.abs(value), np.inf)
-    lower, upper = np.maximum(lower, -reach), np.minimum(upper, reach)
-    scale = np.linalg.norm(jacobian, axis=0)
-    seen = (scale > 1e-12) & (upper - lower > 1e-15)
-    change = np.zeros(len(names))
-    if seen.any():
-        solution = lsq_linear(
-            jacobian[:, seen] / scale[seen], residual, (lower[seen] * scale[seen], upper[seen] * scale[seen])
-        )
-        change[seen] = np.clip(solution.x / scale[seen], lower[seen], upper[seen])
-    left = residual - jacobian @ change
-    return dict(zip(names, value + change, strict=True)), float(left @ left)
+    return np.array([name not in of_effects for name in names])
 
 
 def _shortened(trial: Trial) -> Trial:

@@ -7,13 +7,12 @@ from hasel_sim.errors import HaselSimError
 from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis import Diagnosis, Verdict, diagnose
-from hasel_sysid.diagnosis.context import on_own_bound
 from hasel_sysid.fit import FitResult, fit_least_squares
 from hasel_sysid.fit.opening import in_step, openings
 from hasel_sysid.improve.decision import LEAST_GAIN
-from hasel_sysid.improve.exchange import with_effect
 from hasel_sysid.improve.prune import pruned
 from hasel_sysid.problem import Problem
+from hasel_sysid.selection import best_neighbour
 
 Progress = Callable[[str, float], None]
 
@@ -49,16 +48,13 @@ def far_start(
         fit = fit_least_squares(opening, model, most_evaluations=12, drafts=False)
         while not in_step(fit.evaluation) and _count(fit, known) < most_effects:
             seen.append(diagnose(opening, fit, only, _part(progress, number, len(every)), decades=True))
-            better = _with_best(opening, fit, seen[-1], known)
+            better = _better(opening, fit, seen[-1], known, most_effects)
             if better is None:
                 return None
             fit = better
         model = fit.model
     if not seen or not in_step(fit.evaluation):
         return None
-    if len(every) > 1:
-        swapped = _swapped(every[-2], model, seen, known)
-        fit = fit_least_squares(problem, swapped, drafts=False)
     # what finer numerics change was found for the opening's frames only
     first = replace(seen[0], groups=_groups(seen), context=replace(seen[0].context, changes={}))
     return FarStart(first, tuple(_ladder(problem, fit, known)))
@@ -72,35 +68,17 @@ def _groups(seen: Sequence[Diagnosis]) -> list[tuple[str, ...]]:
     return list(dict.fromkeys([*seen[0].groups, *later]))
 
 
-def _with_best(opening: Problem, fit: FitResult, found: Diagnosis, known: set[str]) -> FitResult | None:
-    """The fit with the one effect that could be added, less what it makes needless; None where that is a trifle."""
-    best = found.best
-    if best is None or best.verdict is not Verdict.MISSING or best.fit is None:
+def _better(
+    opening: Problem, fit: FitResult, found: Diagnosis, known: set[str], most_effects: int
+) -> FitResult | None:
+    """The fit with one more effect, or of another set where that is not in step; None where nothing comes nearer."""
+    best, earlier = found.best, [effect.id for effect in fit.model.effects if effect.id not in known]
+    chosen = best.fit if best is not None and best.verdict is Verdict.MISSING else None
+    if chosen is None or not in_step(chosen.evaluation):
+        chosen = best_neighbour(opening, fit, found, earlier, most_effects)
+    if chosen is None or 1 - chosen.evaluation.sum_of_squares / fit.evaluation.sum_of_squares < LEAST_GAIN:
         return None
-    if 1 - best.fit.evaluation.sum_of_squares / fit.evaluation.sum_of_squares < LEAST_GAIN:
-        return None
-    earlier = [effect.id for effect in fit.model.effects if effect.id not in known]
-    return pruned(opening, best.fit, earlier)
-
-
-def _swapped(opening: Problem, model: Model, seen: Sequence[Diagnosis], known: set[str]) -> Model:
-    """The model, or a better one with one effect after the other in the place of one that looked like it before.
-
-    What one swing cannot tell apart, more of them may.
-    """
-    fit = fit_least_squares(opening, model, most_evaluations=8, drafts=False)
-    for effect in [e.id for e in fit.model.effects if e.id not in known]:
-        rivals = {r: found for found in seen for g in found.groups if effect in g for r in g}
-        for rival in sorted(set(rivals) - {e.id for e in fit.model.effects}):
-            try:
-                model = with_effect(fit.model.without_effects(effect), rivals[rival], rival)
-                other = fit_least_squares(opening, model, most_evaluations=8, drafts=False)
-            except HaselSimError:
-                continue
-            better = other.evaluation.sum_of_squares < fit.evaluation.sum_of_squares
-            if better and not on_own_bound(rival, other):
-                fit, effect = other, rival
-    return fit.model
+    return pruned(opening, chosen, earlier)
 
 
 def _ladder(problem: Problem, fit: FitResult, known: set[str]) -> list[FitResult]:

@@ -8,7 +8,7 @@ from hasel_sim.model import Model
 from hasel_sysid.data_gate import Finding as SetUpFault
 from hasel_sysid.diagnosis import diagnose
 from hasel_sysid.diagnosis.adequacy import adequacy
-from hasel_sysid.diagnosis.explained import PARTLY, Status
+from hasel_sysid.diagnosis.explained import Status
 from hasel_sysid.diagnosis.search import WORTH_A_STEP
 from hasel_sysid.fit import FitResult, fit_from_afar, in_step
 from hasel_sysid.fit.refinement import changes_by_refinement, with_numerical_error
@@ -21,15 +21,14 @@ from hasel_sysid.improve.conclusion import (
     near_noise,
 )
 from hasel_sysid.improve.decision import Decision, decide
-from hasel_sysid.improve.exchange import exchanged
 from hasel_sysid.improve.hindsight import with_hindsight
 from hasel_sysid.improve.lawful import without_contradictions
-from hasel_sysid.improve.pair import explaining_pair
 from hasel_sysid.improve.promise import most_promised
 from hasel_sysid.improve.prune import pruned
 from hasel_sysid.improve.result import Improvement, Stage
 from hasel_sysid.improve.set_up import opposed_runs
 from hasel_sysid.problem import Problem
+from hasel_sysid.selection import best_neighbour
 
 _ENOUGH = 0.03
 """With one run none can be left out to test a small effect: then less than this share of the error left is enough."""
@@ -72,7 +71,7 @@ def improve(
         if opposed:
             reason = f"A fault of the set-up comes before any effect: {'; '.join(map(str, opposed))}"
             break
-        refit = _extended(problem, stages, decision, pairs=far is None)
+        refit = _extended(problem, stages[-1], decision, most_effects)
         if refit is None:
             break
         stages.append(_stage(refit, model, validation))
@@ -92,6 +91,9 @@ def improve(
                 f"After adding {added}, {left:.1%} of the error above the noise is left: with one run, "
                 "too little to find another effect in."
             )
+            break
+        if len(stages[-1].effects) >= most_effects:
+            reason = f"Effect {most_effects} was the last: more effects could imitate anything."
             break
     else:
         reason = f"Step {most_effects} was the last: more effects could imitate anything."
@@ -120,13 +122,18 @@ def _concluded(
     )
 
 
-def _extended(problem: Problem, stages: Sequence[Stage], decision: Decision, pairs: bool) -> FitResult | None:
-    """The fit with the effect that was accepted, or with two at once where none alone explains; None to stop."""
-    if decision.accepted is not None:
-        return pruned(problem, exchanged(problem, stages, decision.accepted), stages[-1].effects)
-    if pairs and decision.none_alone and left_over(stages) > 1 - PARTLY:
-        return explaining_pair(problem, stages[0])
-    return None
+def _extended(problem: Problem, stage: Stage, decision: Decision, most_effects: int) -> FitResult | None:
+    """The fit with the effect that was accepted, or of a better set next to the stage's; None to stop.
+
+    Other sets are looked for only where no single effect leads to the noise.
+    """
+    accepted = decision.accepted
+    if accepted is None and not decision.none_alone:
+        return None
+    if accepted is not None and near_noise(accepted.fit, stage.diagnosis):
+        return pruned(problem, accepted.fit, stage.effects)
+    better = best_neighbour(problem, stage.fit, stage.diagnosis, stage.effects, most_effects)
+    return None if better is None else pruned(problem, better, stage.effects)
 
 
 class _Reporter:

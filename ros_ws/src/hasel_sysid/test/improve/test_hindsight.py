@@ -48,8 +48,7 @@ def test_improve_looks_back_when_an_effect_was_added(monkeypatch):
         "in_step": True,
         "diagnose": stage().diagnosis,
         "decide": SimpleNamespace(accepted=stage().diagnosis.best, reason="", negligible=False),
-        "exchanged": soft,
-        "pruned": soft,
+        "_extended": soft,
         "is_noise": True,
         "opposed_runs": [],
     }

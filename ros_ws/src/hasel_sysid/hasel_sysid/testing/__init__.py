@@ -1,0 +1,1 @@
+"""A made-up world for tests of the search: what every effect does is known, and nothing is simulated."""

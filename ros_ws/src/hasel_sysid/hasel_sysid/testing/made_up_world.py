@@ -1,0 +1,170 @@
+"""Runs of a swimmer in a world in which every parameter moves the angle by a known series."""
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+
+import numpy as np
+from hasel_recording import Recording
+from hasel_sim.drive.schedule import DriveSchedule
+from hasel_sim.errors import SimulationError
+from hasel_sim.model import Model, load_model
+from hasel_sim.parallel import SerialExecutor
+from hasel_sim.run import Run, Simulation
+
+from hasel_sysid.dataset import Experiment
+from hasel_sysid.problem import Evaluation, Problem
+
+VOLTAGES, FREQUENCIES = (3500.0, 4500.0, 5500.0), (0.5, 2.0)
+NOISE = 0.0024
+_FRAME_RATE, _DURATION = 120.0, 2.0
+_TONES = 6
+_EFFECT, _DRIVEN = 0.02, 0.1
+_LONG = 0.4
+
+
+class MadeUpWorld:
+    """sin theta = sum over the parameters of (value - null) / (typical - null) times a smooth series of its own.
+
+    A value that stands for a time or a place turns its effect's series into another one, in proportion to its logarithm
+    (or to the value itself where it may be zero or negative). alike: pairs of effects whose series differ by a tenth;
+    shared: how many series all others are mixed of, but for a tenth of their own (0: none).
+    """
+
+    def __init__(self, seed: int, alike: Mapping[str, str] | None = None, shared: int = 0) -> None:
+        self._seed, self._alike, self._shared = seed, dict(alike or {}), shared
+        self._known: dict[str, list[np.ndarray]] = {}
+        self.model = load_model("swimmer").with_levels(list(VOLTAGES))
+
+    @cached_property
+    def runs(self) -> list[Run]:
+        """One of each voltage at each frequency."""
+        time = np.arange(0.0, _DURATION, 1 / _FRAME_RATE)
+        return [
+            Run(f"{voltage:.0f}V_{frequency:.1f}Hz", time, _box(voltage, frequency))
+            for voltage in VOLTAGES
+            for frequency in FREQUENCIES
+        ]
+
+    def with_typical(self, *effects: str) -> Model:
+        """The model with effects of their typical sizes, and amplitudes that rise with the voltage."""
+        rising = {f"amplitude_{v:.0f}": 0.03 + 0.02 * number for number, v in enumerate(VOLTAGES)}
+        model = self.model.with_effects(*effects) if effects else self.model
+        typical = {f"{e.id}.{p.name}": p.typical for e in model.effects for p in e.parameters}
+        return model.with_values({**rising, **typical})
+
+    def sin_theta(self, model: Model) -> list[np.ndarray]:
+        """The angle of every run."""
+        total = [np.zeros(len(run.time)) for run in self.runs]
+        for name, p in model.parameters.items():
+            if "." not in name and name.startswith("amplitude_"):
+                self._add(total, name, (p.value / 0.05) * _DRIVEN, float(name.partition("_")[2]))
+            elif name == "slope":
+                self._add(total, name, 0.02 * np.log(max(p.value, 1e-6)))
+        for effect in model.effects:
+            size, turn = 0.0, 0.0
+            for p in effect.parameters:
+                value = model.values[f"{effect.id}.{p.name}"]
+                if not p.scan:
+                    size += (value - p.null) / abs(p.typical - p.null)
+                elif min(p.scan) > 0:
+                    turn += _LONG * np.log(max(value, 1e-9) / p.scan[len(p.scan) // 2])
+                else:
+                    turn += _LONG * (value - p.scan[len(p.scan) // 2]) / np.ptp(p.scan)
+            self._add(total, effect.id, _EFFECT * size)
+            self._add(total, f"{effect.id} turned", _EFFECT * size * turn)
+        return total
+
+    def measured(self, model: Model, noise: float = NOISE, stranger: float = 0.0) -> "MadeUpProblem":
+        """Runs as they would be measured if the model were the truth, but for a stranger of so much rms."""
+        generator = np.random.default_rng(self._seed)
+        series = [angle + noise * generator.standard_normal(len(angle)) for angle in self.sin_theta(model)]
+        self._add(series, "stranger", stranger)
+        return MadeUpProblem(self, series)
+
+    def _add(self, total: list[np.ndarray], name: str, size: float, voltage: float | None = None) -> None:
+        for run, series, own in zip(self.runs, total, self._series(name), strict=True):
+            if voltage is None or run.name.startswith(f"{voltage:.0f}V"):
+                series += size * own
+
+    def _series(self, name: str) -> list[np.ndarray]:
+        if name not in self._known:
+            twin = self._alike.get(name)
+            generator = np.random.default_rng([self._seed, *name.encode()])
+            own = [_smooth(run.time, generator) for run in self.runs]
+            if self._shared and not name.startswith("shared "):
+                mixed = generator.standard_normal(self._shared) / np.sqrt(self._shared)
+                basis = [self._series(f"shared {number}") for number in range(self._shared)]
+                own = [
+                    0.1 * s + sum(w * part[run] for w, part in zip(mixed, basis, strict=True))
+                    for run, s in enumerate(own)
+                ]
+            if twin is not None:
+                own = [s + 0.1 * other for s, other in zip(self._series(twin), own, strict=True)]
+            self._known[name] = own
+        return self._known[name]
+
+
+class MadeUpProblem(Problem):
+    """Measured runs of a made-up world; models are evaluated in it, with central differences for derivatives."""
+
+    def __init__(self, world: MadeUpWorld, measured: Sequence[np.ndarray]) -> None:
+        experiments = [
+            Experiment(Recording(run.name, run.time, series, drive_signal=run.schedule.at(run.time)), run)
+            for run, series in zip(world.runs, measured, strict=True)
+        ]
+        super().__init__(experiments, SerialExecutor())
+        self.world = world
+
+    def evaluate_each(
+        self, models: Sequence[Model], names: Sequence[Sequence[str]]
+    ) -> list[Evaluation | SimulationError]:
+        """As of a problem that simulates."""
+        self.evaluations += len(models)
+        return [self._made_up(model, tuple(by)) for model, by in zip(models, names, strict=True)]
+
+    def _made_up(self, model: Model, names: tuple[str, ...]) -> Evaluation:
+        series = self.world.sin_theta(model)
+        slopes = np.zeros((len(names), len(series), len(series[0])))
+        for index, name in enumerate(names):
+            step = 1e-6 * max(abs(model.values[name]), 1e-6)
+            more, less = (_shifted(model, name, sign * step) for sign in (1, -1))
+            slopes[index] = (np.array(self.world.sin_theta(more)) - self.world.sin_theta(less)) / (2 * step)
+        simulations = [
+            Simulation(
+                run, own, names, slopes[:, number].T, np.zeros((len(own), 3, 2)), np.zeros((len(own), 2))
+            )
+            for number, (run, own) in enumerate(zip(self.world.runs, series, strict=True))
+        ]
+        return self._collect(model, names, simulations)
+
+
+def _shifted(model: Model, name: str, step: float) -> Model:
+    """The model with one value changed, whatever its range."""
+    p = model.parameters[name]
+    return _Loose(model, {**model.values, name: p.value + step})
+
+
+class _Loose:
+    """What the world asks of a model, with values that need not lie within their ranges."""
+
+    def __init__(self, model: Model, values: dict[str, float]) -> None:
+        self.effects, self.values = model.effects, values
+        self.parameters = {name: _Value(value) for name, value in values.items()}
+
+
+class _Value:
+    def __init__(self, value: float) -> None:
+        self.value = value
+
+
+def _box(voltage: float, frequency: float) -> DriveSchedule:
+    switches = np.arange(0.0, _DURATION, 0.5 / frequency)
+    side = np.arange(len(switches)) % 2
+    return DriveSchedule(switches, voltage * np.column_stack([side == 0, side == 1]).astype(float))
+
+
+def _smooth(time: np.ndarray, generator: np.random.Generator) -> np.ndarray:
+    """A sum of a few tones of 0.5 to 8 Hz with an rms of 1."""
+    frequency, phase = generator.uniform(0.5, 8.0, _TONES), generator.uniform(0, 2 * np.pi, _TONES)
+    series = np.sin(2 * np.pi * np.outer(time, frequency) + phase) @ generator.standard_normal(_TONES)
+    return series / max(float(np.std(series)), 1e-12)

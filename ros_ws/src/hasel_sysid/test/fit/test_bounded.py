@@ -1,0 +1,31 @@
+"""Least squares within bounds."""
+
+import numpy as np
+import pytest
+from hasel_sysid.fit.bounded import bounded_change
+
+JACOBIAN = np.random.default_rng(0).standard_normal((50, 3)) * [1.0, 1e-4, 1e3]
+TRUE = np.array([0.5, 200.0, -1e-3])
+
+
+def test_without_bounds_it_is_least_squares():
+    """Whatever the columns' scales."""
+    far = np.full(3, np.inf)
+    change, squares = bounded_change(JACOBIAN @ TRUE, JACOBIAN, -far, far)
+    assert change == pytest.approx(TRUE, rel=1e-6) and squares == pytest.approx(0.0, abs=1e-12)
+
+
+def test_bounds_hold():
+    """And the others make up for it as well as they can."""
+    lower, upper = np.array([-0.1, -np.inf, -np.inf]), np.array([0.1, np.inf, np.inf])
+    change, squares = bounded_change(JACOBIAN @ TRUE, JACOBIAN, lower, upper)
+    rest = np.linalg.lstsq(JACOBIAN[:, 1:], JACOBIAN @ TRUE - 0.1 * JACOBIAN[:, 0], rcond=None)
+    assert change[0] == pytest.approx(0.1) and squares == pytest.approx(rest[1][0])
+
+
+def test_what_nothing_shows_stays():
+    """A column of zeros."""
+    change, _ = bounded_change(
+        np.ones(4), np.column_stack([np.ones(4), np.zeros(4)]), np.full(2, -9.0), np.full(2, 9.0)
+    )
+    assert change[1] == 0.0
