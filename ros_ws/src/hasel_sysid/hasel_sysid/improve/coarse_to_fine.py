@@ -75,7 +75,7 @@ def _better(
     best, earlier = found.best, [effect.id for effect in fit.model.effects if effect.id not in known]
     chosen = best.fit if best is not None and best.verdict is Verdict.MISSING else None
     if chosen is None or not in_step(chosen.evaluation):
-        chosen = best_neighbour(opening, fit, found, earlier, most_effects)
+        chosen = best_neighbour(opening, fit, found, chosen, earlier, most_effects)
     if chosen is None or 1 - chosen.evaluation.sum_of_squares / fit.evaluation.sum_of_squares < LEAST_GAIN:
         return None
     return pruned(opening, chosen, earlier)

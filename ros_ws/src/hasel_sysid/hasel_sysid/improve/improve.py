@@ -127,12 +127,12 @@ def _extended(problem: Problem, stage: Stage, decision: Decision, most_effects: 
 
     Other sets are looked for only where no single effect leads to the noise.
     """
-    accepted = decision.accepted
+    accepted = None if decision.accepted is None else decision.accepted.fit
     if accepted is None and not decision.none_alone:
         return None
-    if accepted is not None and near_noise(accepted.fit, stage.diagnosis):
-        return pruned(problem, accepted.fit, stage.effects)
-    better = best_neighbour(problem, stage.fit, stage.diagnosis, stage.effects, most_effects)
+    if accepted is not None and near_noise(accepted, stage.diagnosis):
+        return pruned(problem, accepted, stage.effects)
+    better = best_neighbour(problem, stage.fit, stage.diagnosis, accepted, stage.effects, most_effects)
     return None if better is None else pruned(problem, better, stage.effects)
 
 

@@ -21,17 +21,21 @@ _BRIEF = 10
 
 
 def best_neighbour(
-    problem: Problem, fit: FitResult, found: Diagnosis, removable: Sequence[str], most_effects: int
+    problem: Problem,
+    fit: FitResult,
+    found: Diagnosis,
+    accepted: FitResult | None,
+    removable: Sequence[str],
+    most_effects: int,
 ) -> FitResult | None:
-    """The fit of the best set of effects that is one move away, single additions of the diagnosis among them.
+    """The fit of the best set of effects that is one move away; None where none is better than the present one.
 
-    None where no set is better than the present one. removable: effects of the present fit that the search has added;
-    most_effects: how many it may add. A set must stay within plausible ranges, foretell runs left out better than the
-    present one, and two effects more at once must be an explanation: of any two one may hope that they imitate a
-    little of anything.
+    accepted: the fit with one effect more that the diagnosis accepts, if it does; removable: effects of the present
+    fit that the search has added; most_effects: how many it may add. A set must stay within plausible ranges and
+    foretell runs left out better than the present one, and two effects more at once must be an explanation: of any two
+    one may hope that they imitate a little of anything.
     """
-    single = None if found.best is None else found.best.fit
-    best = single or fit
+    best = accepted or fit
     sources = {finding.effect: finding.source or finding.effect for finding in found.findings}
     proposed = moves(fit.evaluation, found.context.trials, removable, most_effects - len(removable))
     hopeful = [

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from hasel_recording import Recording
 from hasel_sim.drive.schedule import DriveSchedule
+from hasel_sim.effects.base import Effect
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model, load_model
 from hasel_sim.parallel import SerialExecutor
@@ -54,16 +55,20 @@ class MadeUpWorld:
 
     def sin_theta(self, model: Model) -> list[np.ndarray]:
         """The angle of every run."""
+        return self.sin_theta_at(model.effects, model.values)
+
+    def sin_theta_at(self, effects: Sequence[Effect], values: Mapping[str, float]) -> list[np.ndarray]:
+        """The same with values that need not lie within their ranges."""
         total = [np.zeros(len(run.time)) for run in self.runs]
-        for name, p in model.parameters.items():
+        for name, value in values.items():
             if "." not in name and name.startswith("amplitude_"):
-                self._add(total, name, (p.value / 0.05) * _DRIVEN, float(name.partition("_")[2]))
+                self._add(total, name, (value / 0.05) * _DRIVEN, float(name.partition("_")[2]))
             elif name == "slope":
-                self._add(total, name, 0.02 * np.log(max(p.value, 1e-6)))
-        for effect in model.effects:
+                self._add(total, name, 0.02 * np.log(max(value, 1e-6)))
+        for effect in effects:
             size, turn = 0.0, 0.0
             for p in effect.parameters:
-                value = model.values[f"{effect.id}.{p.name}"]
+                value = values[f"{effect.id}.{p.name}"]
                 if not p.scan:
                     size += (value - p.null) / abs(p.typical - p.null)
                 elif min(p.scan) > 0:
@@ -127,8 +132,15 @@ class MadeUpProblem(Problem):
         slopes = np.zeros((len(names), len(series), len(series[0])))
         for index, name in enumerate(names):
             step = 1e-6 * max(abs(model.values[name]), 1e-6)
-            more, less = (_shifted(model, name, sign * step) for sign in (1, -1))
-            slopes[index] = (np.array(self.world.sin_theta(more)) - self.world.sin_theta(less)) / (2 * step)
+            more, less = (
+                np.array(
+                    self.world.sin_theta_at(
+                        model.effects, {**model.values, name: model.values[name] + change}
+                    )
+                )
+                for change in (step, -step)
+            )
+            slopes[index] = (more - less) / (2 * step)
         simulations = [
             Simulation(
                 run, own, names, slopes[:, number].T, np.zeros((len(own), 3, 2)), np.zeros((len(own), 2))
@@ -136,25 +148,6 @@ class MadeUpProblem(Problem):
             for number, (run, own) in enumerate(zip(self.world.runs, series, strict=True))
         ]
         return self._collect(model, names, simulations)
-
-
-def _shifted(model: Model, name: str, step: float) -> Model:
-    """The model with one value changed, whatever its range."""
-    p = model.parameters[name]
-    return _Loose(model, {**model.values, name: p.value + step})
-
-
-class _Loose:
-    """What the world asks of a model, with values that need not lie within their ranges."""
-
-    def __init__(self, model: Model, values: dict[str, float]) -> None:
-        self.effects, self.values = model.effects, values
-        self.parameters = {name: _Value(value) for name, value in values.items()}
-
-
-class _Value:
-    def __init__(self, value: float) -> None:
-        self.value = value
 
 
 def _box(voltage: float, frequency: float) -> DriveSchedule:

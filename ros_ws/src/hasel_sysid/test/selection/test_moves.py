@@ -38,17 +38,22 @@ def test_the_hidden_pair_promises_most(world, problem):
     assert best.squares == pytest.approx(fitted.evaluation.sum_of_squares, rel=0.05)
 
 
-def test_a_wrong_first_effect_gives_way_to_the_right_pair(world, problem):
+@pytest.fixture(scope="module")
+def wrong(world, problem):
+    """The same runs, and a model with an effect that is not there."""
+    return looked_at(problem, world.model.with_effects("gravity_tilt"))
+
+
+def test_a_wrong_first_effect_gives_way_to_the_right_pair(wrong):
     """Two for one: no single addition gets there."""
-    wrong = world.model.with_effects("gravity_tilt")
-    fit, found = looked_at(problem, wrong)
+    fit, found = wrong
     best = moves(fit.evaluation, found.context.trials, ("gravity_tilt",), room=1)[0]
     assert (best.drop, set(best.add)) == (("gravity_tilt",), set(HIDDEN))
     assert str(best).startswith("without gravity_tilt, with ")
 
 
-def test_no_move_leads_to_more_effects_than_there_is_room_for(world, problem):
+def test_no_move_leads_to_more_effects_than_there_is_room_for(wrong):
     """With no room, one may only take the place of another."""
-    fit, found = looked_at(problem, world.model.with_effects("gravity_tilt"))
+    fit, found = wrong
     for move in moves(fit.evaluation, found.context.trials, ("gravity_tilt",), room=0):
         assert len(move.add) <= len(move.drop)

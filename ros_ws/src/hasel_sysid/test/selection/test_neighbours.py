@@ -11,7 +11,9 @@ def neighbour(world, hidden, present=(), stranger=0.0):
     problem = world.measured(world.with_typical(*hidden), stranger=stranger)
     model = world.model.with_effects(*present) if present else world.model
     fit = fit_least_squares(problem, model, drafts=False)
-    return best_neighbour(problem, fit, diagnose(problem, fit), present, most_effects=3)
+    found = diagnose(problem, fit)
+    single = None if found.best is None else found.best.fit
+    return best_neighbour(problem, fit, found, single, present, most_effects=3)
 
 
 def names(fit):
