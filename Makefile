@@ -3,7 +3,7 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help build test test-slow lint format docs demo bench bench-far bench-hidden clean
+.PHONY: help build test test-slow lint format docs demo bench bench-far bench-hidden soak clean
 
 ENVIRONMENT := . setup/environment.bash
 PACKAGES := hasel_recording hasel_driver hasel_tracker hasel_sim hasel_sysid hasel_bringup
@@ -44,6 +44,9 @@ bench-hidden: build ## measure how often the right hidden effect is named
 
 bench-far: build ## measure how often a constant that is far off is named
 	@bin/ros2-run hasel_bringup bench_far
+
+soak: build ## run the virtual rig for 10 minutes and kill each node once (MINUTES=2: shorter)
+	@bin/ros2-run hasel_bringup soak --minutes $(or $(MINUTES),10)
 
 clean: ## remove what was built, but not .venv
 	@rm -rf build install log

@@ -2,6 +2,7 @@
 
 import math
 import threading
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,7 @@ class ExperimentRecording:
     plan: ExperimentPlan
     required_topics: tuple[str, ...] = ()
     state_topic: str = STATE
+    made_by: Mapping[str, str] = field(default_factory=dict)  # as of hasel_recording.provenance
     problem: str | None = None  # why nothing more can be written
     _closed: bool = False
     _recorder: McapRecorder = field(init=False)
@@ -36,7 +38,7 @@ class ExperimentRecording:
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def __post_init__(self) -> None:
-        metadata = {**self.plan.waveform.metadata(), "rest_time_s": f"{self.plan.rest_s:g}"}
+        metadata = {**self.plan.waveform.metadata(), "rest_time_s": f"{self.plan.rest_s:g}", **self.made_by}
         self._recorder = McapRecorder(self.path, metadata)
 
     def write(self, topic: str, message: Any) -> None:

@@ -12,6 +12,7 @@ from hasel_interfaces.action import RunExperiment
 from hasel_interfaces.msg import SupplyState
 from hasel_recording.endpoints import Role
 from hasel_recording.errors import RecordingError
+from hasel_recording.provenance import provenance
 from hasel_recording.topics import STATE, TOPIC_TYPES, known_as, relative
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import CallbackGroup
@@ -21,6 +22,7 @@ from hasel_driver.client_watch import ClientWatch
 from hasel_driver.errors import DriverError, RefusedError
 from hasel_driver.experiment import Experiment, ExperimentPlan
 from hasel_driver.experiment_recording import ExperimentRecording
+from hasel_driver.node_parameters import values
 from hasel_driver.recording_path import chosen_path, reserve, reserve_unique
 from hasel_driver.spinning import quiet_at_shutdown
 from hasel_driver.supply_thread import SupplyThread
@@ -54,6 +56,7 @@ class ExperimentServer:
         """Subscribe to what is to be recorded, before it is needed: discovery takes time."""
         for subscription in self._watched:
             self._node.destroy_subscription(subscription)
+        topics = [topic for topic in topics if topic]  # ROS cannot tell the type of an empty list
         known = {topic: kind for topic in topics if (kind := known_as(topic)) is not None}
         for topic in set(topics) - set(known):
             self._node.get_logger().warning(f"The type of {topic} is not known: it will not be recorded.")
@@ -129,7 +132,9 @@ class ExperimentServer:
         thread.call(experiment.begin).result(timeout=5.0)
         try:
             path = self._reserve(goal_handle.request, plan)
-            recording = self._recording = ExperimentRecording(path, plan, topics, self._state_topic)
+            recording = self._recording = ExperimentRecording(
+                path, plan, topics, self._state_topic, self._made_by(thread.supervisor.name)
+            )
         except (OSError, RecordingError, DriverError):
             thread.call(experiment.cancel)
             raise
@@ -152,6 +157,11 @@ class ExperimentServer:
         if experiment.failure:
             return [experiment.failure]
         return [f"the recording lacks: {text}" for text in recording.missing(experiment.elapsed_s)]
+
+    def _made_by(self, supply: str) -> dict[str, str]:
+        """The supply, this package's version, and the node's parameters: its limits among them."""
+        node = self._node.get_fully_qualified_name()
+        return provenance(node, ("hasel_driver", "hasel_recording"), {"supply": supply, **values(self._node)})
 
     def _reserve(self, goal: RunExperiment.Goal, plan: ExperimentPlan) -> Path:
         if goal.output:

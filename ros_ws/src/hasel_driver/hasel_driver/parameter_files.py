@@ -16,7 +16,8 @@ def check_files(node_name: str, full_name: str, arguments: Sequence[str]) -> Non
     for word, path in zip(arguments, arguments[1:], strict=False):
         if word != "--params-file":
             continue
-        sections = list(_sections(yaml.safe_load(Path(path).read_text()) or {}))
+        # No more than names and nesting is read, as launch_ros writes tags of Python: BaseLoader.
+        sections = list(_sections(yaml.load(Path(path).read_text(), yaml.BaseLoader) or {}))
         meant = [name for name in sections if name.rpartition("/")[2] == node_name]
         if meant and full_name not in meant and not any("*" in name for name in sections):
             raise LimitError(

@@ -21,3 +21,10 @@ def test_refuses_what_would_be_ignored(tmp_path):
     file.write_text(SECTION.format("hasel_driver"))
     with pytest.raises(LimitError, match=r"this node is /rig2/hasel_driver.*write /\*\*/hasel_driver there"):
         check_files("hasel_driver", "/rig2/hasel_driver", ["--ros-args", "--params-file", str(file)])
+
+
+def test_takes_what_launch_writes(tmp_path):
+    """A list given in a launch file comes as a tuple of Python."""
+    file = tmp_path / "launch.yaml"
+    file.write_text("/**:\n  ros__parameters:\n    recorded_topics: !!python/tuple\n    - ''\n")
+    check_files("hasel_driver", "/hasel/hasel_driver", ["--ros-args", "--params-file", str(file)])

@@ -5,9 +5,9 @@ from pathlib import Path
 
 from hasel_recording.csv_writer import drive_path
 from hasel_recording.errors import RecordingError
-from hasel_recording.reading import read_recording, write_recording
+from hasel_recording.reading import WRITERS, read_recording, write_recording
 
-OTHER_SUFFIX = {".csv": ".mcap", ".mcap": ".csv"}
+OTHER_SUFFIX = {".csv": ".mcap", ".mcap": ".csv", ".db3": ".csv"}
 
 
 def target_path(source: Path, output: Path | None = None) -> Path:
@@ -15,7 +15,7 @@ def target_path(source: Path, output: Path | None = None) -> Path:
 
     Without output the new file lies beside the source.
     """
-    if output is not None and output.suffix.lower() in OTHER_SUFFIX:
+    if output is not None and output.suffix.lower() in WRITERS:
         return output
     suffix = OTHER_SUFFIX.get(source.suffix.lower(), ".csv")  # a rosbag2 folder has no suffix
     folder = source.parent if output is None else output

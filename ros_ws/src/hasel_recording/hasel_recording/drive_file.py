@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from hasel_recording.bag import read_bag
 from hasel_recording.column_map import meant_names
 from hasel_recording.csv_columns import understand
 from hasel_recording.csv_numbers import CsvNumbers
@@ -15,7 +16,6 @@ from hasel_recording.csv_text import read_text
 from hasel_recording.drive_channel import DriveChannel
 from hasel_recording.errors import RecordingError, RecordingWarning
 from hasel_recording.mcap_drive import stamped_drive
-from hasel_recording.mcap_file import read_file
 from hasel_recording.mcap_reader import seconds, time_origin
 from hasel_recording.recording import Recording
 from hasel_recording.stand_in import as_meant
@@ -36,25 +36,25 @@ class RecordedDrive:
 def read_drive(
     path: Path, mapping: Mapping[str, str] | None = None, metadata: Mapping[str, str] | None = None
 ) -> RecordedDrive:
-    """Read the drive alone of a .csv or .mcap file; raises RecordingError.
+    """Read the drive alone of a .csv or .mcap file or a bag; raises RecordingError.
 
     mapping: as of column_map.parse_map; metadata: header lines of the run, which those of the file go before.
     """
-    if not path.is_file():
+    if not path.exists():
         raise RecordingError(f"There is no drive file {path}: check the name.")
-    read = _read_mcap if path.suffix.lower() == ".mcap" else _read_csv
+    read = _read_csv if path.suffix.lower() == ".csv" else _read_bag
     return read(path, mapping or {}, metadata or {})
 
 
 def with_drive(recording: Recording, path: Path, mapping: Mapping[str, str] | None = None) -> Recording:
     """Return the recording with the drive of another file in place of its own.
 
-    path: a .csv file with time and drive columns, or an .mcap file with the drive's topic, counting time as the
+    path: a .csv file with time and drive columns, or an .mcap file or bag with the drive's topic, counting time as the
     recording does. mapping: as of column_map.parse_map; pairs for columns that this file has not got are passed over.
     A RecordingWarning says where the drive does not reach over the whole run; raises RecordingError where it does not
     overlap with it at all.
     """
-    if not path.is_file():
+    if not path.exists():
         raise RecordingError(f"{recording.name}: there is no drive file {path}: check the name.")
     drive = read_drive(path, mapping, recording.metadata)
     channels, time_s, values = drive.channels, drive.time_s, drive.values
@@ -90,8 +90,8 @@ def _read_csv(path: Path, mapping: Mapping[str, str], metadata: Mapping[str, str
     return RecordedDrive(channels, time_s, values, stand_in=stand_in)
 
 
-def _read_mcap(path: Path, mapping: Mapping[str, str], metadata: Mapping[str, str]) -> RecordedDrive:
-    file = read_file(path)
+def _read_bag(path: Path, mapping: Mapping[str, str], metadata: Mapping[str, str]) -> RecordedDrive:
+    file = read_bag(path)
     drive = stamped_drive(file)
     if drive is None:
         raise RecordingError(f"{path} has neither /hasel/state nor /hasel/drive: give the drive's recording.")

@@ -13,6 +13,7 @@ from mcap.stream_reader import CRCValidationError, StreamReader
 from mcap_ros2.decoder import DecoderFactory
 
 from hasel_recording.errors import RecordingError, RecordingWarning, nearest
+from hasel_recording.topics import TOPIC_TYPES, known_as
 
 
 @dataclass
@@ -28,8 +29,10 @@ class McapFile:
     def decoded(self, topic: str, type_name: str) -> list[Any]:
         """Return the topic's messages in recorded order, none when there are none.
 
-        Raises RecordingError when they are not of this type.
+        A topic of hasel_recording.topics is found in whatever namespace it was recorded. Raises RecordingError when
+        the messages are not of this type, or two rigs have such a topic.
         """
+        topic = self.name_of(topic)
         messages = self.messages.get(topic, [])
         if not messages:
             return []
@@ -48,6 +51,22 @@ class McapFile:
                 "definition, but cdr with ros2msg is expected; record it with ROS 2 Jazzy."
             )
         return [decode(message.data) for message in messages]
+
+    def name_of(self, topic: str) -> str:
+        """Return what a topic is called here: its name, or the same in another namespace where there is only that."""
+        if topic in self.messages or topic not in TOPIC_TYPES:
+            return topic
+        names = sorted(name for name in self.messages if known_as(name) == topic and self._has(name, topic))
+        if len(names) > 1:
+            raise RecordingError(
+                f"{self.path} has {' and '.join(names)}, of {len(names)} rigs: record one rig by itself "
+                "(ros2 bag record --regex '/rig1/.*'), or split the bag with `ros2 bag convert`."
+            )
+        return names[0] if names else topic
+
+    def _has(self, name: str, topic: str) -> bool:
+        schema = self.schemas.get(self.channels[self.messages[name][0].channel_id].schema_id)
+        return schema is not None and schema.name == TOPIC_TYPES[topic]
 
     def missing(self, topic: str) -> RecordingError:
         """Return the error that says a topic is missing and which there are."""

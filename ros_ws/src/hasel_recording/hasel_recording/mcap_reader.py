@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from hasel_recording.bag import read_bag
 from hasel_recording.errors import RecordingError, RecordingWarning, nearest
 from hasel_recording.mcap_drive import StampedDrive, stamped_drive, stamped_messages
-from hasel_recording.mcap_file import McapFile, read_file
+from hasel_recording.mcap_file import McapFile
 from hasel_recording.mcap_recorder import HEADER_RECORD, TIME_RECORD
 from hasel_recording.recording import MARKER_NAMES, Recording
 from hasel_recording.stand_in import as_meant
@@ -20,7 +21,7 @@ def read_mcap(path: Path) -> Recording:
 
     Frames before the first known drive, and from its end on, are left out with a RecordingWarning.
     """
-    file = read_file(path)
+    file = read_bag(path)
     measured, frame_ns = stamped_messages(file, MEASURED)
     if not measured:
         raise file.missing(MEASURED)
@@ -33,7 +34,7 @@ def read_mcap(path: Path) -> Recording:
     simulated, simulated_ns = stamped_messages(file, SIMULATED)
     metadata = file.metadata.get(HEADER_RECORD, {})
     return Recording(
-        name=path.stem,
+        name=path.name if path.is_dir() else path.stem,
         path=path,
         metadata=metadata,
         time_s=seconds(frame_ns, origin)[driven],

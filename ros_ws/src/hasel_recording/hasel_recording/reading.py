@@ -14,24 +14,24 @@ from hasel_recording.mcap_writer import write_mcap
 from hasel_recording.recording import DRIVE_KEY, Recording
 from hasel_recording.switch_times import with_placed_switches
 
-SUFFIXES = (".csv", ".mcap")
+SUFFIXES = (".csv", ".mcap", ".db3")
 WRITERS = {".csv": write_csv, ".mcap": write_mcap}
 
 
 def read_recording(
     path: str | Path, mapping: Mapping[str, str] | None = None, drive: str | Path | None = None
 ) -> Recording:
-    """Read a `.csv` or `.mcap` file, or the folder that `ros2 bag record` made; raises RecordingError.
+    """Read a `.csv`, `.mcap` or `.db3` file, or the folder that `ros2 bag record` made; raises RecordingError.
 
     mapping: {name that is known here: the file's own column} for CSV files, as of column_map.parse_map.
     drive: the file that holds the drive, instead of what the recording or its header line `drive` says.
     """
     path = Path(path)
-    if path.is_dir():
-        path = _only_mcap(path)
-    if path.suffix.lower() not in SUFFIXES:
-        raise RecordingError(f"{path} is not a recording: give a .mcap or a .csv file.")
-    if not path.is_file():
+    if path.suffix.lower() not in SUFFIXES and not path.is_dir():
+        raise RecordingError(
+            f"{path} is not a recording: give a .mcap, .db3 or .csv file, or a bag's folder."
+        )
+    if not path.exists():
         folder = path.parent
         near = nearest(path.name, [p.name for p in folder.iterdir()]) if folder.is_dir() else None
         hint = f"did you mean {folder / near}?" if near else "check the name."
@@ -104,10 +104,3 @@ def write_recording(recording: Recording, path: str | Path) -> None:
         writer(recording, path)
     except OSError as error:
         raise RecordingError(f"{path} cannot be written ({error.strerror}): choose another place.") from None
-
-
-def _only_mcap(folder: Path) -> Path:
-    files = sorted(folder.glob("*.mcap"))
-    if len(files) != 1:
-        raise RecordingError(f"Folder {folder} holds {len(files)} MCAP files: name the one to read.")
-    return files[0]

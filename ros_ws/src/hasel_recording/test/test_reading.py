@@ -27,7 +27,7 @@ def test_misspelt_file_names_the_nearest(csv_file):
 
 def test_unknown_kind(tmp_path, driven):
     """Only CSV and MCAP are recordings, read or written."""
-    with pytest.raises(RecordingError, match=r"give a \.mcap or a \.csv"):
+    with pytest.raises(RecordingError, match=r"give a \.mcap, \.db3 or \.csv file"):
         read_recording(tmp_path / "run.bag")
     with pytest.raises(RecordingError, match="neither MCAP nor CSV"):
         write_recording(driven, tmp_path / "run.bag")
@@ -38,7 +38,7 @@ def test_folder_of_ros2_bag_record(driven, tmp_path):
     write_recording(driven, tmp_path / "bag_0.mcap")
     assert len(read_recording(tmp_path).time_s) == 240
     write_recording(driven, tmp_path / "bag_1.mcap")
-    with pytest.raises(RecordingError, match="holds 2 MCAP files"):
+    with pytest.raises(RecordingError, match="holds 2 MCAP or SQLite files"):
         read_recording(tmp_path)
 
 

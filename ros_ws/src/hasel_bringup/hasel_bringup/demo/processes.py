@@ -64,6 +64,10 @@ class Processes:
                     f"{name} failed with exit code {process.returncode}; see {self.output(name)}"
                 )
 
+    def ended(self, name: str) -> bool:
+        """Whether one has ended by itself."""
+        return self._running[name].poll() is not None
+
     def finish(self, name: str, seconds: float) -> int:
         """Wait for one to end by itself and return its exit code."""
         return self._running.pop(name).wait(seconds)
@@ -77,6 +81,12 @@ class Processes:
         except subprocess.TimeoutExpired:
             process.kill()
             return process.wait()
+
+    def kill(self, name: str) -> None:
+        """End one as a crash does."""
+        process = self._running.pop(name)
+        process.kill()
+        process.wait()
 
     def __enter__(self) -> "Processes":
         return self

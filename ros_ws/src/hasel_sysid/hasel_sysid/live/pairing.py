@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-_KEPT = 2000
+_KEPT = 20_000
 """Messages of either kind that may wait for the other."""
 
 

@@ -54,7 +54,7 @@ class Alignment:
 
 def read_drive(path: Path) -> Drive:
     """Read the drive of an .mcap recording or a .csv file, as compare and fit do; raises TrackerError."""
-    if Path(path).suffix.lower() not in (".mcap", ".csv"):
+    if Path(path).suffix.lower() not in (".mcap", ".db3", ".csv") and not Path(path).is_dir():
         raise TrackerError(f"The drive recording {path} is neither .mcap nor .csv; give one of these.")
     try:
         drive = read_recorded_drive(Path(path))

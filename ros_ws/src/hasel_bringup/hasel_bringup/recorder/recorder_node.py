@@ -1,0 +1,123 @@
+"""`ros2 run hasel_bringup recorder`: one MCAP file per run, of everything that is said about it.
+
+While it is written a recording is called NAME.mcap.part; what was interrupted becomes NAME_interrupted.mcap.
+"""
+
+import math
+import sys
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
+from hasel_recording import RecordingError
+from hasel_recording.endpoints import Role, subscription
+from hasel_recording.mcap_recorder import McapRecorder
+from hasel_recording.message_fields import nanoseconds
+from hasel_recording.provenance import provenance
+from hasel_recording.topics import ERROR, MEASURED, NAMESPACE, SIMULATED, STATE, relative
+from hasel_sim.node_parameters import NodeParameter, declare
+from hasel_sim.node_process import run_node
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+
+from hasel_bringup.errors import BringupError
+from hasel_bringup.recorder.other_nodes import OtherNodes
+
+PARAMETERS = (
+    NodeParameter("folder", "recordings", "into which recordings are written", changeable=True),
+    NodeParameter("name", "run", "of the next recording, without .mcap", changeable=True),
+)
+RECORDED = {STATE: SupplyState, MEASURED: BendingAngle, SIMULATED: BendingAngle, ERROR: RunningError}
+PACKAGES = ("hasel_recording", "hasel_driver", "hasel_tracker", "hasel_sim", "hasel_sysid", "hasel_bringup")
+
+
+class RecorderNode(Node):
+    """Records from the service recorder/start to recorder/stop."""
+
+    def __init__(self) -> None:
+        super().__init__("hasel_recorder", namespace=NAMESPACE)
+        declare(self, PARAMETERS)
+        self._recorder: McapRecorder | None = None
+        self._path = Path()
+        self._last_ns: dict[str, int] = {}
+        self._others = OtherNodes(self)
+        for topic, kind in RECORDED.items():
+            name = self.resolve_topic_name(relative(topic))
+            subscription(self, kind, topic, partial(self._write, name), Role.EVERY_SAMPLE)
+        self.create_service(Trigger, "recorder/start", partial(self._serve, self._start))
+        self.create_service(Trigger, "recorder/stop", partial(self._serve, self._stop))
+
+    def _value(self, name: str):
+        return self.get_parameter(name).value
+
+    def _write(self, name: str, message) -> None:
+        if self._recorder is None or _is_unknown(message):
+            return
+        stamp_ns = nanoseconds(message.header.stamp)
+        if stamp_ns > self._last_ns.get(name, -1):
+            self._last_ns[name] = stamp_ns
+            self._recorder.write(name, message, stamp_ns)
+
+    def _start(self) -> str:
+        if self._recorder is not None:
+            raise BringupError(f"{self._path} is being recorded: stop that first (recorder/stop).")
+        folder = Path(self._value("folder")).expanduser()
+        folder.mkdir(parents=True, exist_ok=True)
+        self._path = folder / f"{self._value('name')}.mcap"
+        if self._path.exists():
+            raise BringupError(
+                f"{self._path} exists already, and no recording is overwritten: set another name."
+            )
+        made_by = provenance(self.get_fully_qualified_name(), PACKAGES, self._others.known())
+        self._last_ns = {}
+        self._recorder = McapRecorder(self._part, made_by)
+        return str(self._path)
+
+    def _stop(self) -> str:
+        if self._recorder is None:
+            raise BringupError("Nothing is being recorded: start it first (recorder/start).")
+        self._finish(self._path)
+        return str(self._path)
+
+    @property
+    def _part(self) -> Path:
+        return self._path.with_name(f"{self._path.name}.part")
+
+    def _finish(self, path: Path) -> None:
+        recorder, self._recorder = self._recorder, None
+        recorder.close()
+        self._part.rename(path)
+
+    def _interrupt(self) -> None:
+        if self._recorder is not None:
+            self._finish(self._path.with_name(f"{self._path.stem}_interrupted.mcap"))
+
+    def _serve(
+        self, action: Callable[[], str], _: Trigger.Request, response: Trigger.Response
+    ) -> Trigger.Response:
+        try:
+            response.message, response.success = action(), True
+        except (BringupError, RecordingError, OSError) as error:
+            response.message = str(error)
+            self.get_logger().error(response.message)
+        return response
+
+    def destroy_node(self) -> None:
+        """Finish what is being recorded and leave."""
+        self._interrupt()
+        super().destroy_node()
+
+
+def _is_unknown(message) -> bool:
+    """Whether this is the state of a supply that does not know its voltage: no sample of it."""
+    return isinstance(message, SupplyState) and not all(map(math.isfinite, message.commanded_voltage))
+
+
+def main() -> int:
+    """Run the node until it is interrupted; returns the exit code."""
+    return run_node(RecorderNode, errors=(BringupError, RecordingError))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

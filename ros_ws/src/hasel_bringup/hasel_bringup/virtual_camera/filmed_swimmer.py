@@ -1,0 +1,62 @@
+"""The true swimmer, moved on to every exposure of a camera that has a clock of its own."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from hasel_sim.live.live_simulator import LiveSimulator
+from hasel_sim.model import Model
+
+
+@dataclass(frozen=True)
+class Exposure:
+    """Where the markers are seen, [3, 2] [m], at a stamp [ns]."""
+
+    stamp_ns: int
+    markers: np.ndarray
+
+
+class FilmedSwimmer:
+    """Takes the supply's states in order and gives the exposures between them.
+
+    ripple: how far [m rms, each axis] the water's surface displaces the picture of a marker.
+    """
+
+    def __init__(
+        self, model: Model, frame_rate: float, ripple: float, generator: np.random.Generator
+    ) -> None:
+        self._live = LiveSimulator(model)
+        self._period_ns = round(1e9 / frame_rate)
+        self._ripple, self._generator = ripple, generator
+        self.put_back()
+
+    def put_back(self) -> None:
+        """Lay the swimmer straight and still in the middle of the picture, as is done between two runs."""
+        self._live.restart()
+        self._last_ns: int | None = None
+        self._next_ns = 0
+        self._voltage = np.zeros(2)
+        self._middle = self._live.markers.mean(axis=0)
+
+    def state(self, stamp_ns: int, voltage: np.ndarray) -> list[Exposure]:
+        """The exposures up to a state; its voltage [V] holds from its stamp [ns] on. One out of order is ignored."""
+        if self._last_ns is None:
+            self._live.receive(stamp_ns, voltage)
+            self._last_ns, self._next_ns = stamp_ns, stamp_ns + self._period_ns
+            self._voltage = voltage
+            return []
+        exposures = []
+        while self._next_ns < stamp_ns:
+            if self._next_ns > self._last_ns:
+                self._live.receive(self._next_ns, self._voltage)
+                self._last_ns = self._next_ns
+            exposures.append(Exposure(self._next_ns, self._seen()))
+            self._next_ns += self._period_ns
+        self._voltage = voltage
+        if stamp_ns > self._last_ns:
+            self._live.receive(stamp_ns, voltage)
+            self._last_ns = stamp_ns
+        return exposures
+
+    def _seen(self) -> np.ndarray:
+        markers = self._live.markers - self._middle
+        return markers + self._ripple * self._generator.standard_normal(markers.shape)

@@ -1,0 +1,31 @@
+"""Who made a recording: the software and its versions, and the parameters of what took part."""
+
+import os
+import platform
+from collections.abc import Iterable, Mapping
+from datetime import datetime, timezone
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+PREFIX = "recorded_by."  # of the header lines; what an experiment is about has none
+
+
+def provenance(recorder: str, packages: Iterable[str], parameters: Mapping[str, Any]) -> dict[str, str]:
+    """Return header lines: the recorder and packages with their versions, the time, and each parameter's value."""
+    versions = {name: _version(name) for name in packages}
+    lines = {
+        "node": recorder,
+        "time": datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        "ros_distro": os.environ.get("ROS_DISTRO", "jazzy"),
+        "python": platform.python_version(),
+        **{f"version.{name}": each for name, each in versions.items()},
+        **{f"parameter.{name}": value for name, value in parameters.items()},
+    }
+    return {f"{PREFIX}{key}": str(value) for key, value in lines.items()}
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "unknown"
