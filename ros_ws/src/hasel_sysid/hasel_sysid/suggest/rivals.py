@@ -8,7 +8,6 @@ from hasel_sim.model import Model
 from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.errors import SysidError
 from hasel_sysid.fit import fit_least_squares
-from hasel_sysid.improve.exchange import with_effect
 from hasel_sysid.problem import Problem
 
 _BRIEF = 8
@@ -55,8 +54,16 @@ def _at_least_two(problem: Problem, diagnosis: Diagnosis, fitted: dict[str, Mode
         if len(found) >= 2:
             break
         try:
-            model = with_effect(diagnosis.context.fit.model, diagnosis, effect)
+            model = _with_effect(diagnosis.context.fit.model, diagnosis, effect)
             found[effect] = fit_least_squares(problem, model, most_evaluations=_BRIEF, drafts=False).model
         except HaselSimError:
             continue
     return found
+
+
+def _with_effect(model: Model, diagnosis: Diagnosis, effect: str) -> Model:
+    """The model with an effect at a typical size, as none was fitted; raises ModelError where they do not go together."""
+    extended = model.with_effects(diagnosis.finding(effect).source or effect)
+    kind = next(each for each in extended.effects if each.id == effect)
+    names = [f"{effect}.{parameter.name}" for parameter in kind.parameters]
+    return extended.with_values(dict(zip(names, kind.typical().values(), strict=True)))
