@@ -54,15 +54,15 @@ def _at_least_two(problem: Problem, diagnosis: Diagnosis, fitted: dict[str, Mode
         if len(found) >= 2:
             break
         try:
-            model = _with_effect(diagnosis.context.fit.model, diagnosis, effect)
+            model = with_effect(diagnosis.context.fit.model, diagnosis, effect)
             found[effect] = fit_least_squares(problem, model, most_evaluations=_BRIEF, drafts=False).model
         except HaselSimError:
             continue
     return found
 
 
-def _with_effect(model: Model, diagnosis: Diagnosis, effect: str) -> Model:
-    """The model with an effect at a typical size, as none was fitted; raises ModelError where they do not go together."""
+def with_effect(model: Model, diagnosis: Diagnosis, effect: str) -> Model:
+    """The model with an effect at a typical size, as none was fitted; raises ModelError where it does not fit in."""
     extended = model.with_effects(diagnosis.finding(effect).source or effect)
     kind = next(each for each in extended.effects if each.id == effect)
     names = [f"{effect}.{parameter.name}" for parameter in kind.parameters]
