@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from hasel_sim.model import Model
+from hasel_sim.model import Model, Parameter
 
 from hasel_sysid.problem import Evaluation
 
@@ -38,12 +38,7 @@ class FitResult:
                 f"The model is in step with the first {self.in_step_until:.2g} s of the runs only, to which it was "
                 "fitted: something else is missing."
             )
-        for name in self.at_bound:
-            p = self.model.parameters[name]
-            side = "upper" if abs(p.value - p.upper) < abs(p.value - p.lower) else "lower"
-            notes.append(
-                f"{name} is at its {side} bound: something else is missing, or the bound is too tight."
-            )
+        notes += [_at_bound(self.model.parameters[name]) for name in self.at_bound]
         notes += [f"{name} cannot be determined from these recordings." for name in self.undetermined]
         return notes
 
@@ -51,3 +46,13 @@ class FitResult:
         values = "; ".join(str(self.model.parameters[name]) for name in self.evaluation.names)
         text = f"Fitted by {self.method} to mean |Δ sin θ| = {self.mean_absolute_error:.5f}: {values}."
         return " ".join([text, *self.sentences])
+
+
+def _at_bound(p: Parameter) -> str:
+    side, bound = (
+        ("upper", p.upper) if abs(p.value - p.upper) < abs(p.value - p.lower) else ("lower", p.lower)
+    )
+    if bound == 0.0:
+        return f"{p.name} is at 0: these recordings ask for none of it, or something else is missing."
+    unit = "" if p.unit == "1" else f" {p.unit}"
+    return f"{p.name} is at its {side} bound, {bound:g}{unit}: something else is missing, or the bound is too tight."
