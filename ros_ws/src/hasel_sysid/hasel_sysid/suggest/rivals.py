@@ -9,7 +9,6 @@ from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.errors import SysidError
 from hasel_sysid.fit import fit_least_squares
 from hasel_sysid.problem import Problem
-from hasel_sysid.selection.with_effect import with_effect
 
 _BRIEF = 8
 """Evaluations for a fit of what the diagnosis did not think worth one."""
