@@ -32,8 +32,8 @@ def best_neighbour(
 
     accepted: the fit with one effect more that the diagnosis accepts, if it does; removable: effects of the present
     fit that the search has added; most_effects: how many it may add. A set must stay within plausible ranges and
-    foretell runs left out better than the present one, and two effects more at once must be an explanation: of any two
-    one may hope that they imitate a little of anything.
+    foretell runs left out better than the present one, and two effects at once must be an explanation: of any two one
+    may hope that they imitate a little of anything.
     """
     best = accepted or fit
     sources = {finding.effect: finding.source or finding.effect for finding in found.findings}
@@ -66,7 +66,7 @@ def moved(model: Model, move: Move, sources: dict[str, str]) -> Model:
 def _acceptable(move: Move, other: FitResult, fit: FitResult, found: Diagnosis) -> bool:
     if any(on_own_bound(effect, other) for effect in move.add):
         return False
-    if len(move.add) - len(move.drop) > 1:
+    if len(move.add) > 1:
         noise = found.noise.mean_absolute
         if share_left(fit.mean_absolute_error, other.mean_absolute_error, noise) > 1 - EXPLAINED:
             return False
