@@ -3,10 +3,11 @@
 import argparse
 
 from action_msgs.msg import GoalStatus
+from listing import add_listing
 from messages import NotUnderstoodError, as_yaml, filled, interface
 from rclpy.action import ActionClient, get_action_names_and_types
 from rclpy.node import Node
-from session import discover, spin_until
+from session import spin_until
 
 _STATUS = {
     GoalStatus.STATUS_SUCCEEDED: "SUCCEEDED",
@@ -18,22 +19,13 @@ _PATIENCE_S = 10.0
 
 def add_parsers(commands) -> None:
     """Add what `ros2 action` knows."""
-    listing = commands.add_parser("list", help="actions that are there")
-    listing.add_argument("-t", "--show-types", action="store_true")
-    listing.set_defaults(run=list_actions)
+    add_listing(commands, "actions", get_action_names_and_types)
     goal = commands.add_parser("send_goal", help="send a goal, print its result; Ctrl-C cancels it")
     goal.add_argument("action")
     goal.add_argument("type", help="such as hasel_interfaces/action/RunExperiment")
     goal.add_argument("values", nargs="?", default="{}", help="YAML, such as '{voltage: 4000, frequency: 2}'")
     goal.add_argument("-f", "--feedback", action="store_true", help="print feedback as it comes")
     goal.set_defaults(run=send_goal)
-
-
-def list_actions(node: Node, options: argparse.Namespace) -> None:
-    """Print the names, with types if asked to."""
-    discover(node)
-    for name, types in sorted(get_action_names_and_types(node)):
-        print(f"{name} [{', '.join(types)}]" if options.show_types else name)
 
 
 def send_goal(node: Node, options: argparse.Namespace) -> None:

@@ -5,19 +5,18 @@ import time
 from collections import deque
 
 import numpy as np
+from listing import add_listing
 from messages import as_yaml, filled, interface
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from session import discover, full_name, spin_until, type_of, wait_for
+from session import full_name, spin_until, type_of, wait_for
 
 _DEPTH, _WINDOW = 1000, 10_000
 
 
 def add_parsers(commands) -> None:
     """Add what `ros2 topic` knows."""
-    listing = commands.add_parser("list", help="topics that are there")
-    listing.add_argument("-t", "--show-types", action="store_true")
-    listing.set_defaults(run=list_topics)
+    add_listing(commands, "topics", Node.get_topic_names_and_types)
     echo = commands.add_parser("echo", help="print what is published")
     echo.add_argument("topic")
     echo.add_argument(
@@ -37,13 +36,6 @@ def add_parsers(commands) -> None:
     hz = commands.add_parser("hz", help="how often something is published")
     hz.add_argument("topic")
     hz.set_defaults(run=print_rate)
-
-
-def list_topics(node: Node, options: argparse.Namespace) -> None:
-    """Print the names, with types if asked to."""
-    discover(node)
-    for name, types in sorted(node.get_topic_names_and_types()):
-        print(f"{name} [{', '.join(types)}]" if options.show_types else name)
 
 
 def _subscribe(node: Node, topic: str, kind: str | None, handler) -> None:

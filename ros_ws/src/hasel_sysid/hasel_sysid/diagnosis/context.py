@@ -91,12 +91,16 @@ class Context:
         return 1.0 - share_left(before, after, self.noise.mean_absolute)
 
     def score(self, effect: str) -> float:
-        """Logarithm of an effect's weight, up to a constant: of its sum of squares, less half a logarithm of the frames
-        per parameter, as BIC does.
-        """
+        """Logarithm of an effect's weight, up to a constant."""
         count = self.signatures[effect].columns.shape[1] - 1 if effect in self.signatures else 1
+        return self.logarithmic_weight(self.squares[effect], count)
+
+    def logarithmic_weight(self, squares: float, count: int) -> float:
+        """Of a sum of squares that so many values of effects reach, up to a constant: log-likelihood, less half a
+        logarithm of the frames per value, as BIC does.
+        """
         frames = len(self.fit.evaluation.residual)
-        return -self.squares[effect] / self.tolerance - 0.5 * count * float(np.log(frames))
+        return -squares / self.tolerance - 0.5 * count * float(np.log(frames))
 
     @property
     def tolerance(self) -> float:

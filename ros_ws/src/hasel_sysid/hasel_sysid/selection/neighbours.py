@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-import numpy as np
 from hasel_sim.errors import HaselSimError
 from hasel_sim.model import Model
 
@@ -10,6 +9,7 @@ from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.diagnosis.context import on_own_bound
 from hasel_sysid.diagnosis.explained import EXPLAINED, share_left
 from hasel_sysid.diagnosis.left_out import foretells_better
+from hasel_sysid.diagnosis.trial import limited
 from hasel_sysid.fit import FitResult, fit_least_squares
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.moves import Move, moves
@@ -41,7 +41,7 @@ def best_neighbour(
     hopeful = [
         move
         for move in proposed
-        if _score(found, move.squares, _values_of(move, fit.model)) > _of(found, best)
+        if found.context.logarithmic_weight(move.squares, _values_of(move, fit.model)) > _weight(found, best)
     ]
     for move in hopeful[:_FITTED]:
         try:
@@ -49,7 +49,7 @@ def best_neighbour(
             other = fit_least_squares(problem, model, tolerance=1e-3, most_evaluations=_BRIEF, drafts=False)
         except HaselSimError:
             continue
-        if _of(found, other) > _of(found, best) and _acceptable(move, other, fit, found):
+        if _weight(found, other) > _weight(found, best) and _acceptable(move, other, fit, found):
             best = other
     return None if best is fit else best
 
@@ -73,19 +73,13 @@ def _acceptable(move: Move, other: FitResult, fit: FitResult, found: Diagnosis) 
     return foretells_better(fit.evaluation, other.evaluation)
 
 
-def _of(found: Diagnosis, fit: FitResult) -> float:
-    return _score(found, fit.evaluation.sum_of_squares, _count(fit.model))
-
-
-def _score(found: Diagnosis, squares: float, count: int) -> float:
-    """Log-likelihood up to a constant, less half a logarithm of the frames per value of an effect."""
-    frames = len(found.context.fit.evaluation.residual)
-    return -squares / found.context.tolerance - 0.5 * count * float(np.log(frames))
+def _weight(found: Diagnosis, fit: FitResult) -> float:
+    return found.context.logarithmic_weight(fit.evaluation.sum_of_squares, _count(fit.model))
 
 
 def _count(model: Model) -> int:
-    names = {f"{effect.id}.{p.name}" for effect in model.effects for p in effect.parameters}
-    return len(names & set(model.free))
+    """How many values of effects are free: those that no step is limited in."""
+    return sum(not short for short in limited(model, model.free))
 
 
 def _values_of(move: Move, model: Model) -> int:
