@@ -1,5 +1,6 @@
 """What comes by topic reaches the driver whole."""
 
+import itertools
 import math
 import time
 
@@ -54,10 +55,13 @@ def test_every_watch_runs_on_a_steady_clock(tmp_path):
 
 
 def greet_until_heard(ros, commands: list) -> None:
-    """Until the two ends know each other: the publisher sees its subscriber before the subscriber sees it."""
-    while not commands:
-        ros.command((0.0, 0.0))
+    """Until the two ends know each other, and no greeting is under way any more: each has its own voltage."""
+    for greeting in itertools.count(1):
+        ros.command((float(greeting), 0.0))
         time.sleep(0.1)
+        if commands:
+            ros.wait(lambda last=greeting: commands[-1][0] == last)
+            break
     commands.clear()
 
 

@@ -81,6 +81,15 @@ class McapRecorder:
             self._first_ns = stamp_ns if self._first_ns is None else min(self._first_ns, stamp_ns)
             self._last_ns = max(self._last_ns, stamp_ns)
 
+    def describe(self, metadata: Mapping[str, Any]) -> None:
+        """Replace the header lines: what was not known yet when the recording began."""
+        lines = {key: str(value) for key, value in metadata.items()}
+        with self._lock:
+            if self._file.closed:
+                raise RecordingError(f"{self.path} is closed: make a new recorder for a new run.")
+            self._metadata = lines
+            self._writer.add_metadata(HEADER_RECORD, lines)  # of two records, readers keep the later
+
     def close(self) -> None:
         """Finish the file: write the index and what rosbag2 wants to know. A second call does nothing."""
         self._closing.set()

@@ -10,6 +10,7 @@ import pytest
 from hasel_interfaces.msg import SupplyState
 from hasel_recording import McapRecorder, RecordingError, RecordingWarning, mcap_recorder
 from hasel_recording.mcap_file import read_file
+from hasel_recording.mcap_recorder import HEADER_RECORD
 from hasel_recording.topics import COMMAND, MEASURED, STATE
 from mcap.reader import make_reader
 from rclpy.serialization import deserialize_message, serialize_message
@@ -45,6 +46,16 @@ def test_killed_writer_loses_at_most_a_second(rate_hz, tmp_path):
         stamps = [message.log_time for message in read_file(path).messages[MEASURED]]
     assert stamps[0] == first_ns
     assert (last_ns - stamps[-1]) / 1e9 < 1.0
+
+
+def test_header_lines_may_be_told_later(tmp_path):
+    """What is told while recording takes the place of the header lines; once closed, nothing can be told."""
+    with McapRecorder(tmp_path / "run.mcap", {"model": "swimmer"}) as recorder:
+        recorder.write(STATE, state_at(1), 1)
+        recorder.describe({"model": "swimmer", "limit": 6000})
+    assert read_file(tmp_path / "run.mcap").metadata[HEADER_RECORD] == {"model": "swimmer", "limit": "6000"}
+    with pytest.raises(RecordingError, match="closed"):
+        recorder.describe({})
 
 
 def test_rclpy_decodes_the_same_message(tmp_path):

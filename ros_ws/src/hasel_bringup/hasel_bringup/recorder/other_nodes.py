@@ -1,10 +1,11 @@
 """The parameters of the rig's other nodes, asked for in the background."""
 
 from rcl_interfaces.srv import GetParameters, ListParameters
+from rclpy.client import Client
 from rclpy.node import Node
 from rclpy.parameter import parameter_value_to_python
 
-_PERIOD_S = 5.0
+_PERIOD_S = 1.0
 _INTERNAL = ("qos_overrides.", "start_type_description_service", "use_sim_time")
 _SECRETIVE = "hasel_virtual_camera"  # what it hides is not for recordings
 
@@ -14,9 +15,9 @@ class OtherNodes:
 
     def __init__(self, node: Node) -> None:
         self._node = node
+        self._clients: dict[str, tuple[Client, Client]] = {}  # kept: a new one needs time to find its service
         self._values: dict[str, dict[str, object]] = {}
         node.create_timer(_PERIOD_S, self._ask)
-        self._ask()
 
     def known(self) -> dict[str, object]:
         """The values, at most some seconds old."""
@@ -37,24 +38,25 @@ class OtherNodes:
                 self._list(name)
 
     def _list(self, name: str) -> None:
-        client = self._node.create_client(ListParameters, f"{name}/list_parameters")
-        if not client.service_is_ready():
-            self._node.destroy_client(client)
+        if name not in self._clients:
+            self._clients[name] = (
+                self._node.create_client(ListParameters, f"{name}/list_parameters"),
+                self._node.create_client(GetParameters, f"{name}/get_parameters"),
+            )
+        lister, getter = self._clients[name]
+        if not (lister.service_is_ready() and getter.service_is_ready()):
             return
 
         def listed(future) -> None:
-            self._node.destroy_client(client)
             names = [n for n in future.result().result.names if not n.startswith(_INTERNAL)]
             self._get(name, names)
 
-        client.call_async(ListParameters.Request()).add_done_callback(listed)
+        lister.call_async(ListParameters.Request()).add_done_callback(listed)
 
     def _get(self, name: str, names: list[str]) -> None:
-        client = self._node.create_client(GetParameters, f"{name}/get_parameters")
-
         def got(future) -> None:
-            self._node.destroy_client(client)
             values = map(parameter_value_to_python, future.result().values)
             self._values[name] = dict(zip(names, values, strict=False))
 
-        client.call_async(GetParameters.Request(names=names)).add_done_callback(got)
+        getter = self._clients[name][1]
+        getter.call_async(GetParameters.Request(names=names)).add_done_callback(got)

@@ -40,6 +40,7 @@ class RecorderNode(Node):
         declare(self, PARAMETERS)
         self._recorder: McapRecorder | None = None
         self._path = Path()
+        self._made_by: dict[str, str] = {}
         self._last_ns: dict[str, int] = {}
         self._others = OtherNodes(self)
         for topic, kind in RECORDED.items():
@@ -69,10 +70,13 @@ class RecorderNode(Node):
             raise BringupError(
                 f"{self._path} exists already, and no recording is overwritten: set another name."
             )
-        made_by = provenance(self.get_fully_qualified_name(), PACKAGES, self._others.known())
         self._last_ns = {}
-        self._recorder = McapRecorder(self._part, made_by)
+        self._made_by = self._provenance()
+        self._recorder = McapRecorder(self._part, self._made_by)
         return str(self._path)
+
+    def _provenance(self) -> dict[str, str]:
+        return provenance(self.get_fully_qualified_name(), PACKAGES, self._others.known())
 
     def _stop(self) -> str:
         if self._recorder is None:
@@ -86,6 +90,7 @@ class RecorderNode(Node):
 
     def _finish(self, path: Path) -> None:
         recorder, self._recorder = self._recorder, None
+        recorder.describe({**self._provenance(), **self._made_by})  # with what nodes have answered since
         recorder.close()
         self._part.rename(path)
 
