@@ -10,40 +10,43 @@ import sys, rclpy
 def init(*_, **__): raise SystemExit("started")
 rclpy.init = init
 sys.argv = ["node", *{arguments}]
-from {module} import main
-main()
+from {module} import {function}
+{function}()
 """
 
 
-def start(module: str, *arguments: str) -> subprocess.CompletedProcess:
-    """Call the executable's entry in a fresh interpreter in which no node can start."""
-    program = _PROGRAM.format(arguments=list(arguments), module=module)
+def start(entry: str, *arguments: str) -> subprocess.CompletedProcess:
+    """Call the executable's entry, module:function, in a fresh interpreter in which no node can start."""
+    module, _, function = entry.partition(":")
+    program = _PROGRAM.format(arguments=list(arguments), module=module, function=function)
     return subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=False
     )
 
 
 @pytest.mark.parametrize(
-    ("module", "parameter"),
+    ("entry", "parameter"),
     [
-        ("hasel_driver.start_driver", "port:="),
-        ("hasel_tracker.start_tracker", "source:="),
-        ("hasel_sim.start_simulator", "model:=swimmer"),
-        ("hasel_sysid.start_sysid", "window:=5.0"),
-        ("hasel_bringup.virtual_rig.command", "hidden:="),
-        ("hasel_bringup.replay.command", "--rate"),
-        ("hasel_driver.virtual_supply", "--link"),
+        ("hasel_driver.start_driver:main", "port:="),
+        ("hasel_tracker.start_tracker:main", "source:="),
+        ("hasel_sim.start_simulator:main", "model:=swimmer"),
+        ("hasel_sysid.start_sysid:main", "window:=5.0"),
+        ("hasel_bringup.entry:virtual_rig", "hidden:="),
+        ("hasel_bringup.entry:recorder", "folder:=recordings"),
+        ("hasel_bringup.entry:virtual_camera", "hidden:=random"),
+        ("hasel_bringup.entry:replay", "--rate"),
+        ("hasel_driver.virtual_supply:main", "--link"),
     ],
 )
-def test_help_starts_nothing(module, parameter):
+def test_help_starts_nothing(entry, parameter):
     """Usage and parameters with defaults, exit code 0; with a slip of the pen exit code 2."""
-    done = start(module, "--help")
+    done = start(entry, "--help")
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("usage: ")
     assert parameter in done.stdout
-    assert start(module, "--hepl").returncode == 2
+    assert start(entry, "--hepl").returncode == 2
 
 
 def test_the_node_is_what_starts_without_it():
     """The guard of the tests above does see a node that starts."""
-    assert start("hasel_sim.start_simulator").stderr == "started\n"
+    assert start("hasel_sim.start_simulator:main").stderr == "started\n"

@@ -33,15 +33,15 @@ setup(
     entry_points={
         "console_scripts": [
             "bench = hasel_bringup.bench:main",
-            "bench_far = hasel_bringup.bench_far.command:main",
-            "bench_hidden = hasel_bringup.bench_hidden.command:main",
-            "demo = hasel_bringup.demo.command:main",
-            "live_demo = hasel_bringup.live_demo.command:main",
-            "recorder = hasel_bringup.recorder.recorder_node:main",
-            "replay = hasel_bringup.replay.command:main",
-            "soak = hasel_bringup.soak.command:main",
-            "virtual_camera = hasel_bringup.virtual_camera.camera_node:main",
-            "virtual_rig = hasel_bringup.virtual_rig.command:main",
+            "bench_far = hasel_bringup.entry:bench_far",
+            "bench_hidden = hasel_bringup.entry:bench_hidden",
+            "demo = hasel_bringup.entry:demo",
+            "live_demo = hasel_bringup.entry:live_demo",
+            "recorder = hasel_bringup.entry:recorder",
+            "replay = hasel_bringup.entry:replay",
+            "soak = hasel_bringup.entry:soak",
+            "virtual_camera = hasel_bringup.entry:virtual_camera",
+            "virtual_rig = hasel_bringup.entry:virtual_rig",
         ]
     },
 )

@@ -20,8 +20,8 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "bench = hasel_driver.bench:main",
-            "console = hasel_driver.console:main",
+            "bench = hasel_driver.start_bench:main",
+            "console = hasel_driver.start_console:main",
             "calibrate = hasel_driver.calibrate:main",
             "driver_node = hasel_driver.start_driver:main",
             "stored_charge = hasel_driver.stored_charge:main",

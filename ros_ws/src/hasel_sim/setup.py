@@ -35,9 +35,9 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "bench = hasel_sim.commands.bench:main",
-            "effects = hasel_sim.commands.effects:main",
-            "show_mesh = hasel_sim.commands.show_mesh:main",
+            "bench = hasel_sim.commands.entry:bench",
+            "effects = hasel_sim.commands.entry:effects",
+            "show_mesh = hasel_sim.commands.entry:show_mesh",
             "simulator = hasel_sim.start_simulator:main",
         ]
     },

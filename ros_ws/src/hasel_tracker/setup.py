@@ -32,10 +32,10 @@ setup(
     entry_points={
         "console_scripts": [
             "tracker_node = hasel_tracker.start_tracker:main",
-            "track = hasel_tracker.commands.track:main",
-            "render = hasel_tracker.commands.render:main",
-            "calibrate = hasel_tracker.commands.calibrate:main",
-            "bench = hasel_tracker.commands.bench:main",
+            "track = hasel_tracker.commands.entry:track",
+            "render = hasel_tracker.commands.entry:render",
+            "calibrate = hasel_tracker.commands.entry:calibrate",
+            "bench = hasel_tracker.commands.entry:bench",
         ]
     },
 )

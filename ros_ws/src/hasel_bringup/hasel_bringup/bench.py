@@ -29,11 +29,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run all three; returns 0 if each reached its bars, 1 if one is missing, else the first other code."""
     given = sys.argv[1:] if arguments is None else list(arguments)
     if given:
+        asked = given[0] in ("-h", "--help")
         print(
             "usage: bench (without arguments; for options run a package's own: ros2 run hasel_tracker bench --help)",
-            file=sys.stderr,
+            file=sys.stdout if asked else sys.stderr,
         )
-        return 0 if given[0] in ("-h", "--help") else 2
+        return 0 if asked else 2
     try:
         executables = [bench_executable(package) for package in PACKAGES]
     except BringupError as error:

@@ -4,11 +4,11 @@ import argparse
 import sys
 import time
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 
 from hasel_driver import protocol
+from hasel_driver.bench_options import firmware_files, options_from
 from hasel_driver.testing.driver_process import DriverProcess
 from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Rig
 from hasel_driver.testing.ros_client import RosClient
@@ -105,25 +105,14 @@ def measure(client: RosClient, rig: Rig, commands: int, kills: int, what: str) -
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Command line; 0 when every bar is met, else 1."""
-    parser = argparse.ArgumentParser(prog="bench", description=__doc__.splitlines()[0])
-    parser.add_argument("--commands", type=int, default=1000, help="commands for the latency")
-    parser.add_argument("--kills", type=int, default=5, help="nodes to be killed")
-    parser.add_argument(
-        "--firmware",
-        type=Path,
-        metavar="BUILD",
-        help="folder in which `make -C firmware all simulator` built sketch and simulator: measure these, end to end,"
-        " with the serial line's own speed, instead of the virtual supply",
-    )
-    options = parser.parse_args(arguments)
+    return run(options_from(arguments))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Measure with these options; 0 when every bar is met, else 1."""
     command, what = VIRTUAL_SUPPLY, "driver"
     if options.firmware is not None:
-        command = [str(options.firmware / "simulate"), str(options.firmware / "hasel_supply.elf")]
-        what = "driver and firmware"
-        if not all(Path(file).is_file() for file in command):
-            parser.error(
-                f"{options.firmware} holds no simulate and hasel_supply.elf: build them with make first"
-            )
+        command, what = list(map(str, firmware_files(options.firmware))), "driver and firmware"
     client, rig = RosClient(), Rig(command)
     try:
         return int(not measure(client, rig, options.commands, options.kills, what))

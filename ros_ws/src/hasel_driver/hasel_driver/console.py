@@ -3,7 +3,6 @@
 While a voltage is on, ANY KEY STOPS: the output is grounded and the driver is in FAULT.
 """
 
-import argparse
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -11,6 +10,7 @@ from collections.abc import Callable, Iterator
 from hasel_interfaces.msg import SupplyState
 
 from hasel_driver.console_link import ConsoleLink
+from hasel_driver.console_options import HELP, parser
 from hasel_driver.errors import DriverError, RefusedError
 from hasel_driver.keyboard import Keyboard
 from hasel_driver.limits import Voltages
@@ -19,16 +19,6 @@ from hasel_driver.mode import Mode
 PERIOD_S = 0.02
 SHOW_S = 0.2
 RATE_V_PER_S = 1000.0
-HELP = """  arm                    STANDBY to ARMED
-  ramp UPPER LOWER [S]   to these voltages [V], hold for S seconds (default: until a key stops), and back to 0
-  rate V                 ramp by V volts a second (1000 at first)
-  limit V                lower the driver's maximum voltage
-  disarm                 to STANDBY, grounded
-  stop                   emergency stop
-  release                take back what the emergency stop's topic holds
-  clear                  FAULT to STANDBY
-  state                  what the supply is doing
-  quit                   disarm and leave"""
 SERVICES = {
     "arm": "arm",
     "disarm": "disarm",
@@ -155,10 +145,13 @@ def _number(word: str) -> float:
 
 
 def main() -> int:
-    """Command line."""
-    argparse.ArgumentParser(
-        prog="console", description=__doc__, epilog=HELP, formatter_class=argparse.RawDescriptionHelpFormatter
-    ).parse_args()
+    """Command line; returns the exit code."""
+    parser().parse_args()
+    return run()
+
+
+def run() -> int:
+    """Obey what is typed until the end; returns the exit code."""
     link = ConsoleLink()
     try:
         Console(link, Keyboard()).run()

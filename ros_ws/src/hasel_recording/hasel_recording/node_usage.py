@@ -29,17 +29,22 @@ def answer_help(
 
     parameters: name, default and meaning of each; arguments: default those of this process.
     """
-    rows = [(f"{key}:={_written(default)}", meaning) for key, default, meaning in parameters]
-    width = min(36, max((len(row[0]) for row in rows), default=0))
-    listed = "\n".join(f"  {given:{width}}  {meaning}" for given, meaning in rows)
     parser = argparse.ArgumentParser(
         prog=name,
         usage=f"{name} [--help] [--ros-args -p PARAMETER:=VALUE …]",
         description=description,
-        epilog=f"parameters and their defaults:\n{listed}",
+        epilog=parameter_list(parameters),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.parse_args(user_arguments(sys.argv[1:] if arguments is None else arguments))
+
+
+def parameter_list(parameters: Iterable[tuple[str, object, str]]) -> str:
+    """A node's parameters, one a line: name with default, meaning."""
+    rows = [(f"{key}:={_written(default)}", meaning) for key, default, meaning in parameters]
+    width = min(36, max((len(row[0]) for row in rows), default=0))
+    listed = "\n".join(f"  {given:{width}}  {meaning}" for given, meaning in rows)
+    return f"parameters and their defaults:\n{listed}"
 
 
 def _written(default: object) -> str:

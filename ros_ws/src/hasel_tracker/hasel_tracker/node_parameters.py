@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from hasel_tracker.calibration.settings_file import COLOUR_KEYS, SEARCH_KEYS, flat
-from hasel_tracker.tracking.bending_tracker import DEFAULT_METHOD
-from hasel_tracker.tracking.silhouette import BODY_KINDS
-from hasel_tracker.tracking.tracker_settings import METHODS, TrackerSettings
+from hasel_tracker.choices import BODY_KINDS, DEFAULT_METHOD, METHODS
+from hasel_tracker.tracking.tracker_settings import TrackerSettings
 
 
 @dataclass(frozen=True)
@@ -66,7 +65,7 @@ PARAMETERS = (
         -180.0,
         180.0,
     ),
-    _search("body", "of midline: light or dark against the ground, or auto", choices=tuple(BODY_KINDS)),
+    _search("body", "of midline: light or dark against the ground, or auto", choices=BODY_KINDS),
     _search(
         "points",
         "of midline: shares of the length from head to tail, such as 0.05,0.5,1; empty for the markers'",

@@ -2,28 +2,18 @@
 
 import argparse
 import json
-import sys
 import time
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import asdict, dataclass
-from pathlib import Path
 
 from hasel_sim.parallel import executor
 from hasel_sysid.dataset import prepared
 from hasel_sysid.improve import improve
 from hasel_sysid.problem import Problem
 
-from hasel_bringup.bench_far.far_case import (
-    BODIES,
-    SHIFTS,
-    SIZES,
-    FarCase,
-    baseline,
-    far_cases,
-    measure,
-    value_of,
-)
+from hasel_bringup.bench_far.constants_far_off import BODIES
+from hasel_bringup.bench_far.far_case import FarCase, baseline, far_cases, measure, value_of
 
 
 @dataclass(frozen=True)
@@ -85,9 +75,8 @@ def run_case(case: FarCase, pool: Executor, only: Sequence[str] | None = None) -
     )
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    options = parser().parse_args(arguments)
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code."""
     cases = far_cases(options.effects, options.shifts, BODIES if options.body is None else (options.body,))
     outcomes = []
     with executor(options.jobs) as pool:
@@ -101,31 +90,3 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if options.json:
         options.json.write_text(json.dumps([asdict(o) for o in outcomes], indent=1))
     return 0
-
-
-def parser() -> argparse.ArgumentParser:
-    """The command's options."""
-    options = argparse.ArgumentParser(
-        prog="bench_far",
-        description="Set a gross constant of a truth so that it rings 10 to 60 % faster or slower, and look whether "
-        "`improve` names it. Takes an hour or more.",
-    )
-    options.add_argument(
-        "--effects", type=_list_of(str), default=tuple(SIZES), metavar="A,B", help="hidden ones"
-    )
-    options.add_argument(
-        "--shifts", type=_list_of(float), default=SHIFTS, metavar="S,T", help="such as -0.4,0.25"
-    )
-    options.add_argument("--body", choices=BODIES, help="only this body")
-    options.add_argument("--candidates", type=_list_of(str), metavar="A,B", help="try only these effects")
-    options.add_argument("--jobs", type=int, metavar="N", help="simulations at once (default: one per core)")
-    options.add_argument("--json", type=Path, metavar="FILE", help="write the outcomes")
-    return options
-
-
-def _list_of(kind: type):
-    return lambda text: tuple(kind(part) for part in text.split(","))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -16,16 +16,9 @@ from hasel_sysid.dataset import Experiment
 from hasel_sysid.where_it_fails.components.free_swing import fit_swing
 from scipy.optimize import brentq
 
+from hasel_bringup.bench_far.constants_far_off import BODIES, SHIFTS, SIZES
 from hasel_bringup.bench_hidden.truth import NOMINAL, NUMERICS, truth_model
 
-SIZES = {
-    "payload": "payload.mass",
-    "soft_modulus": "soft_modulus.scale",
-    "added_mass": "added_mass.added_mass",
-    "spine_modulus": "spine_modulus.scale",
-}
-SHIFTS = (-0.6, -0.4, -0.25, -0.1, 0.1, 0.25, 0.4, 0.6)
-BODIES = ("beam", "swimmer")
 NOISES = (2e-5, 3e-4, 3e-3)
 _BEAM_DAMPING_S = 0.004
 _FRAMES_PER_SECOND = 100.0

@@ -12,59 +12,15 @@ from hasel_sim.parallel import executor, worker_count
 from hasel_bringup.bench_hidden.case import Case
 from hasel_bringup.bench_hidden.case_list import list_cases, quick_cases
 from hasel_bringup.bench_hidden.explain import explain
+from hasel_bringup.bench_hidden.options import KINDS, PAGE
 from hasel_bringup.bench_hidden.outcome import Outcome
 from hasel_bringup.bench_hidden.page import as_json, as_markdown, outcomes_of
 from hasel_bringup.bench_hidden.run_cases import run_cases
-from hasel_bringup.bench_hidden.truth import NUMERICS
 from hasel_bringup.errors import BringupError
 
-_OUTPUT = Path("output/bench_hidden")
-_PAGE = Path("docs/hidden_effects.md")
-_KINDS = {"nothing": "nothing", "single": "single", "pairs": "pair", "unlisted": "unlisted"}
 
-
-def parser() -> argparse.ArgumentParser:
-    """The command's options."""
-    options = argparse.ArgumentParser(
-        prog="bench_hidden",
-        description="Hide effects in a simulated truth, let `improve` look for them, and count. Takes hours; "
-        "stop with Ctrl-C and go on with --resume.",
-    )
-    options.add_argument(
-        "--seeds", type=int, default=5, metavar="N", help="per effect (default: %(default)s)"
-    )
-    options.add_argument(
-        "--first-seed",
-        type=_seed,
-        default=0,
-        metavar="N",
-        help="with 5 or more, cases that no rule was made on (default: %(default)s)",
-    )
-    options.add_argument("--effects", default="", metavar="A,B", help="only cases that hide one of these")
-    options.add_argument("--only", choices=list(_KINDS), help="only cases of this kind")
-    options.add_argument(
-        "--truth", choices=list(NUMERICS), default="near", help="discretisation of the truth"
-    )
-    options.add_argument("--quick", action="store_true", help="five cases, some minutes")
-    options.add_argument(
-        "--resume", action="store_true", help="keep what the output folder and the page hold"
-    )
-    options.add_argument("--output", type=Path, default=_OUTPUT, metavar="DIR", help="default: %(default)s")
-    options.add_argument("--page", type=Path, metavar="FILE", help=f"default: {_PAGE}, in DIR for a part")
-    options.add_argument("--jobs", type=int, metavar="N", help="cases at once (default: one per core)")
-    options.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, instead of processes")
-    return options
-
-
-def _seed(text: str) -> int:
-    if not text.isdecimal():
-        raise argparse.ArgumentTypeError(f"'{text}' is no seed; give a whole number, 0 or more")
-    return int(text)
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    options = parser().parse_args(arguments)
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code."""
     try:
         return _bench(options)
     except (BringupError, ModelError, SimulationError) as error:
@@ -109,7 +65,7 @@ def _at_once(options: argparse.Namespace, cases: Sequence[Case]) -> int:
 def _cases(options: argparse.Namespace) -> list[Case]:
     if options.quick:
         return quick_cases(options.truth)
-    kinds = list(_KINDS.values()) if options.only is None else [_KINDS[options.only]]
+    kinds = list(KINDS.values()) if options.only is None else [KINDS[options.only]]
     effects = [name for name in options.effects.split(",") if name]
     seeds = range(options.first_seed, options.first_seed + options.seeds)
     return list_cases(kinds, seeds, effects, options.truth)
@@ -117,7 +73,7 @@ def _cases(options: argparse.Namespace) -> list[Case]:
 
 def _default_page(options: argparse.Namespace) -> Path:
     part = options.quick or options.only or options.effects or options.first_seed
-    return options.output / _PAGE.name if part else _PAGE
+    return options.output / PAGE.name if part else PAGE
 
 
 def _write(outcomes: Sequence[Outcome], planned: int, page: Path) -> None:
@@ -133,7 +89,3 @@ def _write(outcomes: Sequence[Outcome], planned: int, page: Path) -> None:
 
 def _say(sentence: str) -> None:
     print(sentence, file=sys.stderr, flush=True)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -18,31 +18,7 @@ from hasel_bringup.demo.live_error import LiveError
 from hasel_bringup.demo.measured_bodies import MeasuredBody, found_in
 from hasel_bringup.errors import BringupError
 
-_DATA = Path("data") / "unseen_rig" / "quadratic_drag"
 _REPLAYED = "val_5200V_2.5Hz.csv"
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="demo", description=__doc__.partition(": ")[2])
-    parser.add_argument(
-        "--data",
-        type=Path,
-        default=_DATA,
-        metavar="DIR",
-        help="fit_*.csv and val_*.csv (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--body",
-        type=Path,
-        action="append",
-        default=[],
-        metavar="DIR",
-        help="also the measured bodies in this folder: beam, loaded beam, arm (may be given several times)",
-    )
-    parser.add_argument(
-        "--output", type=Path, default=Path("output") / "demo", metavar="DIR", help="(default: %(default)s)"
-    )
-    return parser
 
 
 class Demo:
@@ -135,18 +111,13 @@ def _call(command, arguments: Sequence[str]) -> None:
         )
 
 
-def main() -> int:
-    """Command line of `demo`; returns the exit code."""
-    arguments = _parser().parse_args()
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code."""
     try:
-        Demo(arguments.data, arguments.body, arguments.output).run()
+        Demo(options.data, options.body, options.output).run()
     except (BringupError, RecordingError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         return 130
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -6,7 +6,6 @@ import signal
 import sys
 from pathlib import Path
 
-from hasel_recording.node_usage import user_arguments
 from rich.console import Console
 
 from hasel_bringup.demo.processes import Processes
@@ -15,45 +14,13 @@ from hasel_bringup.live_demo.commands import Commands
 from hasel_bringup.live_demo.nodes import start_nodes
 from hasel_bringup.live_demo.rig import Rig
 from hasel_bringup.live_demo.session import Session
-from hasel_bringup.virtual_camera.secret import NOTHING, RANDOM, hideable
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="live_demo",
-        description="Virtual supply, driver, camera, tracker, simulator, identification and recorder as nodes: "
-        "measure, learn what the model misses, add it to the running simulator, and open the secret.",
-    )
-    parser.add_argument(
-        "--hidden",
-        default=RANDOM,
-        choices=[RANDOM, NOTHING, *hideable()],
-        metavar="NAME",
-        help="what the swimmer has beyond the model: an effect, random or none (default: %(default)s)",
-    )
-    parser.add_argument("--seed", type=int, default=-1, help="of what is random; -1: another one each time")
-    parser.add_argument(
-        "--output",
-        type=Path,
-        default=Path("output") / "live_demo",
-        metavar="DIR",
-        help="(default: %(default)s)",
-    )
-    parser.add_argument(
-        "--runs", type=int, metavar="N", help="only the N shortest runs, without learning anything from them"
-    )
-    parser.add_argument(
-        "--attach", action="store_true", help="use nodes that run already, as virtual.launch.py does"
-    )
-    return parser
-
-
-def main() -> int:
-    """Command line of `live_demo`; returns the exit code."""
-    arguments = _parser().parse_args(user_arguments(sys.argv[1:]))
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        return _run(arguments)
+        return _run(options)
     except BringupError as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
@@ -64,10 +31,10 @@ def main() -> int:
         return 0
 
 
-def _run(arguments: argparse.Namespace) -> int:
-    folder = _fresh(arguments.output)
+def _run(options: argparse.Namespace) -> int:
+    folder = _fresh(options.output)
     console = Console(highlight=False)
-    domain = None if arguments.attach else 1 + os.getpid() % 100
+    domain = None if options.attach else 1 + os.getpid() % 100
     environment = {}
     if domain is not None:
         environment = {"ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
@@ -78,12 +45,12 @@ def _run(arguments: argparse.Namespace) -> int:
             soft_wrap=True,
         )
     with Processes(folder / "logs", environment) as processes:
-        if not arguments.attach:
-            start_nodes(processes, folder, arguments.hidden, arguments.seed)
+        if not options.attach:
+            start_nodes(processes, folder, options.hidden, options.seed)
         rig = Rig(processes.check, domain)
         try:
             commands = Commands(processes, console)
-            Session(rig, commands, folder, console).run(arguments.runs)
+            Session(rig, commands, folder, console).run(options.runs)
         finally:
             rig.close()
     return 0
@@ -97,7 +64,3 @@ def _fresh(output: Path) -> Path:
         folder = output.with_name(f"{output.name}_{number}")
     folder.mkdir(parents=True, exist_ok=True)
     return folder.resolve()
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -4,7 +4,6 @@ While it is written a recording is called NAME.mcap.part; what was interrupted b
 """
 
 import math
-import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -16,18 +15,15 @@ from hasel_recording.mcap_recorder import McapRecorder
 from hasel_recording.message_fields import nanoseconds
 from hasel_recording.provenance import provenance
 from hasel_recording.topics import ERROR, MEASURED, NAMESPACE, SIMULATED, STATE, relative
-from hasel_sim.node_parameters import NodeParameter, declare
+from hasel_sim.node_parameters import declare
 from hasel_sim.node_process import run_node
 from rclpy.node import Node
 from std_srvs.srv import Trigger
 
 from hasel_bringup.errors import BringupError
 from hasel_bringup.recorder.other_nodes import OtherNodes
+from hasel_bringup.recorder.recorder_parameters import PARAMETERS
 
-PARAMETERS = (
-    NodeParameter("folder", "recordings", "into which recordings are written", changeable=True),
-    NodeParameter("name", "run", "of the next recording, without .mcap", changeable=True),
-)
 RECORDED = {STATE: SupplyState, MEASURED: BendingAngle, SIMULATED: BendingAngle, ERROR: RunningError}
 PACKAGES = ("hasel_recording", "hasel_driver", "hasel_tracker", "hasel_sim", "hasel_sysid", "hasel_bringup")
 
@@ -122,7 +118,3 @@ def _is_unknown(message) -> bool:
 def main() -> int:
     """Run the node until it is interrupted; returns the exit code."""
     return run_node(RecorderNode, errors=(BringupError, RecordingError))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

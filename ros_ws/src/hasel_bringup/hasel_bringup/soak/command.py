@@ -11,7 +11,6 @@ import numpy as np
 from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
 from hasel_recording.endpoints import Role, subscription
 from hasel_recording.message_fields import nanoseconds
-from hasel_recording.node_usage import user_arguments
 from hasel_recording.topics import ERROR, MEASURED, SIMULATED, STATE
 
 from hasel_bringup.demo.processes import Processes
@@ -141,13 +140,9 @@ class Soak:
                 self.problems.append(f"{name} grew from {before:.1f} to {after:.1f} MB")
 
 
-def main() -> int:
-    """Command line of `soak`; returns the exit code, 1 when something was not as it should be."""
-    parser = argparse.ArgumentParser(prog="soak", description=__doc__.partition(": ")[2])
-    parser.add_argument("--minutes", type=float, default=10.0, help="(default: %(default)g)")
-    parser.add_argument("--output", type=Path, default=Path("output") / "soak", metavar="DIR")
-    arguments = parser.parse_args(user_arguments(sys.argv[1:]))
-    soak = Soak(arguments.output.resolve(), 60.0 * arguments.minutes, 1 + os.getpid() % 100)
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code, 1 when something was not as it should be."""
+    soak = Soak(options.output.resolve(), 60.0 * options.minutes, 1 + os.getpid() % 100)
     try:
         soak.run()
     except BringupError as error:
@@ -158,7 +153,3 @@ def main() -> int:
     for problem in soak.problems:
         print(f"not as it should be: {problem}")
     return 1 if soak.problems else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

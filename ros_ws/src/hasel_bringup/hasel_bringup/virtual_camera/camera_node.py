@@ -6,7 +6,6 @@ are exposed, elsewhere once the run is over. Their stamps are those of the expos
 
 import os
 import queue
-import sys
 import threading
 import time
 from functools import partial
@@ -177,7 +176,3 @@ def main() -> int:
     """Run the node until it is interrupted; returns the exit code."""
     cv2.setNumThreads(1)
     return run_node(VirtualCameraNode, _spin, errors=(HaselSimError, BringupError))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

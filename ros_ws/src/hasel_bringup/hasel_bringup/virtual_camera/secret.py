@@ -3,16 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_sim.effects.base import ObservationEffect
 from hasel_sim.effects.registry import catalogue
-from hasel_sim.errors import nearest_name
 from hasel_sim.model import Model
 
 from hasel_bringup.bench_hidden.case import Case, draw_values
 from hasel_bringup.bench_hidden.truth import Muscles, TruthNumerics, draw_muscles, truth_model
-from hasel_bringup.errors import BringupError
+from hasel_bringup.virtual_camera.hideable import NOTHING, RANDOM, check_hidden, hideable
 
-RANDOM, NOTHING = "random", "none"
 _NUMERICS = TruthNumerics("live", 1.6, 2, steps_per_second=480.0)  # the model: 1.0, 1 and 240
 
 
@@ -37,24 +34,14 @@ class Secret:
         return ", ".join(parts) or NOTHING
 
 
-def hideable() -> list[str]:
-    """Effects that change how the body moves: those of the observation would not show in a picture of its markers."""
-    return [name for name, effect in catalogue().items() if not isinstance(effect, ObservationEffect)]
-
-
 def draw_secret(hidden: str, generator: np.random.Generator) -> Secret:
     """A swimmer with one hidden effect of about its typical size, and muscles of its own.
 
     hidden: an effect's id, `random` for any that can be hidden, `none` for none. Raises BringupError for another word.
     """
-    known = hideable()
-    if hidden not in (RANDOM, NOTHING, *known):
-        raise BringupError(
-            f"'{hidden}' cannot be hidden; expected {RANDOM}, {NOTHING} or an effect that moves the body: "
-            f"{nearest_name(hidden, known)}"
-        )
+    check_hidden(hidden)
     if hidden == RANDOM:
-        hidden = str(generator.choice(known))
+        hidden = str(generator.choice(hideable()))
     effects = () if hidden == NOTHING else (hidden,)
     case = Case("single", effects, 1.0, int(generator.integers(2**31)), "white", _NUMERICS.name)
     return Secret(draw_values(case, generator), draw_muscles(generator), _NUMERICS)

@@ -9,27 +9,13 @@ from hasel_recording.topics import MEASURED, NAMESPACE, STATE
 from hasel_sim.live.live_model import live_model
 from hasel_sim.live.live_simulator import LiveSimulator
 from hasel_sim.live.repeated_warnings import RepeatedWarnings
-from hasel_sim.node_parameters import NodeParameter, declare, words
+from hasel_sim.node_parameters import declare, words
 from hasel_sim.simulator_messages import angle_message, rig_voltage, to_nanoseconds
 from rclpy.node import Node
 
+from hasel_bringup.virtual_rig.body_parameters import PARAMETERS
 from hasel_bringup.virtual_rig.camera_noise import CameraNoise
 from hasel_bringup.virtual_rig.hidden import with_hidden
-
-PARAMETERS = (
-    NodeParameter("model", "swimmer", "model of the truth: its name or file"),
-    NodeParameter(
-        "hidden", [""], "what the truth has beyond the model, such as quadratic_drag.coefficient=0.25"
-    ),
-    NodeParameter("white_noise", 0.002, "noise of each frame by itself, rms of sin theta", "1", 0.0, 1.0),
-    NodeParameter(
-        "coloured_noise", 0.002, "noise shared by neighbouring frames, rms of sin theta", "1", 0.0, 1.0
-    ),
-    NodeParameter("correlation", 0.9, "of the coloured noise from frame to frame", "1", 0.0, 0.999),
-    NodeParameter("offset", 0.0, "what the camera reads on a straight body, as sin theta", "1", -1.0, 1.0),
-    NodeParameter("seed", 1, "of the noise", "1", 0, 2**31 - 1),
-    NodeParameter("frame_rate", 120.0, "most frames per second", "1/s", 1.0, 1000.0),
-)
 
 
 class VirtualBodyNode(Node):

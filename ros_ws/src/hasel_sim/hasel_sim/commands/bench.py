@@ -4,7 +4,6 @@ import argparse
 import json
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 from rich.console import Console
 from threadpoolctl import threadpool_limits
@@ -15,6 +14,7 @@ from hasel_sim.bench.report import ConvergenceReport, SpeedReport
 from hasel_sim.bench.speed import by_nodes, by_parameters
 from hasel_sim.bench.timing import first_run_seconds
 from hasel_sim.bench.where_time_goes import shares
+from hasel_sim.commands.parsers import bench_parser
 
 SIZES = (180, 275, 700, 1400)
 """Wanted nodes: the second is the default mesh, the last has as many as the simulator this one is compared with."""
@@ -32,11 +32,12 @@ def measure_speeds(console: Console) -> SpeedReport:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    return run(bench_parser().parse_args(arguments))
+
+
+def run(options: argparse.Namespace) -> int:
     """Print the tables; 0 when every bar is met, else 1."""
-    parser = argparse.ArgumentParser(prog="bench", description=__doc__)
-    parser.add_argument("--convergence", action="store_true", help="errors under refinement instead of speed")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write all numbers here")
-    options = parser.parse_args(arguments)
     console = Console()
     with threadpool_limits(1):
         if options.convergence:

@@ -4,21 +4,19 @@ import argparse
 import sys
 from collections.abc import Sequence
 
+from hasel_sim.commands.parsers import effects_parser
 from hasel_sim.effects.card import card, document, overview
 from hasel_sim.effects.registry import catalogue, find_effects
 from hasel_sim.errors import HaselSimError
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns the exit status."""
-    parser = argparse.ArgumentParser(
-        prog="effects", description="List the physical effects that a model can have, or print one's card."
-    )
-    parser.add_argument(
-        "names", nargs="*", metavar="NAME", help="an effect's id, or path/to/file.py:ClassName of your own"
-    )
-    parser.add_argument("--table", action="store_true", help="print all of them as the documentation's page")
-    options = parser.parse_args(arguments)
+    """Run the command; returns its exit code."""
+    return run(effects_parser().parse_args(arguments))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print what was asked for; returns the exit code."""
     try:
         if options.table:
             print(document(catalogue().values()), end="")

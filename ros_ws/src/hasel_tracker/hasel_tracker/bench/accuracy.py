@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
+from hasel_tracker.choices import DEFAULT_METHOD
 from hasel_tracker.offline.tracked_run import track_frames
 from hasel_tracker.render.background import filling
 from hasel_tracker.render.camera_view import CameraView
@@ -16,7 +17,7 @@ from hasel_tracker.render.motion import BendingMotion
 from hasel_tracker.render.renderer import RenderedFrame, Renderer
 from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.video_source import VideoSource
-from hasel_tracker.tracking.bending_tracker import DEFAULT_METHOD, BendingTracker
+from hasel_tracker.tracking.bending_tracker import BendingTracker
 from hasel_tracker.video.video_writer import H264Writer
 
 FRAME_RATE_HZ = 120.0

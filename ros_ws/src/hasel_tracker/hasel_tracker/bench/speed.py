@@ -7,10 +7,11 @@ import cv2
 import numpy as np
 
 from hasel_tracker.bench.accuracy import CONDITIONS, FRAME_RATE_HZ, renderer_for
+from hasel_tracker.choices import DEFAULT_METHOD
 from hasel_tracker.lab.lab_scene import LabScene
 from hasel_tracker.lab.lab_swimmer import DARK, LabSwimmer
 from hasel_tracker.sources.frame import Frame
-from hasel_tracker.tracking.bending_tracker import DEFAULT_METHOD, BendingTracker
+from hasel_tracker.tracking.bending_tracker import BendingTracker
 from hasel_tracker.tracking.trust import AGREEING_FRAMES
 
 JPEG_QUALITY = 75

@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
+from hasel_tracker.choices import VIEWS_FOR_LENS
 from hasel_tracker.errors import TrackerError
 
-VIEWS_FOR_LENS = 4
 VIEWS_FOR_HIGHER_TERMS = 10
 
 

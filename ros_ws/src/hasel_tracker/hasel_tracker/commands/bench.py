@@ -4,28 +4,24 @@ import argparse
 import json
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 from rich.console import Console
 
 from hasel_tracker.bench.report import run_bench
 from hasel_tracker.commands.command import run_command
+from hasel_tracker.commands.parsers import bench_parser
 from hasel_tracker.errors import TrackerError
 
 LEAST_FRAMES = 30
 
 
-def parser() -> argparse.ArgumentParser:
-    """The command's options."""
-    options = argparse.ArgumentParser(prog="bench", description="Measure the tracker against rendered truth.")
-    options.add_argument("--frames", type=int, default=60, help="per condition (default: %(default)s)")
-    options.add_argument("--json", type=Path, metavar="FILE", help="write the results as JSON too")
-    return options
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns its exit code: 0 if every bar is met, 2 if not."""
-    options = parser().parse_args(arguments)
+    """Run the command; returns its exit code."""
+    return run(bench_parser().parse_args(arguments))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code: 0 if every bar is met, 2 if not."""
     missed: list[str] = []
     return run_command(lambda: _bench(options, missed)) or (2 if missed else 0)
 

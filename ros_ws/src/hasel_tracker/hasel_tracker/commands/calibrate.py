@@ -8,65 +8,28 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from hasel_tracker.calibration.board_calibration import VIEWS_FOR_LENS, Board, calibrate_camera, find_corners
+from hasel_tracker.calibration.board_calibration import Board, calibrate_camera, find_corners
 from hasel_tracker.calibration.body_learning import body_picture, learn_body
 from hasel_tracker.calibration.camera_calibration import scale_calibration
 from hasel_tracker.calibration.colour_learning import learn_colour
 from hasel_tracker.calibration.learned_picture import learned_picture
 from hasel_tracker.calibration.settings_file import save_settings
-from hasel_tracker.commands.command import point, region, run_command
+from hasel_tracker.choices import VIEWS_FOR_LENS
+from hasel_tracker.commands.command import run_command
+from hasel_tracker.commands.parsers import calibrate_parser
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.sources.folder_source import IMAGE_SUFFIXES
 from hasel_tracker.sources.video_source import VideoSource
 from hasel_tracker.tracking.bending_tracker import within
-from hasel_tracker.tracking.silhouette import BODY_KINDS
-
-
-def parser() -> argparse.ArgumentParser:
-    """The command's options."""
-    options = argparse.ArgumentParser(prog="calibrate", description="Set the tracker up for a rig.")
-    kinds = options.add_subparsers(dest="kind", required=True)
-    colour = kinds.add_parser("colour", help="learn the markers' colour and size from one frame")
-    colour.add_argument("frame", type=Path, help="image, or video (its first frame)")
-    colour.add_argument("--at", type=point, nargs="+", metavar="X,Y", help="a pixel on each marker")
-    colour.add_argument(
-        "--output", "-o", type=Path, default=Path("markers.yaml"), help="default: %(default)s"
-    )
-    colour.add_argument("--show", type=Path, metavar="PNG", help="write a picture of what is seen")
-    body = kinds.add_parser("body", help="see how a swimmer without dots stands out (--method midline)")
-    body.add_argument("frame", type=Path, help="image, or video (its first frame)")
-    body.add_argument(
-        "--body", choices=tuple(BODY_KINDS), default="auto", help="against the ground (default: auto)"
-    )
-    body.add_argument("--roi", type=region, metavar="X,Y,W,H", help="look only within this part")
-    body.add_argument("--output", "-o", type=Path, default=Path("markers.yaml"), help="default: %(default)s")
-    body.add_argument("--show", type=Path, metavar="PNG", help="write a picture of what is seen")
-    board = kinds.add_parser("board", help="lens and perspective from pictures of a chessboard")
-    board.add_argument(
-        "images", type=Path, nargs="*", help=f"views in other poses, for the lens ({VIEWS_FOR_LENS} or more)"
-    )
-    board.add_argument("--plane", type=Path, required=True, help="picture of the board in the swimming plane")
-    board.add_argument("--columns", type=int, default=9, help="inner corners per row (default: %(default)s)")
-    board.add_argument("--rows", type=int, default=6, help="inner corners per column (default: %(default)s)")
-    board.add_argument("--square", type=float, required=True, metavar="M", help="side of a square [m]")
-    board.add_argument("--output", "-o", type=Path, default=Path("camera.yaml"), help="default: %(default)s")
-    distance = kinds.add_parser("distance", help="metres per pixel from two points a known distance apart")
-    distance.add_argument(
-        "frame", type=Path, help="image, or video (its first frame), seen straight from above"
-    )
-    distance.add_argument(
-        "--between", type=point, nargs=2, required=True, metavar="X,Y", help="the two points [px]"
-    )
-    distance.add_argument("--metres", type=float, required=True, metavar="M", help="their distance [m]")
-    distance.add_argument(
-        "--output", "-o", type=Path, default=Path("camera.yaml"), help="default: %(default)s"
-    )
-    return options
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns its exit code."""
-    options = parser().parse_args(arguments)
+    return run(calibrate_parser().parse_args(arguments))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code."""
     work = {"colour": _colour, "body": _body, "board": _board, "distance": _distance}[options.kind]
     return run_command(lambda: work(options))
 

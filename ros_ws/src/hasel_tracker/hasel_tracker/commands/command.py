@@ -1,6 +1,5 @@
 """What every command does alike: errors as one sentence, progress with the time left."""
 
-import argparse
 import sys
 from collections.abc import Callable
 
@@ -32,18 +31,3 @@ def progress_bar() -> Progress:
         TimeRemainingColumn(),
         console=Console(stderr=True),
     )
-
-
-def point(text: str) -> tuple[float, float]:
-    """A point X,Y of the command line [px]."""
-    x, _, y = text.partition(",")
-    return float(x), float(y)
-
-
-def region(text: str) -> tuple[int, int, int, int]:
-    """A region X,Y,WIDTH,HEIGHT of the command line [px]."""
-    values = [int(part) for part in text.split(",")]
-    if len(values) != 4 or min(values) < 0:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a region X,Y,WIDTH,HEIGHT in pixels")
-    left, top, width, height = values
-    return left, top, width, height

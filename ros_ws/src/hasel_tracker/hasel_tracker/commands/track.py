@@ -10,7 +10,8 @@ import numpy as np
 
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
 from hasel_tracker.calibration.settings_file import load_settings
-from hasel_tracker.commands.command import point, progress_bar, region, run_command
+from hasel_tracker.commands.command import progress_bar, run_command
+from hasel_tracker.commands.parsers import track_parser
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.offline.drive import (
     Alignment,
@@ -29,83 +30,19 @@ from hasel_tracker.sources.folder_source import FolderSource
 from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.open_source import open_recorded
 from hasel_tracker.sources.video_source import VideoSource
-from hasel_tracker.tracking.bending_tracker import DEFAULT_METHOD, BendingTracker, TrackedFrame
-from hasel_tracker.tracking.silhouette import BODY_KINDS
-from hasel_tracker.tracking.tracker_settings import METHODS, TrackerSettings
+from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
+from hasel_tracker.tracking.tracker_settings import TrackerSettings
 from hasel_tracker.video.annotation import annotate
 from hasel_tracker.video.video_writer import H264Writer
 
 
-def parser() -> argparse.ArgumentParser:
-    """The command's options."""
-    options = argparse.ArgumentParser(prog="track", description="Track the markers of a video.")
-    options.add_argument("video", type=Path, help="video file, or folder of images")
-    options.add_argument("--output", "-o", type=Path, required=True, help="recording to write: .csv or .mcap")
-    options.add_argument(
-        "--annotate", type=Path, metavar="VIDEO", help="write a video of what was found (H.264)"
-    )
-    options.add_argument("--method", choices=METHODS, default=DEFAULT_METHOD, help="default: %(default)s")
-    options.add_argument(
-        "--markers", type=int, metavar="N", help="how many, 2 to 15 (default: 3, or as --settings says)"
-    )
-    options.add_argument(
-        "--points",
-        metavar="N|S,S,…",
-        help="of midline: how many points, or at which shares of the length from the head",
-    )
-    options.add_argument(
-        "--body", choices=tuple(BODY_KINDS), help="of midline: how the body stands out (default: auto)"
-    )
-    options.add_argument(
-        "--head", metavar="SIDE", help="where the head is in the first frame: left, right, top, bottom or X,Y"
-    )
-    options.add_argument(
-        "--at",
-        type=point,
-        nargs="+",
-        metavar="X,Y",
-        help="the markers in the first frame, head first, by hand",
-    )
-    options.add_argument(
-        "--fix", type=Path, metavar="FILE", help="frames and the markers' positions in them, by hand (YAML)"
-    )
-    options.add_argument(
-        "--roi", type=region, metavar="X,Y,W,H", help="look only within this part of the picture"
-    )
-    options.add_argument(
-        "--box", type=_box, nargs="+", metavar="X,Y,W,H", help="boxes for csrt, from head to tail"
-    )
-    options.add_argument("--settings", type=Path, help="colour, size and region, from `calibrate colour`")
-    options.add_argument("--calibration", type=Path, help="lens and perspective, from `calibrate board`")
-    options.add_argument(
-        "--mirrored", action="store_true", help="the camera looks from below or over a mirror"
-    )
-    options.add_argument("--frame-rate", type=float, metavar="HZ", help="of a folder of images")
-    options.add_argument("--drive", type=Path, help="the drive's recording (.mcap or .csv), to merge")
-    options.add_argument("--merge", choices=("auto", "stamp", "lag"), default="auto",
-                         help="by stamp, by the lag found, or stamp if both have it (default)")  # fmt: skip
-    options.add_argument(
-        "--lag", type=float, metavar="SECONDS", help="merge by this lag, added to the drive's time"
-    )
-    options.add_argument(
-        "--led",
-        type=region,
-        metavar="X,Y,W,H",
-        help="merge by a lamp here that lights when the drive starts",
-    )
-    options.add_argument(
-        "--cut", type=float, metavar="HZ", help="keep two periods of this frequency from the first movement"
-    )
-    options.add_argument(
-        "--periods", type=float, default=2.0, help="periods to keep with --cut (default: %(default)g)"
-    )
-    options.add_argument("--model", help="model named in the recording's header")
-    return options
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns its exit code."""
-    options = parser().parse_args(arguments)
+    return run(track_parser().parse_args(arguments))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code."""
     return run_command(lambda: _track(options))
 
 
@@ -217,14 +154,6 @@ def _settings(options: argparse.Namespace, placed: dict[int, np.ndarray]) -> Tra
             f"The numbers of markers given differ ({sorted(counts)}); give all markers everywhere."
         )
     return replace(settings, marker_count=counts.pop()) if counts else settings
-
-
-def _box(text: str) -> tuple[int, int, int, int]:
-    values = [int(part) for part in text.split(",")]
-    if len(values) != 4 or min(values[2:]) < 4:
-        raise argparse.ArgumentTypeError(f"'{text}' is not a box X,Y,WIDTH,HEIGHT in pixels")
-    left, top, width, height = values
-    return left, top, width, height
 
 
 if __name__ == "__main__":

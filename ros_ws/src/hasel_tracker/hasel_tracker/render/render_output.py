@@ -7,11 +7,10 @@ import cv2
 import numpy as np
 from hasel_recording import Recording, RecordingError, write_recording
 
+from hasel_tracker.choices import CODECS
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.render.renderer import RenderedFrame, Renderer
 from hasel_tracker.video.video_writer import H264Writer, JpegWriter
-
-CODECS = ("mjpeg", "h264")
 
 
 def write_frames(

@@ -6,6 +6,7 @@ from typing import Protocol
 import numpy as np
 
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
+from hasel_tracker.choices import DEFAULT_METHOD, METHODS
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.tracking.apriltag_tracker import AprilTagTracker
 from hasel_tracker.tracking.bending_angle import bending_angle
@@ -16,9 +17,8 @@ from hasel_tracker.tracking.marker_moment import measure_marker
 from hasel_tracker.tracking.marker_set import MarkerSet
 from hasel_tracker.tracking.marker_tracker import MarkerTracker
 from hasel_tracker.tracking.midline_tracker import MidlineTracker
-from hasel_tracker.tracking.tracker_settings import METHODS, TrackerSettings
+from hasel_tracker.tracking.tracker_settings import TrackerSettings
 
-DEFAULT_METHOD = "contour"
 SMALL_STEP_PX = 0.5
 
 

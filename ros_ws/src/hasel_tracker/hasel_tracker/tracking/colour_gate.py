@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 
-import cv2
 import numpy as np
 
 from hasel_tracker.errors import TrackerError
@@ -37,10 +36,14 @@ class ColourRange:
 
     def mask(self, image: np.ndarray) -> np.ndarray:
         """Pixels of an 8-bit BGR image inside the range: 255, else 0; shape (height, width)."""
+        import cv2  # not needed before there is a picture: --help of the node shows the defaults without it
+
         hsv = cv2.cvtColor(image, cv2.COLOR_BGR2HSV)
         if self.hue_low <= self.hue_high:
             return self._between(hsv, self.hue_low, self.hue_high)
         return self._between(hsv, self.hue_low, HUE_CIRCLE - 1) | self._between(hsv, 0, self.hue_high)
 
     def _between(self, hsv: np.ndarray, low: int, high: int) -> np.ndarray:
+        import cv2
+
         return cv2.inRange(hsv, (low, self.saturation_low, self.value_low), (high, 255, 255))

@@ -1,8 +1,11 @@
 """Which end of the row is the head: what the user says, or the end before which the body is clearly thicker."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from hasel_tracker.tracking.body_link import BodyLink
+if TYPE_CHECKING:
+    from hasel_tracker.tracking.body_link import BodyLink
 
 CLEAR_RATIO = 1.5
 SIDES = ("left", "right", "top", "bottom")
@@ -19,7 +22,7 @@ def nearer_to(row: np.ndarray, point: np.ndarray) -> bool:
     return bool(np.linalg.norm(row[0] - point) < np.linalg.norm(row[-1] - point))
 
 
-def thicker_first(links: tuple[BodyLink, ...]) -> bool | None:
+def thicker_first(links: "tuple[BodyLink, ...]") -> bool | None:
     """Whether the body is thicker towards the first end of the row; None where both halves look alike."""
     if len(links) < 2:
         return None

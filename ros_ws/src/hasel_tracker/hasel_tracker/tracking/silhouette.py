@@ -17,7 +17,7 @@ PLATEAU_PERCENTILE = 85.0
 LARGEST_EDGE_PX = 3.0
 LEAST_AREA_SHARE = 2e-4
 RIVAL_SHARE = 0.1
-BODY_KINDS = {"auto": (1, -1), "light": (1,), "dark": (-1,)}
+SIGNS = {"auto": (1, -1), "light": (1,), "dark": (-1,)}  # of a body's step from the ground, by its kind
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def find_silhouette(image: np.ndarray, body: str = "auto") -> SilhouetteSearch:
     coarse = step[::4, ::4]
     floor = max(NOISE_FACTOR * 1.4826 * float(np.median(np.abs(coarse - np.median(coarse)))), LEAST_STEP)
     pieces, layers = [], {}
-    for sign in BODY_KINDS[body]:
+    for sign in SIGNS[body]:
         threshold = _half_level(sign * step, floor)
         if threshold is not None:
             layers[sign] = (threshold, *_pieces(sign * step > threshold, sign))

@@ -4,12 +4,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from hasel_tracker.choices import BODY_KINDS
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.tracking.colour_gate import ColourRange
 from hasel_tracker.tracking.head_side import SIDES, head_word
-from hasel_tracker.tracking.silhouette import BODY_KINDS
 
-METHODS = ("contour", "moment", "midline", "apriltag", "csrt")
 FEWEST_MARKERS, MOST_MARKERS = 2, 15
 HEAD_SHARE, MIDDLE_SHARE = 5 / 190, 94 / 190  # where the swimmer's markers are, of its length with the fin
 

@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 from hasel_tracker.bench.accuracy import CONDITIONS, Condition, measure_accuracy, renderer_for
+from hasel_tracker.choices import DEFAULT_METHOD
 from hasel_tracker.render.degradation import Degradation
-from hasel_tracker.tracking.bending_tracker import DEFAULT_METHOD, BendingTracker
+from hasel_tracker.tracking.bending_tracker import BendingTracker
 
 NAMED = {each.name: each for each in CONDITIONS}
 FRAMES = 10

@@ -1,0 +1,81 @@
+"""Where the executables begin: options are read before anything heavy is imported, so that --help answers at once.
+
+`bench`, which imports nothing heavy, begins where it is.
+"""
+
+import sys
+from importlib import import_module
+
+from hasel_recording.node_usage import answer_help, user_arguments
+
+
+def bench_far() -> int:
+    """`bench_far`: is a constant that is far off named?"""
+    return _run("bench_far")
+
+
+def bench_hidden() -> int:
+    """`bench_hidden`: how often is the right hidden effect named?"""
+    return _run("bench_hidden")
+
+
+def demo() -> int:
+    """`demo`: fit, diagnose, add, and watch the error fall."""
+    return _run("demo")
+
+
+def live_demo() -> int:
+    """`live_demo`: the whole rig without hardware."""
+    return _run("live_demo")
+
+
+def recorder() -> int:
+    """`recorder`, a node."""
+    from hasel_bringup.recorder.recorder_parameters import PARAMETERS
+
+    answer_help(
+        "recorder",
+        "Records what is said about a run into one MCAP file, from the service /hasel/recorder/start to "
+        "/hasel/recorder/stop.",
+        [parameter.usage for parameter in PARAMETERS],
+    )
+    from hasel_bringup.recorder.recorder_node import main
+
+    return main()
+
+
+def replay() -> int:
+    """`replay RECORDING…`: onto the topics."""
+    return _run("replay")
+
+
+def soak() -> int:
+    """`soak`: the virtual rig for long, each node killed once."""
+    return _run("soak")
+
+
+def virtual_camera() -> int:
+    """`virtual_camera`, a node."""
+    from hasel_bringup.virtual_camera.camera_parameters import PARAMETERS
+
+    answer_help(
+        "virtual_camera",
+        "Draws a swimmer with a secret, moved by the supply's state (/hasel/state), as a camera sees it "
+        "(/hasel/camera/image/compressed).",
+        [parameter.usage for parameter in PARAMETERS],
+    )
+    from hasel_bringup.virtual_camera.camera_node import main
+
+    return main()
+
+
+def virtual_rig() -> int:
+    """`virtual_rig`: a node, with supply and driver beside it."""
+    return _run("virtual_rig")
+
+
+def _run(command: str) -> int:
+    options = (
+        import_module(f"hasel_bringup.{command}.options").parser().parse_args(user_arguments(sys.argv[1:]))
+    )
+    return import_module(f"hasel_bringup.{command}.command").run(options)

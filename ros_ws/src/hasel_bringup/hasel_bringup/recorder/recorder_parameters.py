@@ -1,0 +1,8 @@
+"""Parameters of the recorder."""
+
+from hasel_sim.node_parameters import NodeParameter
+
+PARAMETERS = (
+    NodeParameter("folder", "recordings", "into which recordings are written", changeable=True),
+    NodeParameter("name", "run", "of the next recording, without .mcap", changeable=True),
+)

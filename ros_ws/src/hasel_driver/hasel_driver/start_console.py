@@ -1,0 +1,17 @@
+"""`ros2 run hasel_driver console`: where the executable begins; --help is answered before anything is imported."""
+
+import sys
+
+from hasel_driver.console_options import parser
+
+
+def main() -> int:
+    """Run the console until it is left; returns the exit code."""
+    parser().parse_args()
+    from hasel_driver.console import run
+
+    return run()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

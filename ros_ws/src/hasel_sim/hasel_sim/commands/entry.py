@@ -1,0 +1,27 @@
+"""Where the executables begin: options are read before anything heavy is imported, so that --help answers at once."""
+
+from hasel_sim.commands import parsers
+
+
+def bench() -> int:
+    """`bench`."""
+    options = parsers.bench_parser().parse_args()
+    from hasel_sim.commands.bench import run
+
+    return run(options)
+
+
+def effects() -> int:
+    """`effects [NAME…]`."""
+    options = parsers.effects_parser().parse_args()
+    from hasel_sim.commands.effects import run
+
+    return run(options)
+
+
+def show_mesh() -> int:
+    """`show_mesh [MODEL]`."""
+    options = parsers.show_mesh_parser().parse_args()
+    from hasel_sim.commands.show_mesh import run
+
+    return run(options)

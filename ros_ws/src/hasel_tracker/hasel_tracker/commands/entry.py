@@ -1,0 +1,35 @@
+"""Where the executables begin: options are read before anything heavy is imported, so that --help answers at once."""
+
+from hasel_tracker.commands import parsers
+
+
+def bench() -> int:
+    """`bench`."""
+    options = parsers.bench_parser().parse_args()
+    from hasel_tracker.commands.bench import run
+
+    return run(options)
+
+
+def calibrate() -> int:
+    """`calibrate colour|body|board|distance`."""
+    options = parsers.calibrate_parser().parse_args()
+    from hasel_tracker.commands.calibrate import run
+
+    return run(options)
+
+
+def render() -> int:
+    """`render OUTPUT`."""
+    options = parsers.render_parser().parse_args()
+    from hasel_tracker.commands.render import run
+
+    return run(options)
+
+
+def track() -> int:
+    """`track VIDEO`."""
+    options = parsers.track_parser().parse_args()
+    from hasel_tracker.commands.track import run
+
+    return run(options)

@@ -1,0 +1,47 @@
+"""Prints as JSON what each executable of ours says to --help and which of the modules named are imported by then.
+
+Each runs in a process forked from this one, in which nothing but the standard library is imported.
+"""
+
+import contextlib
+import io
+import json
+import os
+import sys
+from importlib.metadata import EntryPoint, distributions
+
+
+def asked_for_help(entry: EntryPoint, watched: list[str]) -> dict:
+    """Call an executable's function with --help, in this process."""
+    sys.argv = [entry.name, "--help"]
+    code, said = None, io.StringIO()
+    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        try:
+            code = entry.load()()
+        except SystemExit as leaving:
+            code = leaving.code
+    return {"code": code or 0, "said": said.getvalue(), "imported": [m for m in watched if m in sys.modules]}
+
+
+def in_a_fork(entry: EntryPoint, watched: list[str]) -> dict:
+    """The same in a process of its own."""
+    reading, writing = os.pipe()
+    if os.fork() == 0:
+        with os.fdopen(writing, "w", encoding="utf-8") as pipe:
+            json.dump(asked_for_help(entry, watched), pipe)
+        os._exit(0)
+    os.close(writing)
+    with os.fdopen(reading, encoding="utf-8") as pipe:
+        answer = json.load(pipe)
+    os.wait()
+    return answer
+
+
+if __name__ == "__main__":
+    entries = {
+        f"{distribution.name} {entry.name}": entry
+        for distribution in distributions()
+        if distribution.name.startswith("hasel_")
+        for entry in distribution.entry_points.select(group="console_scripts")
+    }
+    print(json.dumps({name: in_a_fork(entry, sys.argv[1:]) for name, entry in entries.items()}))
