@@ -12,18 +12,14 @@ _HIGHEST_HZ = 25.0
 _TRIALS = 40
 
 
-def _columns(run: RunSeries, frequency: float, decay: float) -> np.ndarray:
-    since, side = run.cycle.since_switch(run.time)
-    since = np.nan_to_num(since)
+def _columns(since: np.ndarray, side: np.ndarray, frequency: float, decay: float) -> np.ndarray:
     envelope = side * np.exp(-decay * since)
     angle = 2 * np.pi * frequency * since
     return np.column_stack([envelope * np.cos(angle), envelope * np.sin(angle)])
 
 
-def _explained(aligned: Alignment, columns: np.ndarray) -> float:
-    base, _ = np.linalg.qr(aligned.columns)
+def _explained(base: np.ndarray, left: np.ndarray, columns: np.ndarray) -> float:
     own = columns - base @ (base.T @ columns)
-    left = aligned.remainder - base @ (base.T @ aligned.remainder)
     coefficients = np.linalg.lstsq(own, left, rcond=None)[0]
     return float(left @ own @ coefficients)
 
@@ -44,8 +40,12 @@ def ringing(run: RunSeries, aligned: Alignment) -> Component | None:
         for frequency in np.geomspace(lowest, highest, _TRIALS)
         for cycles in _CYCLES_IN_A_DECAY
     ]
-    frequency, decay = max(trials, key=lambda trial: _explained(aligned, _columns(run, *trial)))
-    fitted, size = explained_by(aligned, _columns(run, frequency, decay), run.frame_time)
+    since, side = run.cycle.since_switch(run.time)
+    since = np.nan_to_num(since)
+    base, _ = np.linalg.qr(aligned.columns)
+    left = aligned.remainder - base @ (base.T @ aligned.remainder)
+    frequency, decay = max(trials, key=lambda trial: _explained(base, left, _columns(since, side, *trial)))
+    fitted, size = explained_by(aligned, _columns(since, side, frequency, decay), run.frame_time)
     pair, covariance = fitted.coefficients[:2], fitted.covariance[:2, :2]
     amplitude = float(np.hypot(*pair))
     error = float(np.sqrt(max(pair @ covariance @ pair, 0.0))) / amplitude if amplitude > 0 else 0.0
