@@ -1,4 +1,4 @@
-"""`bench`: the benchmarks of the simulator, the driver and the tracker, one after the other, beside their bars."""
+"""`bench`: simulator, driver, tracker and the time to start, one after the other, beside their bars."""
 
 import subprocess
 import sys
@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ament_index_python.packages import PackageNotFoundError, get_package_prefix
 
+from hasel_bringup import start_up
 from hasel_bringup.errors import BringupError
 
 PACKAGES = ("hasel_sim", "hasel_driver", "hasel_tracker")
@@ -26,7 +27,7 @@ def bench_executable(package: str) -> Path:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run all three; returns 0 if each reached its bars, 1 if one is missing, else the first other code."""
+    """Run all; returns 0 if each reached its bars, 1 if one is missing, else the first other code."""
     given = sys.argv[1:] if arguments is None else list(arguments)
     if given:
         asked = given[0] in ("-h", "--help")
@@ -44,6 +45,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for package, executable in zip(PACKAGES, executables, strict=True):
         print(f"\n{package}", flush=True)
         codes.append(subprocess.run([executable], check=False).returncode)
+    print("\nstart-up", flush=True)
+    codes.append(int(not start_up.measure()))
     return next((code for code in codes if code), 0)
 
 
