@@ -1,6 +1,7 @@
-"""Settings of every test: nodes talk on this machine only, in a ROS domain of this test run's own."""
+"""Settings of every test: nodes talk on this machine only, in a ROS domain of this test process' own."""
 
 import os
 
 os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-os.environ.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % 100))
+if "PYTEST_XDIST_WORKER" in os.environ or "ROS_DOMAIN_ID" not in os.environ:  # a worker inherits its parent's
+    os.environ["ROS_DOMAIN_ID"] = str(1 + os.getpid() % 100)
