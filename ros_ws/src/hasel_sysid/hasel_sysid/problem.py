@@ -15,6 +15,7 @@ from hasel_sysid.dataset import Experiment
 from hasel_sysid.errors import SysidError
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.noise_sources.measured import measured_noise
+from hasel_sysid.time_limit import TimeLimit
 
 
 @dataclass(frozen=True)
@@ -56,14 +57,21 @@ class Problem:
     """Measured runs to be explained; `evaluate` is the only thing that simulates."""
 
     def __init__(
-        self, experiments: Sequence[Experiment], pool: Executor, noise: NoiseModel | None = None
+        self,
+        experiments: Sequence[Experiment],
+        pool: Executor,
+        noise: NoiseModel | None = None,
+        time_limit: TimeLimit | None = None,
     ) -> None:
-        """noise: of the measured angle, where it is known; otherwise it is looked for in the recordings."""
+        """noise: of the measured angle, where it is known; otherwise it is looked for in the recordings.
+        time_limit: of the search for an explanation, whose parts look at it themselves.
+        """
         if not experiments:
             raise SysidError("no recording was given; expected at least one: name .csv or .mcap files")
         self.experiments, self.pool = tuple(experiments), pool
         self.evaluations = 0
         self._noise = noise
+        self.time_limit = time_limit or TimeLimit()
 
     @cached_property
     def measured_noise(self) -> NoiseModel | None:

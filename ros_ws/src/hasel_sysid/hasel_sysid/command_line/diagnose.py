@@ -20,6 +20,7 @@ from hasel_sysid.improve.result import diagnosis_json
 from hasel_sysid.problem import Problem
 from hasel_sysid.report.from_diagnosis import diagnosis_content
 from hasel_sysid.report.write import write_report
+from hasel_sysid.time_limit import TimeLimit
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -33,9 +34,9 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _diagnose(options: argparse.Namespace) -> int:
-    given = load_inputs(options)
+    given, limit = load_inputs(options), TimeLimit(options.seconds)
     with executor(options.jobs, options.scheduler) as pool, progress_bar("diagnose") as progress:
-        problem = Problem(given.experiments, pool, given.noise)
+        problem = Problem(given.experiments, pool, given.noise, limit)
         fit = fit_from_afar(problem, given.model, part(progress, "fit: ", 0.0, 0.3))
         found = diagnose(problem, fit, options.effects, part(progress, "diagnosis: ", 0.3, 0.95))
         label, last = f"{given.label}, fitted", part(progress, "", 0.95, 1.0)

@@ -26,6 +26,7 @@ from hasel_sysid.report.from_improvement import improvement_content
 from hasel_sysid.report.pictures import stages_picture, waterfall_picture
 from hasel_sysid.report.write import write_report
 from hasel_sysid.suggest import Suggestion, in_doubt, suggest
+from hasel_sysid.time_limit import TimeLimit
 
 MODEL_FILE = "improved_model.yaml"
 
@@ -44,6 +45,7 @@ def _improve(options: argparse.Namespace) -> int:
     given = load_inputs(options)
     experiments, unseen, label, model = given.experiments, given.unseen, given.label, given.model
     options.output.mkdir(parents=True, exist_ok=True)
+    limit = TimeLimit(options.seconds)
     ledger, written = Ledger(options.output), []
 
     def keep(stage: Stage) -> None:
@@ -54,7 +56,7 @@ def _improve(options: argparse.Namespace) -> int:
         with executor(options.jobs, options.scheduler) as pool, progress_bar("improve") as progress:
             start = compare(model, experiments, pool, unseen, label, part(progress, "start: ", 0.0, 0.03))
             found = improve(
-                Problem(experiments, pool, given.noise),
+                Problem(experiments, pool, given.noise, limit),
                 model,
                 Problem(unseen, pool) if unseen else None,
                 options.effects,
@@ -62,7 +64,7 @@ def _improve(options: argparse.Namespace) -> int:
                 on_stage=keep,
             )
             stages = [_comparison(stage, experiments, unseen, pool, label) for stage in found.stages]
-            suggestions = _next_runs(found, pool)
+            suggestions = [] if limit.is_over() else _next_runs(found, pool)
     except KeyboardInterrupt:
         if written:
             print(f"wrote the stages so far ({len(written)}), see {ledger.path}", file=sys.stderr)

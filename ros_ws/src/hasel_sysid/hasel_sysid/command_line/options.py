@@ -1,6 +1,7 @@
 """The options that commands share."""
 
 import argparse
+import math
 from pathlib import Path
 
 from hasel_recording.reading_options import RecordingsParser, add_reading_options
@@ -112,6 +113,24 @@ def _add_workers(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--scheduler", metavar="ADDRESS", help="use the Dask scheduler at this address instead"
     )
+
+
+def add_time_limit(parser: argparse.ArgumentParser) -> None:
+    """--seconds."""
+    parser.add_argument(
+        "--seconds",
+        metavar="N",
+        type=_positive,
+        default=math.inf,
+        help="begin nothing more after so many seconds, and say what was not tried (default: no limit)",
+    )
+
+
+def _positive(text: str) -> float:
+    number = float(text)
+    if not number > 0.0:
+        raise argparse.ArgumentTypeError(f"{text} is not more than 0")
+    return number
 
 
 def _at_least_one(text: str) -> int:

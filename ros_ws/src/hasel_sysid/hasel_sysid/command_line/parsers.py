@@ -5,7 +5,7 @@ from pathlib import Path
 
 from hasel_recording.reading_options import RecordingsParser, add_reading_options
 
-from hasel_sysid.command_line.options import DEFAULT_MODEL, recording_options
+from hasel_sysid.command_line.options import DEFAULT_MODEL, add_time_limit, recording_options
 
 FIT_METHODS = ("adam", "least_squares")
 
@@ -30,13 +30,17 @@ def fit_parser() -> argparse.ArgumentParser:
 def diagnose_parser() -> argparse.ArgumentParser:
     """Options of `diagnose`."""
     what = "Rank the effects that a model may lack."
-    return recording_options("diagnose", what, effects=True, noise=True, everything=True)
+    options = recording_options("diagnose", what, effects=True, noise=True, everything=True)
+    add_time_limit(options)
+    return options
 
 
 def improve_parser() -> argparse.ArgumentParser:
     """Options of `improve`."""
     what = "Add missing effects until what is left is noise or nothing known explains it."
-    return recording_options("improve", what, effects=True, noise=True, everything=True)
+    options = recording_options("improve", what, effects=True, noise=True, everything=True)
+    add_time_limit(options)
+    return options
 
 
 def suggest_parser() -> argparse.ArgumentParser:

@@ -44,6 +44,8 @@ def diagnosis_lines(found: Diagnosis, comparison: Comparison) -> list[str]:
     lines += doubt
     if found.adequacy is not None:
         lines.append(str(found.adequacy))
+    if found.not_tried:
+        lines.append(f"The time was over; not tried: {', '.join(found.not_tried)}.")
     if doubt:
         lines.append("Next: `suggest` proposes the run that tells these apart.")
     elif named:

@@ -26,7 +26,7 @@ class Context:
 
     effects: what is judged; squares: sum of squared residuals reached with each; changes: of the simulated series by
     finer numerics; noise: what a right model may leave, discrepancy allowed for; measured: the noise alone; trials: the
-    best of every effect.
+    best of every effect; untried: effects for which there was no time.
     """
 
     effects: Sequence[Effect]
@@ -40,6 +40,7 @@ class Context:
     changes: dict[str, np.ndarray]
     measured: NoiseModel | None = None
     trials: Mapping[str, Trial] = field(default_factory=dict)
+    untried: frozenset[str] = frozenset()
 
     @property
     def base(self) -> float:

@@ -53,7 +53,20 @@ def diagnose(
     changes = changes_by_refinement(problem, base) if chance < SIGNIFICANT else {}
     of_effect = {t.start.effect.id: t for t in best}
     found = judged(
-        Context(effects, fit, finals, signatures, squares, noise, floor, chance, changes, measured, of_effect)
+        Context(
+            effects,
+            fit,
+            finals,
+            signatures,
+            squares,
+            noise,
+            floor,
+            chance,
+            changes,
+            measured,
+            of_effect,
+            frozenset(effect.id for effect in effects) - trials.tried,
+        )
     )
     named = found.best is not None and found.best.verdict is Verdict.MISSING
     described = adequacy((found.best.fit if named else fit).evaluation, noise)

@@ -74,7 +74,7 @@ def _while_needed(
     next_step, promise = _least_drops_worth_a_fit(problem, fit, finals)
     for trial in trials:
         worth = squares - trial.predicted > next_step and trial.promised > promise
-        if most > 0 and worth and not _known(trial, finals):
+        if most > 0 and worth and not _known(trial, finals) and not problem.time_limit.is_over():
             finals = _better_of(finals, _refitted(problem, fit, [trial], progress))
             next_step, promise = _least_drops_worth_a_fit(problem, fit, finals)
             most -= 1
@@ -95,6 +95,8 @@ def _refitted(
 ) -> dict[str, FitResult]:
     finals = {}
     for number, trial in enumerate(trials):
+        if number > 0 and problem.time_limit.is_over():
+            break
         effect = trial.start.effect
         model = fit.model.with_effects(effect.source or effect.id).with_values(trial.step)
         if progress:
@@ -115,7 +117,7 @@ def _finished(problem: Problem, fit: FitResult, finals: dict[str, FitResult]) ->
     return {
         effect: fit_least_squares(problem, finals[effect].model, tolerance=1e-3, drafts=False)
         for effect, reached in squares.items()
-        if reached <= close and finals[effect].iterations >= _BRIEF
+        if reached <= close and finals[effect].iterations >= _BRIEF and not problem.time_limit.is_over()
     }
 
 

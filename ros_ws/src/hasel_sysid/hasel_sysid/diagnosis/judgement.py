@@ -72,7 +72,8 @@ def finding(context: Context, effect) -> Finding:
     )
     seen = context.signatures.get(name)
     if seen is None:
-        return whole(name, Verdict.INCONCLUSIVE, 0.0, 0.0, {}, units, 1.0, float("inf"))
+        verdict = Verdict.NOT_TRIED if name in context.untried else Verdict.INCONCLUSIVE
+        return whole(name, verdict, 0.0, 0.0, {}, units, 1.0, float("inf"))
     if name in context.finals:
         model = with_numerical_error(context.finals[name], context.changes).model
         expected = {

@@ -15,7 +15,9 @@ from hasel_sysid.noise import NoiseModel
 
 
 class Verdict(str, Enum):
-    """The five things that can be said of an effect, and that nothing can be said while the model describes no run."""
+    """The five things that can be said of an effect, and that nothing can be said: while the model describes no run, or
+    because there was no time to try it.
+    """
 
     MISSING = "missing"
     MISSING_IF_SIZE_MATTERS = "missing if its size matters"
@@ -23,6 +25,7 @@ class Verdict(str, Enum):
     INCONCLUSIVE = "inconclusive"
     CANNOT_BE_SEEN = "cannot be seen"
     NOT_JUDGED = "not judged"
+    NOT_TRIED = "not tried"
 
 
 @dataclass(frozen=True)
@@ -84,6 +87,8 @@ class Finding:
             return f"{self.effect} may be there with a size{value}, but removes only {share}."
         if self.verdict is Verdict.NOT_JUDGED:
             return f"{self.effect} is not judged: the model does not describe these runs yet."
+        if self.verdict is Verdict.NOT_TRIED:
+            return f"{self.effect} was not tried: the time was over."
         limit = f"{self.visible_above:.2g}{unit}"
         if self.verdict is Verdict.ABSENT:
             seen = f"{self.effect} is absent: above {limit} it would have been seen"
@@ -155,6 +160,11 @@ class Diagnosis:
         """The one effect that could be added: first of the ranking, and not refuted; None where there is none."""
         winner = self.context.winner if self.context else None
         return None if winner is None else self.finding(winner)
+
+    @property
+    def not_tried(self) -> list[str]:
+        """Effects for which there was no time."""
+        return [finding.effect for finding in self.findings if finding.verdict is Verdict.NOT_TRIED]
 
     @property
     def measured(self) -> NoiseModel:

@@ -30,7 +30,7 @@ def search(
     """The best trial of every effect, best first, and the first trial at every start.
 
     The first round tries every start of every effect, and from half the size what starts too far off; later rounds take
-    further steps with the most promising.
+    further steps with the most promising. When the problem's time is over no more is tried.
     """
     every = [start for effect in effects for start in starts(effect)]
     usual = {id(start) for start in every}
@@ -39,6 +39,8 @@ def search(
     every.sort(key=lambda start: not start.changes_nothing)
     first: list[Trial] = []
     for begin in range(0, len(every), _BATCH):
+        if trials.time_is_over():
+            break
         first += trials.first(every[begin : begin + _BATCH])
         if progress:
             done = min(1.0, (begin + _BATCH) / len(every))
@@ -61,7 +63,9 @@ def _nearer(trials: Trials, tried: Sequence[Start], found: Sequence[Trial]) -> l
         }
         halved = [(start, resized(start, 0.5)) for start in tried if id(start) not in done]
         tried = [half for start, half in halved if half.values != start.values]
-        found = trials.first(tried) if tried else []
+        if not tried or trials.time_is_over():
+            break
+        found = trials.first(tried)
         nearer += found
     return nearer
 
@@ -78,7 +82,8 @@ def search_from_larger(
     if progress:
         progress("trying larger effects", 0.8)
     effects = [trial.start.effect for trial in best if trial.promised >= worth]
-    first = trials.first([start for effect in effects for start in larger_starts(effect)])
+    larger = [start for effect in effects for start in larger_starts(effect)]
+    first = [] if not larger or trials.time_is_over() else trials.first(larger)
     return _steps(trials, _best_of_each(first)) if first else []
 
 
@@ -92,6 +97,8 @@ def _steps(trials: Trials, best: list[Trial], progress: Progress | None = None) 
             for i, t in enumerate(hopeful)
             if i < keep or (number == 0 and t.sum_of_squares > _FAR * squares)
         ]
+        if not going_on or trials.time_is_over():
+            break
         staying = [t for t in best if t not in going_on]
         best = sorted(trials.further(going_on) + staying, key=_promise)
         if progress:

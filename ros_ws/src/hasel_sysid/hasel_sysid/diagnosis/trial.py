@@ -58,12 +58,18 @@ class Trials:
         self.base = problem.evaluate(self._model, fitted.names)
         self._correction = fitted.residual - self.base.residual
         self._imitable = orthonormal(fitted.jacobian)
+        self.tried: set[str] = set()
         if np.linalg.norm(self._correction) > _TOO_ROUGH * np.linalg.norm(fitted.simulated()):
             self._model, self.base = fitted.model, fitted
             self._correction = np.zeros_like(fitted.residual)
 
+    def time_is_over(self) -> bool:
+        """Whether what has not been tried yet is to be left out."""
+        return self.problem.time_limit.is_over()
+
     def first(self, starts: Sequence[Start]) -> list[Trial]:
-        """Every effect at its start; those that cannot be simulated there are left out."""
+        """Every effect at its start; those that cannot be simulated there are left out, but count as tried."""
+        self.tried |= {start.effect.id for start in starts}
         together = [start for start in starts if start.changes_nothing]
         alone = [(start, self._with(start)) for start in starts if not start.changes_nothing]
         return self._at_null(together) + self._evaluate(alone)

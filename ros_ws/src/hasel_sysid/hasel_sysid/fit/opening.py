@@ -43,7 +43,7 @@ def openings(problem: Problem) -> list[Problem]:
         times * s < _LONGEST_SHARE * _duration(e) for s, e in zip(swings, problem.experiments, strict=True)
     ):
         short = [_opening(e, times * s) for s, e in zip(swings, problem.experiments, strict=True)]
-        found.append(Problem(short, problem.pool, problem.measured_noise))
+        found.append(Problem(short, problem.pool, problem.measured_noise, problem.time_limit))
         times *= 2
     return [*found, problem]
 

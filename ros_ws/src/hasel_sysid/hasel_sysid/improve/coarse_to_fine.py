@@ -47,6 +47,8 @@ def far_start(
     for number, opening in enumerate(every):
         fit = fit_least_squares(opening, model, most_evaluations=12, drafts=False)
         while not in_step(fit.evaluation) and _count(fit, known) < most_effects:
+            if seen and problem.time_limit.is_over():
+                return None
             seen.append(diagnose(opening, fit, only, _part(progress, number, len(every)), decades=True))
             better = _better(opening, fit, seen[-1], known, most_effects)
             if better is None:

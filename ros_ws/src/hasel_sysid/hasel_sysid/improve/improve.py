@@ -29,6 +29,7 @@ from hasel_sysid.improve.result import Improvement, Stage
 from hasel_sysid.improve.set_up import opposed_runs
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection import best_neighbour
+from hasel_sysid.time_limit import TimeLimit
 
 _ENOUGH = 0.03
 """With one run none can be left out to test a small effect: then less than this share of the error left is enough."""
@@ -46,7 +47,7 @@ def improve(
     progress: Progress | None = None,
     on_stage: OnStage | None = None,
 ) -> Improvement:
-    """Improve a model until what it leaves is noise or no known effect explains it.
+    """Improve a model until what it leaves is noise or no known effect explains it, or the problem's time is over.
 
     validation: runs that are only ever compared with, never fitted or chosen by. only: names of the candidate effects
     (default: the whole catalogue). on_stage: called with every stage as soon as it is known, to write its model file.
@@ -64,6 +65,9 @@ def improve(
         stages[1:-1] = [_completed(problem, stage, on_stage) for stage in stages[1:-1]]
     reason, negligible = "", False
     for number in range(len(stages) - 1, most_effects):
+        if number > 0 and problem.time_limit.is_over():
+            reason = "What is left was not looked into any more."
+            break
         found = diagnose(problem, stages[-1].fit, only, report.part("diagnosis", *report.share(number)))
         stages[-1] = _completed(problem, replace(stages[-1], diagnosis=found), on_stage)
         decision = decide(stages[-1], found)
@@ -99,7 +103,16 @@ def improve(
         reason = f"Step {most_effects} was the last: more effects could imitate anything."
     if stages[-1].diagnosis is None:
         stages[-1] = _completed(problem, stages[-1], on_stage)
+    if problem.time_limit.left_something_out:
+        reason = f"{reason} {_cut_short(stages, problem.time_limit)}"
     return _concluded(stages, reason, negligible, opposed)
+
+
+def _cut_short(stages: Sequence[Stage], limit: TimeLimit) -> str:
+    """What the search had no time for."""
+    untried = last_diagnosis(stages).not_tried
+    what = f"not tried: {', '.join(untried)}" if untried else "not every fit and set of effects was tried"
+    return f"The search ended at {limit}; {what}."
 
 
 def _concluded(

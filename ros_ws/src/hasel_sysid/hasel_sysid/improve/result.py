@@ -64,6 +64,12 @@ class Improvement:
         """The first diagnosis, on the baseline."""
         return self.stages[0].diagnosis
 
+    @property
+    def not_tried(self) -> list[str]:
+        """Effects for which there was no time, in whichever diagnosis."""
+        diagnoses = [stage.diagnosis for stage in self.stages if stage.diagnosis is not None]
+        return sorted({effect for diagnosis in diagnoses for effect in diagnosis.not_tried})
+
     def to_json(self) -> dict:
         """The machine-readable form that `improve --json` writes."""
         return {
@@ -79,6 +85,7 @@ class Improvement:
                 "reason": self.reason,
                 "contradictions": list(self.contradictions),
                 "refused": list(self.refused),
+                "not_tried": self.not_tried,
                 "adequate": self.adequacy is not None and self.adequacy.adequate,
                 "misfits": [] if self.adequacy is None else [asdict(m) for m in self.adequacy.misfits],
             },

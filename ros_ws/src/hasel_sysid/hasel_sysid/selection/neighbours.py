@@ -44,6 +44,8 @@ def best_neighbour(
         if found.context.logarithmic_weight(move.squares, _values_of(move, fit.model)) > _weight(found, best)
     ]
     for move in hopeful[:_FITTED]:
+        if problem.time_limit.is_over():
+            break
         try:
             model = moved(fit.model, move, sources)
             other = fit_least_squares(problem, model, tolerance=1e-3, most_evaluations=_BRIEF, drafts=False)

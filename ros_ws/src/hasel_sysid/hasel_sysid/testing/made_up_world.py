@@ -1,5 +1,6 @@
 """Runs of a swimmer in a world in which every parameter moves the angle by a known series."""
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 
@@ -14,6 +15,7 @@ from hasel_sim.run import Run, Simulation
 
 from hasel_sysid.dataset import Experiment
 from hasel_sysid.problem import Evaluation, Problem
+from hasel_sysid.time_limit import TimeLimit
 
 VOLTAGES, FREQUENCIES = (3500.0, 4500.0, 5500.0), (0.5, 2.0)
 NOISE = 0.0024
@@ -79,12 +81,21 @@ class MadeUpWorld:
             self._add(total, f"{effect.id} turned", _EFFECT * size * turn)
         return total
 
-    def measured(self, model: Model, noise: float = NOISE, stranger: float = 0.0) -> "MadeUpProblem":
-        """Runs as they would be measured if the model were the truth, but for a stranger of so much rms."""
+    def measured(
+        self,
+        model: Model,
+        noise: float = NOISE,
+        stranger: float = 0.0,
+        most_evaluations: float = math.inf,
+    ) -> "MadeUpProblem":
+        """Runs as they would be measured if the model were the truth, but for a stranger of so much rms.
+
+        most_evaluations: after which the time of a search is over.
+        """
         generator = np.random.default_rng(self._seed)
         series = [angle + noise * generator.standard_normal(len(angle)) for angle in self.sin_theta(model)]
         self._add(series, "stranger", stranger)
-        return MadeUpProblem(self, series)
+        return MadeUpProblem(self, series, most_evaluations)
 
     def _add(self, total: list[np.ndarray], name: str, size: float, voltage: float | None = None) -> None:
         for run, series, own in zip(self.runs, total, self._series(name), strict=True):
@@ -112,13 +123,16 @@ class MadeUpWorld:
 class MadeUpProblem(Problem):
     """Measured runs of a made-up world; models are evaluated in it, with central differences for derivatives."""
 
-    def __init__(self, world: MadeUpWorld, measured: Sequence[np.ndarray]) -> None:
+    def __init__(
+        self, world: MadeUpWorld, measured: Sequence[np.ndarray], most_evaluations: float = math.inf
+    ) -> None:
         experiments = [
             Experiment(Recording(run.name, run.time, series, drive_signal=run.schedule.at(run.time)), run)
             for run, series in zip(world.runs, measured, strict=True)
         ]
         super().__init__(experiments, SerialExecutor())
         self.world = world
+        self.time_limit = TimeLimit(most_evaluations, clock=lambda: self.evaluations)
 
     def evaluate_each(
         self, models: Sequence[Model], names: Sequence[Sequence[str]]

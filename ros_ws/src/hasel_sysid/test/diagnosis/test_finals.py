@@ -6,10 +6,14 @@ import numpy as np
 import pytest
 from hasel_sysid.diagnosis import finals as module
 from hasel_sysid.diagnosis.finals import full_fits
+from hasel_sysid.time_limit import TimeLimit
 
 SQUARES = {"best": 0.4, "its_double": 0.5, "stuck": 0.6, "never": 0.9}
 """What the trials promise of a sum of squares of 1; the full fit of the one that got stuck leaves only noise."""
 LEFT = {"best": 0.4, "its_double": 0.4, "stuck": 0.1, "never": 0.9}
+
+
+UNHURRIED = SimpleNamespace(time_limit=TimeLimit())
 
 
 class Model:
@@ -65,7 +69,7 @@ def _fits(monkeypatch):
 
 def test_what_only_got_stuck_is_fitted_where_the_best_explains_too_little():
     """Its double, which does the same, is passed over for it; what promises next to nothing is left alone."""
-    found = full_fits(None, result(Model(), 1.0), [trial(name) for name in SQUARES], none_larger, None)
+    found = full_fits(UNHURRIED, result(Model(), 1.0), [trial(name) for name in SQUARES], none_larger, None)
     assert list(found) == ["best", "stuck"]
 
 
@@ -73,28 +77,32 @@ def test_what_could_not_remove_enough_to_be_accepted_is_not_fitted():
     """A quarter of the error above the noise by its next step, but by all its derivatives no more than that."""
     weak = trial("stuck", 0.75)
     weak.promised = 0.26
-    found = full_fits(None, result(Model(), 1.0), [trial("best"), weak], lambda worth: [], None)
+    found = full_fits(UNHURRIED, result(Model(), 1.0), [trial("best"), weak], lambda worth: [], None)
     assert list(found) == ["best"]
     weak.promised = 0.28
-    found = full_fits(None, result(Model(), 1.0), [trial("never"), weak], lambda worth: [], None)
+    found = full_fits(UNHURRIED, result(Model(), 1.0), [trial("never"), weak], lambda worth: [], None)
     assert list(found) == ["never", "stuck"]
 
 
 def test_once_the_error_is_explained_no_other_is_fitted():
     """The best one leaves only noise."""
-    found = full_fits(None, result(Model(), 1.0), [trial("stuck"), trial("never")], none_larger, None)
+    found = full_fits(UNHURRIED, result(Model(), 1.0), [trial("stuck"), trial("never")], none_larger, None)
     assert list(found) == ["stuck"]
 
 
 def test_an_effect_is_fitted_again_from_a_larger_size():
     """Where nothing explains the error: from there it leaves only noise, which takes the place of its first fit."""
-    found = full_fits(None, result(Model(), 1.0), [trial("best")], lambda worth: [trial("best", 0.05)], None)
+    found = full_fits(
+        UNHURRIED, result(Model(), 1.0), [trial("best")], lambda worth: [trial("best", 0.05)], None
+    )
     assert {name: final.evaluation.sum_of_squares for name, final in found.items()} == {"best": 0.1}
 
 
 def test_a_larger_size_that_promises_no_more_is_left_alone():
     """What its full fit has reached already is not fitted again."""
-    found = full_fits(None, result(Model(), 1.0), [trial("best")], lambda worth: [trial("best", 0.45)], None)
+    found = full_fits(
+        UNHURRIED, result(Model(), 1.0), [trial("best")], lambda worth: [trial("best", 0.45)], None
+    )
     assert found["best"].evaluation.sum_of_squares == 0.4
 
 
@@ -104,20 +112,22 @@ def test_a_worse_fit_does_not_take_the_place_of_a_better_one(monkeypatch):
     monkeypatch.setattr(
         module, "fit_least_squares", lambda problem, model, **how: result(model, next(squares))
     )
-    found = full_fits(None, result(Model(), 1.0), [trial("best")], lambda worth: [trial("best", 0.05)], None)
+    found = full_fits(
+        UNHURRIED, result(Model(), 1.0), [trial("best")], lambda worth: [trial("best", 0.05)], None
+    )
     assert found["best"].evaluation.sum_of_squares == 0.4
 
 
 def test_near_the_noise_no_larger_size_is_tried(monkeypatch):
     """What a small effect leaves may be a large share of little."""
     monkeypatch.setattr(module, "expected_squares", lambda *of: 0.32)
-    assert list(full_fits(None, result(Model(), 1.0), [trial("best")], none_larger, None)) == ["best"]
+    assert list(full_fits(UNHURRIED, result(Model(), 1.0), [trial("best")], none_larger, None)) == ["best"]
 
 
 def test_a_larger_size_must_promise_nearly_what_the_best_fit_does():
     """The best removes 0.6 of the sum of squares."""
     asked = []
-    full_fits(None, result(Model(), 1.0), [trial("best")], lambda worth: asked.append(worth) or [], None)
+    full_fits(UNHURRIED, result(Model(), 1.0), [trial("best")], lambda worth: asked.append(worth) or [], None)
     assert asked == [pytest.approx(0.9 * 0.6)]
 
 
@@ -127,7 +137,7 @@ def test_what_runs_left_out_refute_leaves_the_next_its_turn(monkeypatch):
         module, "plausible", lambda finals, fit: {n: f for n, f in finals.items() if n != "stuck"}
     )
     trials = [trial("stuck"), trial("best")]
-    found = full_fits(None, result(Model(), 1.0), trials, lambda worth: [], None)
+    found = full_fits(UNHURRIED, result(Model(), 1.0), trials, lambda worth: [], None)
     assert list(found) == ["stuck", "best"]
 
 
@@ -139,7 +149,11 @@ def test_what_stays_above_the_noise_stands_beside_what_promises_as_much(monkeypa
     rival.promised = promised
     asked = []
     found = full_fits(
-        None, result(Model(), 1.0), [trial("stuck"), rival], lambda worth: asked.append(worth) or [], None
+        UNHURRIED,
+        result(Model(), 1.0),
+        [trial("stuck"), rival],
+        lambda worth: asked.append(worth) or [],
+        None,
     )
     assert list(found) == fitted
     assert asked == [pytest.approx(0.9 * 0.9)]
@@ -155,7 +169,7 @@ def test_the_best_and_what_comes_close_to_it_are_fitted_to_the_end(monkeypatch):
 
     monkeypatch.setattr(module, "fit_least_squares", fitted)
     trials = [trial(name, 0.4) for name in ends]
-    found = full_fits(None, result(Model(), 1.0), trials, lambda worth: [], None)
+    found = full_fits(UNHURRIED, result(Model(), 1.0), trials, lambda worth: [], None)
     assert {name: final.evaluation.sum_of_squares for name, final in found.items()} == {
         "best": 0.39,
         "stuck": 0.38,

@@ -28,6 +28,10 @@ class FakeTrials:
     moved: list = field(default_factory=list)
     fitted: SimpleNamespace = field(default_factory=lambda: SimpleNamespace(sum_of_squares=1.0))
 
+    def time_is_over(self):
+        """Never."""
+        return False
+
     def first(self, starts):
         """By name."""
         kinds = {"far": (12.0, 1.5, 0.3), "hopeless": (12.0, 1.5, 0.01)}

@@ -7,6 +7,7 @@ import pytest
 from hasel_sysid.improve import Stage
 from hasel_sysid.improve import hindsight as module
 from hasel_sysid.improve.hindsight import with_hindsight
+from hasel_sysid.time_limit import TimeLimit
 
 
 @pytest.fixture(autouse=True)
@@ -56,5 +57,5 @@ def test_improve_looks_back_when_an_effect_was_added(monkeypatch):
         monkeypatch.setattr(improve, name, lambda *of, answer=answer: answer)
     monkeypatch.setattr(improve, "_completed", lambda problem, known, on_stage: known)
     monkeypatch.setattr(improve, "_concluded", lambda stages, *why: stages)
-    baseline, last = improve.improve(None, bare.model)
+    baseline, last = improve.improve(SimpleNamespace(time_limit=TimeLimit()), bare.model)
     assert baseline.diagnosis == ("spine_modulus", last.fit)
