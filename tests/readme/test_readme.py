@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from hasel_recording.topics import TOPIC_TYPES
+from hasel_sim.effects.registry import catalogue
 from hasel_sim.simulator_node import PARAMETERS as SIMULATOR
 from hasel_sysid.sysid_node import PARAMETERS as SYSID
 
@@ -57,3 +58,36 @@ def test_figures_of_hidden_effects_are_the_benchmarks(part, name):
     rows = [line for line in table.splitlines() if line.startswith("| ")]
     assert len(rows) > 5
     assert [row for row in rows if row not in page] == []
+
+
+DATA = ROOT / "data"
+DATA_README = (DATA / "README.md").read_text(encoding="utf-8")
+
+
+def test_every_folder_of_recordings_is_described():
+    """With what is hidden in it and at which value, as the tests know it."""
+    rows = dict(re.findall(r"^\| `(unseen_rig/\w+)` \| .* \| (.*) \|$", DATA_README, flags=re.M))
+    assert sorted(rows) == sorted(str(path.relative_to(DATA)) for path in DATA.glob("*/*") if path.is_dir())
+    for folder, value in rows.items():
+        for name in re.findall(r"`(\w+)`", value):
+            effect = catalogue()[Path(folder).name]
+            assert name in {parameter.name for parameter in effect.parameters}
+
+
+def test_every_recording_is_as_described():
+    """The columns of the table, voltages and frequencies of the file names, two periods at 120 frames per second."""
+    columns = re.findall(r"^\| `(\w+)` \| \w+ \|", DATA_README, flags=re.M)
+    for path in sorted(DATA.rglob("*.csv")):
+        rows = path.read_text(encoding="utf-8").splitlines()
+        assert rows[0].split(",") == columns, path
+        voltage, frequency = map(float, re.fullmatch(r"\w+_(\d+)V_([\d.]+)Hz", path.stem).groups())
+        use, kilovolts, hertz = next(
+            row for row in re.findall(r"^\| `(\w+)_\*` \| (.*) kV \| (.*) Hz, two", DATA_README, flags=re.M)
+            if path.name.startswith(row[0])
+        )  # fmt: skip
+        assert f"{voltage / 1000:g}" in kilovolts.split(", "), (use, path)
+        assert f"{frequency:.1f}" in hertz.split(", "), (use, path)
+        values = [[float(cell) for cell in row.split(",")] for row in rows[1:]]
+        assert max(row[1] for row in values) == max(row[2] for row in values) == voltage
+        assert values[-1][0] == pytest.approx(2 / frequency, abs=1 / 120)
+        assert len(values) == pytest.approx(120 * 2 / frequency + 1, abs=1)

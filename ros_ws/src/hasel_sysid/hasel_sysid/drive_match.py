@@ -14,6 +14,8 @@ from hasel_sysid.errors import SysidError
 
 _FAR_BEYOND = 1.25
 """A level this many times the highest known one is not extrapolated to."""
+_OTHER_UNIT = 300.0
+"""A level this many times the highest known one tells of a level in thousands, such as kV."""
 
 
 def model_channels(model: Model) -> tuple[DriveChannel, ...]:
@@ -66,9 +68,16 @@ def check_levels(model: Model, recordings: Sequence[Recording]) -> None:
                     f"{own.shown(channel.largest)}: is the column in {own.unit}? Otherwise raise `largest` in the "
                     "model file"
                 )
-            known = model.table_of(own.name).levels(model.parameters)
+            table = model.table_of(own.name)
+            known = table.levels(model.parameters)
             if len(known) and level > _FAR_BEYOND * known[-1]:
                 levels = ", ".join(f"{each:g}" for each in known)
+                if level > _OTHER_UNIT * known[-1]:
+                    raise SysidError(
+                        f"{recording.name} drives '{own.name}' with {own.shown(level)}, and model '{model.name}' knows "
+                        f"{levels} {own.unit}: is {table.name(1e3 * known[-1])} meant where the model file says "
+                        f"{table.name(known[-1])}? Amplitudes are named by the level in {own.unit}"
+                    )
                 raise SysidError(
                     f"{recording.name} drives '{own.name}' with {own.shown(level)}, far beyond the levels that model "
                     f"'{model.name}' knows ({levels} {own.unit}): fit it on a run at about that level, or leave this "

@@ -82,6 +82,15 @@ def test_a_level_far_beyond_the_fitted_ones_is_refused(made_recording):
         for_model(model, [experiment(made_recording(voltage=9000.0))])
 
 
+def test_amplitudes_named_in_kilovolts_are_taken_for_that(made_recording):
+    """5.5 in a model file and 5500 V in the recording: the sentence says which name was meant."""
+    model = load_model("swimmer").with_levels([5.5])
+    with pytest.raises(
+        SysidError, match=r"knows 5\.5 V: is amplitude_5500 meant where .* says amplitude_5\.5\?"
+    ):
+        for_model(model, [experiment(made_recording(voltage=5500.0))])
+
+
 def test_more_than_the_model_file_allows_is_refused(made_recording):
     """The limit of a channel is the model file's: 45 kV is most likely a wrong unit."""
     with pytest.raises(

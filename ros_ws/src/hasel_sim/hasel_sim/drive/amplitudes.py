@@ -40,7 +40,19 @@ class AmplitudeTable:
             level = float(name[len(self._prefix) : len(name) - len(self._suffix)])
         except ValueError:
             return None
-        return level if level > 0 else None
+        return level if level > 0 and name == self.name(level) else None
+
+    def meant_by(self, name: str) -> str | None:
+        """How a name that only begins as those of this table should be written; None where it does not."""
+        if not name.startswith(self._prefix):
+            return None
+        try:
+            level = float(name[len(self._prefix) :].removesuffix(self._suffix))
+        except ValueError:
+            level = 0.0
+        if level > 0:
+            return f"'{self.name(level)}'"
+        return f"'{self._prefix}<level>{self._suffix}' with the level in {self.unit}, such as '{self.name(5500)}'"
 
     def levels(self, names) -> np.ndarray:
         """All levels that these parameter names speak of, ascending."""

@@ -2,6 +2,7 @@
 
 import json
 import os
+from collections.abc import Iterable
 from dataclasses import replace
 from importlib import resources
 from pathlib import Path
@@ -81,10 +82,16 @@ def _parse(text: str, source: str, folder: Path) -> Model:
         if known is None and model.is_amplitude(name):
             known = Parameter(name, 0.0, "1", -float("inf"), float("inf"))
         if known is None:
-            names = {*model.parameters, *freed}
-            raise ModelError(f"{source}: unknown parameter '{name}'; {nearest_name(name, names)}")
+            raise ModelError(f"{source}: unknown parameter '{name}'; {_nearest(name, model, freed)}")
         given[name] = _parameter(known, entry, freed.get(name), source)
     return replace(model, parameters={**model.parameters, **given})
+
+
+def _nearest(name: str, model: Model, freed: Iterable[str]) -> str:
+    meant = next(filter(None, (table.meant_by(name) for table in model.tables)), None)
+    if meant:
+        return f"an amplitude is named {meant}: rename it"
+    return nearest_name(name, {*model.parameters, *freed})
 
 
 def _parameter(known: Parameter, entry: ParameterEntry, constant: float | None, source: str) -> Parameter:

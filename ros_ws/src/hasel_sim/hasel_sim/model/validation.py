@@ -56,6 +56,10 @@ def sentence_for(error: ValidationError) -> str:
         place = "" if where == "the file" else f"{where}: "
         return f"{place}{problem['ctx']['error']}"
     found = problem.get("input")
+    if problem["type"] == "model_type":
+        names = [part for part in problem["loc"] if isinstance(part, str)]
+        keys = ", ".join(_section(names).model_fields)
+        return f"{where} is {found!r}; expected a section with keys of {keys}: write them below it"
     return f"{where} is {found!r}; {problem['msg'].replace('Input should be', 'expected')}: correct it"
 
 

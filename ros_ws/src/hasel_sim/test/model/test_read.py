@@ -51,6 +51,29 @@ def test_the_models_that_come_with_the_package_can_be_read():
         assert load_model(name).name == name
 
 
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("amplitude_5500.0", "'amplitude_5500'"),
+        ("amplitude_5.5kV", "'amplitude_<level>' with the level in V, such as 'amplitude_5500'"),
+        ("amplitude_-5500", "'amplitude_<level>' with the level in V, such as 'amplitude_5500'"),
+    ],
+)
+def test_an_amplitude_that_is_named_otherwise_is_refused_with_its_name(name, expected, content, refusal):
+    """In the one way in which it is looked up, by the level in SI units."""
+    content["parameters"] = {name: {"value": 0.05}}
+    assert f"unknown parameter '{name}'; an amplitude is named {expected}: rename it" in refusal(content)
+
+
+def test_a_number_in_the_place_of_a_section_is_refused_with_the_section_s_keys(content, refusal):
+    """A parameter is a section with a value, a material one with its constants."""
+    content["parameters"] = {"slope": 0.3}
+    assert "parameters.slope is 0.3; expected a section with keys of value, unit, lower" in refusal(content)
+    del content["parameters"]
+    content["material"]["soft"] = 5e5
+    assert "material.soft is 500000.0; expected a section with keys of youngs_modulus_pa" in refusal(content)
+
+
 def test_an_unknown_key_is_refused_with_the_nearest_known_one(content, refusal):
     """At the top and inside a section."""
     content["numerics"]["mesh_densty"] = 2.0
