@@ -50,8 +50,16 @@ def worker_count(jobs: int | None) -> int:
 def executor(jobs: int | None = None, scheduler: str | None = None) -> Iterator[Executor]:
     """An executor for simulations: `jobs` processes (default: one per core), or the Dask scheduler at an address.
 
-    Raises SimulationError when the scheduler cannot be reached.
+    Linear algebra has one thread, here and in every process: its matrices are small, and on a machine that has other
+    work its threads wait for each other several times as long as they work. Raises SimulationError when the scheduler
+    cannot be reached.
     """
+    with threadpool_limits(1), _executor(jobs, scheduler) as pool:
+        yield pool
+
+
+@contextmanager
+def _executor(jobs: int | None, scheduler: str | None) -> Iterator[Executor]:
     if scheduler is not None:
         from distributed import Client
 
@@ -68,8 +76,7 @@ def executor(jobs: int | None = None, scheduler: str | None = None) -> Iterator[
         return
     count = worker_count(jobs)
     if count == 1:
-        with threadpool_limits(1):
-            yield SerialExecutor()
+        yield SerialExecutor()
         return
     context = multiprocessing.get_context("forkserver")
     with ProcessPoolExecutor(count, mp_context=context, initializer=_start_worker) as pool:
