@@ -1,4 +1,4 @@
-"""Settings of every test: nodes talk on this machine only, in a ROS domain of this process' own; BLAS has one thread."""
+"""Settings of every test: a ROS domain of this process on this machine only, one thread for linear algebra."""
 
 import os
 
