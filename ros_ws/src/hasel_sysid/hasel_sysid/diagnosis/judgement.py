@@ -1,6 +1,6 @@
 """From numbers to the verdict on every effect."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -87,12 +87,25 @@ def finding(context: Context, effect) -> Finding:
     verdict, limit = _verdict(context, effect, seen, removed)
     final = context.finals.get(name)
     said = context.error_removed(name)
-    return whole(name, verdict, 0.0, said, expected, units, seen.swallowed, limit, final)
+    leading = _leading(effect, expected)
+    return whole(name, verdict, 0.0, said, expected, units, seen.swallowed, limit, final, leading=leading)
 
 
 def _size(effect):
     """The parameter that says how large an effect is."""
     return next((p for p in effect.parameters if not p.scan), effect.parameters[0])
+
+
+def _leading(effect, expected: Mapping[str, tuple[float, float]]) -> str | None:
+    """Of an effect's values the one that is furthest from doing nothing, in typical sizes."""
+    size = {
+        f"{effect.id}.{p.name}": abs(p.typical - p.null)
+        for p in effect.parameters
+        if not p.scan and p.typical != p.null
+    }
+    null = {f"{effect.id}.{p.name}": p.null for p in effect.parameters}
+    reached = {name: abs(expected[name][0] - null[name]) / size[name] for name in size if name in expected}
+    return max(reached, key=reached.get, default=None)
 
 
 def _beside_winner(context: Context, seen: Signature) -> tuple[np.ndarray, Signature]:

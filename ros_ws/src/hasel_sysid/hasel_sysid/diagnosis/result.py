@@ -37,7 +37,7 @@ class Finding:
     visible_above: the smallest size that these recordings would have shown, in the unit of its first parameter; source:
     where a user's own effect comes from; beside: other effects without which it would not be seen; plausible: lowest
     and highest value of its first parameter; null: the one at which it does nothing; winner: the effect that is in the
-    model where absence is judged, itself without it.
+    model where absence is judged, itself without it; leading: the one of its values that does most, or None.
     """
 
     effect: str
@@ -54,6 +54,7 @@ class Finding:
     plausible: tuple[float, float] = (-math.inf, math.inf)
     null: float = 0.0
     winner: str | None = None
+    leading: str | None = None
 
     @property
     def is_plausible(self) -> bool:
@@ -68,7 +69,7 @@ class Finding:
         return f"no plausible size{reach} would show in these recordings"
 
     def __str__(self) -> str:
-        first = next(iter(self.expected), None)
+        first = self.leading or next(iter(self.expected), None)
         unit = "" if first is None or self.units[first] == "1" else f" {self.units[first]}"
         value = "" if first is None else f" of {self.expected[first][0]:.3g}{unit}"
         if not self.is_plausible:

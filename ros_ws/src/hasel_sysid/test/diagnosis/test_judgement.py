@@ -36,6 +36,20 @@ def test_the_best_plausible_fit_is_missing(judged):
     assert found.error_removed > 0.9
 
 
+def test_the_value_that_does_most_is_told(context):
+    """Of a lag that rises at once and falls slowly the fall, in whatever order they stand."""
+    whole = context(0.01)
+    lag = effect("sine")
+    fall = SimpleNamespace(name="fall", unit="s", null=0.0, lower=0.0, upper=9.0, typical=0.1, scan=())
+    lag.parameters.append(fall)
+    model = whole.finals["sine"].model
+    model.values = {"sine.size": 1e-14, "sine.fall": 0.078}
+    model.parameters = {name: SimpleNamespace(standard_error=0.01) for name in model.values}
+    found = finding(whole, lag)
+    assert found.leading == "sine.fall"
+    assert "a size of 0.078 s removes" in str(found)
+
+
 def test_what_would_have_shown_is_absent(judged):
     """A typical size of another shape stands far above the noise."""
     assert judged("other").verdict is Verdict.ABSENT
