@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from hasel_sim.model.value_text import value_with_error
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -16,6 +18,4 @@ class Parameter:
     standard_error: float | None = None
 
     def __str__(self) -> str:
-        error = "" if self.standard_error is None else f" ± {self.standard_error:.2g}"
-        unit = "" if self.unit == "1" else f" {self.unit}"
-        return f"{self.name} = {self.value:.6g}{error}{unit}"
+        return f"{self.name} = {value_with_error(self.value, self.standard_error, self.unit)}"

@@ -50,14 +50,15 @@ def simulate(
     jobs: int = 1,
     label: str | None = None,
 ) -> Simulated:
-    """Simulate recordings under their own drive and compare. label: what to call the model.
+    """Simulate recordings under their own drive and compare.
 
+    label: what to call the model (default: its name and effects).
     Raises SysidError where model and recordings do not fit, SimulationError.
     """
     every = for_model(model, [*recordings, *unseen])
     count = len(recordings)
     with executor(jobs) as pool:
-        return Simulated(compare(model, every[:count], pool, every[count:], label))
+        return Simulated(compare(model, every[:count], pool, every[count:], label or _named(model)))
 
 
 def fit(
@@ -76,7 +77,7 @@ def fit(
     with executor(jobs) as pool:
         result = identify(Problem(fitted, pool), start, method)
         others = for_model(model, unseen) if unseen else []
-        found = compare(result.model, fitted, pool, others, f"{model.name}, fitted")
+        found = compare(result.model, fitted, pool, others, f"{_named(model)}, fitted")
     return Fitted(found, result)
 
 
@@ -117,6 +118,11 @@ def _prepared(model: Model, recordings: Sequence[Experiment]) -> tuple[Model, li
     """The model with an amplitude for every level of the recordings, and these with the model's channels."""
     fitted = for_model(model.with_levels([]), recordings)
     return prepared(model, fitted), fitted
+
+
+def _named(model: Model) -> str:
+    """Name and effects, so that a picture tells two fits apart."""
+    return " + ".join([model.name, *(effect.id for effect in model.effects)])
 
 
 def _matching(path: Path) -> list[Path]:

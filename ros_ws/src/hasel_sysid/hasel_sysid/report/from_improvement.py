@@ -3,13 +3,15 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from hasel_sim.model.value_text import value_with_error
+
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.diagnosis import Verdict
 from hasel_sysid.improve.result import Improvement, Status
 from hasel_sysid.report.content import KeyNumber, NextRun, ReportContent, Stage
 from hasel_sysid.report.from_diagnosis import ranked_rows, what_remains
 from hasel_sysid.report.from_results import comparison_content, parameter_rows
-from hasel_sysid.report.numbers import error_text, percent, value_with_error
+from hasel_sysid.report.numbers import error_text, percent
 from hasel_sysid.suggest import Suggestion
 
 _SHOWN_SUGGESTIONS = 3

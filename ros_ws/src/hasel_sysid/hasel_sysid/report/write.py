@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 import plotly.graph_objects as go
+from hasel_sim.model.value_text import value_with_error
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from plotly.offline import get_plotlyjs, get_plotlyjs_version
 
@@ -23,7 +24,7 @@ from hasel_sysid.report.figures.residual_tests import residual_tests_figures
 from hasel_sysid.report.figures.shapes import shapes_figure
 from hasel_sysid.report.figures.style import model_colour
 from hasel_sysid.report.figures.waterfall import waterfall_figures
-from hasel_sysid.report.numbers import percent, value_with_error
+from hasel_sysid.report.numbers import percent
 from hasel_sysid.report.packed import packed
 from hasel_sysid.report.provenance import provenance
 

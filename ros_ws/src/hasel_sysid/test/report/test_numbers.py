@@ -7,24 +7,7 @@ from hasel_sysid.report.numbers import (
     error_text,
     interval_text,
     percent,
-    value_with_error,
 )
-
-
-@pytest.mark.parametrize(
-    ("value", "error", "unit", "text"),
-    [
-        (0.062431, 0.00112, "1", "0.0624 ± 0.0011"),
-        (0.26412, 0.0123, "1/s", "0.264 ± 0.012 1/s"),
-        (123456.0, 2345.0, "Pa", "123456 ± 2345 Pa"),
-        (0.25, None, "1", "0.25"),
-        (0.25, float("inf"), "s", "0.25 s"),
-        (float("nan"), 0.1, "s", "–"),
-    ],
-)
-def test_value_with_error(value, error, unit, text):
-    """Digits follow the standard error; the unit 1 is not written."""
-    assert value_with_error(value, error, unit) == text
 
 
 @pytest.mark.parametrize(

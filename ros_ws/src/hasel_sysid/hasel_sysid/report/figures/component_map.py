@@ -31,10 +31,10 @@ def component_map_figure(runs: Sequence[RunComparison]) -> go.Figure | None:
             zmin=0,
             customdata=texts,
             colorscale="Blues",
-            texttemplate="%{z:.3f}",
+            texttemplate="%{z:.2r}",
             textfont={"size": 11},
             colorbar={"title": {"text": "rms of<br>sin θ"}, "thickness": 14},
-            hovertemplate="%{y} %{customdata}: rms %{z:.4f}<extra></extra>",
+            hovertemplate="%{y} %{customdata}: rms %{z:.3r}<extra></extra>",
         )
     )
     figure.update_yaxes(autorange="reversed", automargin=True)
