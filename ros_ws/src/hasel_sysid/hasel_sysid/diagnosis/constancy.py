@@ -1,7 +1,7 @@
 """Whether one value of an effect does for every voltage and frequency, as it must if its law is the right one."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -54,6 +54,7 @@ def trends(fit: FitResult, noise: NoiseModel, effects: Sequence[str]) -> list[Tr
     """Trends of the effects' fitted sizes with level and frequency of the drive; time constants are left out.
 
     Linear in the logarithm of the condition, to first order in the change; conditions that do not vary are left out.
+    What stands on a bound stays there: beyond it there is no law, and nothing to be constant.
     """
     sizes = {
         f"{effect.id}.{p.name}"
@@ -62,13 +63,21 @@ def trends(fit: FitResult, noise: NoiseModel, effects: Sequence[str]) -> list[Tr
         for p in effect.parameters
         if not p.scan
     }
-    names = [name for name in fit.evaluation.names if name in sizes and name not in fit.undetermined]
+    inside = _without(fit.evaluation, fit.at_bound)
+    names = [name for name in inside.names if name in sizes and name not in fit.undetermined]
     found = []
     for condition, values in conditions(fit.evaluation.simulations).items():
         if np.isfinite(values).all() and values.max() > _ONE_CONDITION * values.min():
             unit = "Hz" if condition == "frequency" else drive_unit(fit.model)
-            found += [_trend(fit.evaluation, noise, name, condition, values, unit) for name in names]
+            found += [_trend(inside, noise, name, condition, values, unit) for name in names]
     return found
+
+
+def _without(evaluation: Evaluation, fixed: Sequence[str]) -> Evaluation:
+    """The evaluation without derivatives by these parameters."""
+    kept = [index for index, name in enumerate(evaluation.names) if name not in fixed]
+    names = tuple(evaluation.names[index] for index in kept)
+    return replace(evaluation, names=names, jacobian=evaluation.jacobian[:, kept])
 
 
 def _trend(

@@ -8,6 +8,7 @@ from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.run import Run
 from hasel_sysid.diagnosis.constancy import trends
 from hasel_sysid.noise import NoiseModel
+from hasel_sysid.problem import Evaluation
 
 NOISE = NoiseModel(white=9e-6, coloured=0.0, correlation=0.5)
 CONDITIONS = [(voltage, frequency) for voltage in (3500.0, 4500.0, 5500.0) for frequency in (0.5, 2.0, 3.5)]
@@ -31,7 +32,7 @@ TIME = np.concatenate([run.time for run in RUNS])
 VOLTAGE, FREQUENCY = np.array(CONDITIONS)[NUMBERS].T
 
 
-def fitted(growth, by=VOLTAGE, runs=RUNS):
+def fitted(growth, by=VOLTAGE, runs=RUNS, at_bound=()):
     """A fit to a `drag` whose true size grows by `growth` from the low to the high end of `by`."""
     own = np.sin(2 * np.pi * FREQUENCY * TIME) * VOLTAGE / 4500.0
     other = np.cos(2 * np.pi * FREQUENCY * TIME)
@@ -47,13 +48,16 @@ def fitted(growth, by=VOLTAGE, runs=RUNS):
             description=SimpleNamespace(channels=[SimpleNamespace(unit="V")]),
         ),
         undetermined=(),
-        evaluation=SimpleNamespace(
-            names=("slope", "drag.size"),
-            jacobian=jacobian,
-            residual=measured - VALUE * own - jacobian @ change,
-            runs=NUMBERS,
-            simulations=[SimpleNamespace(run=run) for run in runs],
+        at_bound=at_bound,
+        evaluation=Evaluation(
             model=SimpleNamespace(values={"slope": 0.0, "drag.size": VALUE + change[1]}),
+            names=("slope", "drag.size"),
+            simulations=[SimpleNamespace(run=run) for run in runs],
+            residual=measured - VALUE * own - jacobian @ change,
+            jacobian=jacobian,
+            runs=NUMBERS,
+            offsets=np.zeros(len(runs)),
+            frames=(),
         ),
     )
 
@@ -83,3 +87,9 @@ def test_runs_that_are_all_alike_tell_nothing():
     """One voltage and one frequency: no trend. Nor is there one for what was not added."""
     assert trends(fitted(0.4, runs=[RUNS[0]] * len(RUNS)), NOISE, ["drag"]) == []
     assert trends(fitted(0.4), NOISE, ["tether"]) == []
+
+
+def test_what_stands_on_a_bound_has_no_trend():
+    """Beyond a bound there is no law that could be contradicted; the same growth inside is one."""
+    assert any(trend.contradicts for trend in trends(fitted(1.0), NOISE, ["drag"]))
+    assert trends(fitted(1.0, at_bound=("drag.size",)), NOISE, ["drag"]) == []
