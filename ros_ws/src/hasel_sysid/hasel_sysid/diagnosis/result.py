@@ -78,10 +78,12 @@ class Finding:
         if self.beside:
             return f"{self.effect} is missing beside {' and '.join(self.beside)}: together they explain most."
         if self.verdict is Verdict.MISSING:
-            what = "is missing" if self.probability > 0.5 else "or an effect that looks like it is missing"
-            return (
-                f"{self.effect} {what} (probability {self.probability:.0%}): a size{value} removes {share}."
-            )
+            if self.probability > 0.5:
+                what = f"is missing (probability {self.probability:.0%})"
+            else:
+                alone = f"probability that it is this one, alone: {self.probability:.0%}"
+                what = f"or an effect that looks like it is missing ({alone})"
+            return f"{self.effect} {what}: a size{value} removes {share}."
         if self.verdict is Verdict.MISSING_IF_SIZE_MATTERS:
             if self.error_removed > 0.5:
                 return f"{self.effect} could stand in its place: it would remove {share}."
