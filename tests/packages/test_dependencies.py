@@ -43,6 +43,7 @@ ROSDEP_KEYS = {
 }
 WITHOUT_ROSDEP_KEY = {"av", "distributed", "llvmlite", "plotly", "skfem", "statsmodels", "threadpoolctl"}
 NOT_ON_PYPI = {
+    "diagnostic_aggregator",
     "launch",
     "launch_ros",
 }  # ROS 2 from apt brings them; who uses them elsewhere skips with the reason

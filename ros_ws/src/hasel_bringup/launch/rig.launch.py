@@ -40,47 +40,39 @@ def generate_launch_description() -> LaunchDescription:
             default_value=PathJoinSubstitution([*folder, "rig.yaml"]),
             description="parameters of the driver and the tracker",
         ),
+        DeclareLaunchArgument(
+            "diagnostics",
+            default_value="false",
+            description="true: gather /diagnostics on /diagnostics_agg (diagnostic_aggregator)",
+        ),
     ]
     real, simulated = UnlessCondition(virtual), IfCondition(virtual)
+    hidden = {"hidden": LaunchConfiguration("hidden")}
+
+    def node(package: str, executable: str, parameters: list, condition=None) -> Node:
+        return Node(
+            package=package,
+            executable=executable,
+            parameters=parameters,
+            namespace=namespace,
+            condition=condition,
+            output="screen",
+        )
+
     return LaunchDescription(
         [
             *arguments,
+            node("hasel_driver", "driver_node", [rig], real),
+            node("hasel_tracker", "tracker_node", [rig], real),
+            node("hasel_bringup", "virtual_rig", [hidden], simulated),
+            node("hasel_sim", "simulator", [config]),
+            node("hasel_sysid", "sysid", [config]),
             Node(
-                package="hasel_driver",
-                executable="driver_node",
-                parameters=[rig],
-                namespace=namespace,
-                condition=real,
-                output="screen",
-            ),
-            Node(
-                package="hasel_tracker",
-                executable="tracker_node",
-                parameters=[rig],
-                namespace=namespace,
-                condition=real,
-                output="screen",
-            ),
-            Node(
-                package="hasel_bringup",
-                executable="virtual_rig",
-                parameters=[{"hidden": LaunchConfiguration("hidden")}],
-                namespace=namespace,
-                condition=simulated,
-                output="screen",
-            ),
-            Node(
-                package="hasel_sim",
-                executable="simulator",
-                parameters=[config],
-                namespace=namespace,
-                output="screen",
-            ),
-            Node(
-                package="hasel_sysid",
-                executable="sysid",
-                parameters=[config],
-                namespace=namespace,
+                package="diagnostic_aggregator",
+                executable="aggregator_node",
+                name="analyzers",  # as the section of its parameter file
+                parameters=[PathJoinSubstitution([*folder, "diagnostics.yaml"])],
+                condition=IfCondition(LaunchConfiguration("diagnostics")),
                 output="screen",
             ),
         ]

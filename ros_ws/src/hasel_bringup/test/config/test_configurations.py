@@ -19,7 +19,7 @@ TABLES = {
 }
 ENTRIES = [
     (file.name, node.removeprefix("/**/"), content["ros__parameters"])
-    for file in sorted(FOLDER.glob("*.yaml"))
+    for file in sorted(set(FOLDER.glob("*.yaml")) - {FOLDER / "diagnostics.yaml"})
     for node, content in yaml.safe_load(file.read_text()).items()
 ]
 
