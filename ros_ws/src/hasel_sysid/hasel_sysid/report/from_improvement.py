@@ -3,12 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from hasel_sim.model import Model
 from hasel_sim.model.value_text import value_with_error
 
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.diagnosis import Verdict
 from hasel_sysid.improve.result import Improvement, Status
-from hasel_sysid.report.content import KeyNumber, NextRun, ReportContent, Stage
+from hasel_sysid.report.content import KeyNumber, NextRun, RankedRow, ReportContent, Stage
 from hasel_sysid.report.from_diagnosis import ranked_rows, what_remains
 from hasel_sysid.report.from_results import comparison_content, parameter_rows
 from hasel_sysid.report.numbers import error_text, percent
@@ -43,12 +44,24 @@ def improvement_content(
         key_numbers=_key_numbers(improvement, comparisons),
         stages=_stages(comparisons, start),
         noise_floor=improvement.noise_floor,
-        ranking=ranked_rows(improvement.diagnosis),
+        ranking=tuple(_final(row, last.fit.model) for row in ranked_rows(improvement.diagnosis)),
         groups=improvement.diagnosis.groups_in_question,
         parameters=parameter_rows(last.fit.model, dict.fromkeys(last.fit.at_bound, "on its bound")),
         remains=_remains(improvement),
         messages=tuple(last.fit.sentences),
         next_runs=tuple(_next_run(suggestion) for suggestion in suggestions[:_SHOWN_SUGGESTIONS]),
+    )
+
+
+def _final(row: RankedRow, model: Model) -> RankedRow:
+    """Of what was added the values are those of the model with all that was added, here as everywhere else."""
+    values = [(each, model.parameters.get(f"{row.effect}.{each.name}")) for each in row.expected]
+    return replace(
+        row,
+        expected=tuple(
+            replace(each, value=known.value, standard_error=known.standard_error) if known else each
+            for each, known in values
+        ),
     )
 
 

@@ -97,6 +97,19 @@ def test_stages_fall_from_the_start_to_the_last(improvement):
     assert slope.remark == "on its bound"
 
 
+def test_the_ranking_shows_the_values_of_the_last_model(improvement):
+    """One number of one effect on the whole page: that of the fit with all that was added."""
+    last = improvement.stages[-1]
+    parameter = last.fit.model.parameters["quadratic_drag.coefficient"]
+    fitted = replace(parameter, value=0.26, standard_error=0.005)
+    model = replace(last.fit.model, parameters={**last.fit.model.parameters, parameter.name: fitted})
+    stages = [improvement.stages[0], replace(last, fit=_fit(model, 0.003))]
+    shown = [_comparison(stage.fit.model, "", 0.03, 0.04) for stage in stages]
+    drag, own = improvement_content(replace(improvement, stages=stages), shown).ranking
+    assert [(row.value, row.standard_error) for row in drag.expected] == [(0.26, 0.005)]
+    assert own.expected == ()
+
+
 def test_rendered_improvement_and_diagnosis(improvement, diagnosis):
     """Both contents make a page with verdict, groups and what remains."""
     models = [stage.fit.model for stage in improvement.stages]
