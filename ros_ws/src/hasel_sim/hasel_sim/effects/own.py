@@ -3,6 +3,7 @@
 import sys
 from functools import lru_cache
 from hashlib import sha256
+from importlib.util import decode_source
 from pathlib import Path
 from types import ModuleType
 
@@ -24,7 +25,7 @@ def load_own_effect(path: Path, kind: str) -> Effect:
         raise ModelError(
             f"there is no file '{path}'; expected path/to/file.py:ClassName of an effect of your own: correct the path"
         )
-    effect = rebuild_own_effect(str(path.resolve()), kind, path.read_text())
+    effect = rebuild_own_effect(str(path.resolve()), kind, _source(path))
     if effect.id in catalogue() or not effect.id.isidentifier():
         raise ModelError(
             f"effect '{effect.source}' has the id '{effect.id}', which is taken or no plain name; expected one "
@@ -32,6 +33,17 @@ def load_own_effect(path: Path, kind: str) -> Effect:
         )
     check_effect(effect)
     return effect
+
+
+def _source(path: Path) -> str:
+    """The file's text in the encoding that Python would take it to be in."""
+    try:
+        return decode_source(path.read_bytes())
+    except (UnicodeDecodeError, SyntaxError) as error:
+        raise ModelError(
+            f"'{path}' is no text in UTF-8 ({error}); expected a Python file: save it in UTF-8, or name its encoding "
+            "in the first line, such as # coding: latin-1"
+        ) from error
 
 
 @lru_cache(maxsize=64)

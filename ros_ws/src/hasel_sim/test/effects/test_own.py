@@ -353,3 +353,15 @@ def test_an_own_force_effect_is_no_slower_than_three_built_in_ones(written):
         force_and_derivatives()
         taken.append(_median_time(force_and_derivatives))
     assert taken[1] < 3 * taken[0]
+
+
+def test_a_file_in_another_encoding_is_refused_or_read_as_it_says(tmp_path):
+    """A letter with an accent saved in Latin-1 is no traceback; Python's own line about the encoding is heeded."""
+    path = tmp_path / "drag.py"
+    path.write_bytes(f"# Trainée\n{DRAG}".encode("latin-1"))
+    with pytest.raises(
+        ModelError, match=r"drag.py' is no text in UTF-8 .* save it in UTF-8, or name its encoding"
+    ):
+        find_effects((f"{path}:MyDrag",))
+    path.write_bytes(f"# coding: latin-1\n# Trainée\n{DRAG}".encode("latin-1"))
+    assert find_effects((f"{path}:MyDrag",))[0].id == "MyDrag"

@@ -41,11 +41,13 @@ def _check(options: argparse.Namespace, refused: list[str]) -> None:
             _refuse(path.stem, str(error), refused)
             continue
         fits: tuple[str, ...] = ()
+        misfit = False
         try:
             recording, fits = _for(model, recording)
         except SysidError as error:
+            misfit = True
             _refuse(recording.name, str(error), refused)
-        shown.append(summary(recording, fits))
+        shown.append(summary(recording, fits, misfit))
         print(shown[-1])
         if not shown[-1].good:
             refused.append(recording.name)

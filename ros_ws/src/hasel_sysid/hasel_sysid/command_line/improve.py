@@ -79,8 +79,9 @@ def _improve(options: argparse.Namespace) -> int:
         print(found)
 
     lines = improvement_lines(found, stages, suggestions)
-    others = (
-        f"tables of all runs, where the model fails, the other {len(found.diagnosis.findings) - 1} effects"
+    further = len(found.diagnosis.findings) - 1
+    others = "tables of all runs, where the model fails" + (
+        f", the other {further} effects" if further else ""
     )
     summarise(lines, everything, options.all, others)
     _finish(options, found, start, stages, suggestions)

@@ -16,21 +16,22 @@ _MOST_SHOWN = 6
 
 @dataclass(frozen=True)
 class Summary:
-    """rows: (what, said) in the order in which a person reads them; findings: what looks wrong."""
+    """rows: (what, said) in the order in which a person reads them; findings: what is wrong; misfit: to the model."""
 
     recording: Recording
     rows: tuple[tuple[str, str], ...]
     findings: tuple[Finding, ...]
+    misfit: bool = False
 
     @property
     def good(self) -> bool:
         """Whether nothing was found with which results would mislead."""
-        return all(finding.severity is not Severity.ERROR for finding in self.findings)
+        return not self.misfit and all(finding.severity is not Severity.ERROR for finding in self.findings)
 
     def __str__(self) -> str:
         rows = [f"  {what:<8} {said}" for what, said in self.rows]
         found = [f"  {finding.severity.value:<8} {finding.sentence}" for finding in self.findings]
-        found = found or ["  looks in order"]
+        found = found or ([] if self.misfit else ["  looks in order"])
         return "\n".join([str(self.recording.path or self.recording.name), *rows, *found])
 
     def to_json(self) -> dict:
@@ -43,15 +44,19 @@ class Summary:
         }
 
 
-def summary(recording: Recording, model: Sequence[str] = ()) -> Summary:
-    """What a recording holds, line by line, and what looks wrong in it; model: what is to be said of a model."""
+def summary(recording: Recording, model: Sequence[str] = (), misfit: bool = False) -> Summary:
+    """What a recording holds, line by line, and what looks wrong in it.
+
+    model: what is to be said of a model; misfit: whether it cannot be used with that model.
+    """
     rows = [("frames", _frames(recording)), ("angle", _angle(recording))]
     rows += [("drive", line) for line in _drive(recording)]
     rows += [("markers", _markers(recording)), ("start", _start(recording))]
     rows += [("read", sentence) for sentence in recording.understood]
     rows += [("header", f"{key}: {value}") for key, value in recording.metadata.items()]
     rows += [("model", sentence) for sentence in model]
-    return Summary(recording, tuple(rows), tuple(check_recording(recording)))
+    rows += [("model", "does not fit: see the error")] if misfit else []
+    return Summary(recording, tuple(rows), tuple(check_recording(recording)), misfit)
 
 
 def _frames(recording: Recording) -> str:

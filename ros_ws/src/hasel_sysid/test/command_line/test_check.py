@@ -70,6 +70,19 @@ def test_what_check_refuses_compare_refuses_alike(lab_file, capsys):
     assert capsys.readouterr().err == said
 
 
+def test_a_recording_that_does_not_fit_the_model_does_not_look_in_order(tmp_path, capsys):
+    """Without columns of the drive, for a body with muscles."""
+    path = tmp_path / "run.csv"
+    path.write_text("time_s,sin_theta\n" + "".join(f"{n / 120},{0.1 * np.sin(n / 9)}\n" for n in range(240)))
+    assert check.main([str(path), "--model", "swimmer"]) == 2
+    said = capsys.readouterr()
+    assert "run has no drive, and model 'swimmer' is driven by upper [V], lower [V]" in said.err
+    assert "model    does not fit: see the error" in said.out
+    assert "looks in order" not in said.out
+    assert check.main([str(path)]) == 0
+    assert "looks in order" in capsys.readouterr().out
+
+
 def test_milliseconds_under_another_name_are_noticed_before_simulating(tmp_path, capsys):
     """time_s that counts milliseconds is refused with the name it should have."""
     path = tmp_path / "ms.csv"
