@@ -1,15 +1,18 @@
 """Runs simulated side by side: bodies with one mesh step together, each in a lane of the compiled loops."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.generalised_alpha import StepCoefficients
-from hasel_sim.mechanics.motion import DriveState
+from hasel_sim.mechanics.marcher import Drives, Marcher
+from hasel_sim.mechanics.motion import DriveState, Memory, Motion
+from hasel_sim.mechanics.part import Part
 from hasel_sim.mechanics.residual_slopes import NoSlope
+from hasel_sim.mechanics.seen import Seen
 from hasel_sim.mechanics.state import State, StateSlopes
+from hasel_sim.mechanics.step_slopes import StepSlopes
 from hasel_sim.mechanics.stepper import Stepper
 from hasel_sim.mechanics.system import System
 from hasel_sim.prepared_run import PreparedRun
@@ -23,29 +26,37 @@ class Lane:
         self.system = prepared.stepper.system
         self.parameters = [prepared.residual_slopes[column] for column in moves]
         self.contraction_slopes = contraction_slopes[:, moves]
-        self.drives = prepared.drives(prepared.contraction(self.plan.balance_times))
+        self.time = self.plan.balance_times
+        self.voltage, self.contraction = prepared.voltage(self.time), prepared.contraction(self.time)
         self.state, self.slopes = prepared.start(moves)
 
     def __len__(self) -> int:
         """How many steps there are."""
-        return len(self.drives)
+        return len(self.time)
 
-    def follow(self, stepper: Stepper, step: int, lane: int, state: State, slopes: StateSlopes) -> None:
-        """Make a step that failed in a lane by itself, in parts, and write its end back into state and slopes.
+    def drive(self, step: int) -> DriveState:
+        """The drive at the balance of a step."""
+        return DriveState.single(self.voltage[step], self.contraction[step], self.time[step])
+
+    def follow(self, marcher: Marcher, step: int, lane: int, slopes: StateSlopes) -> None:
+        """Make a step that failed in a lane by itself, in parts, and write its end back into the lane.
 
         Raises SimulationError where that fails too.
         """
-        alone = stepper.of_lane(lane, self.system)
-        own, own_slopes = state.lane(lane), slopes.lane(lane)
-        for part in alone.follow(own, self.drives[step], self.plan.coefficients[step]):
-            if self.parameters:
-                own_slopes = alone.step_slopes(
-                    part, own_slopes, self.parameters, self.contraction_slopes[step][..., None]
-                )
-            own = part.after
-        state.put(lane, own)
+        alone = Stepper(self.system, marcher.tolerance)
+        alone.begin(marcher.jerk[..., [lane]], marcher.stress[..., [lane]])
+        own, own_slopes = marcher.state.lane(lane), slopes.lane(lane)
+        parts = alone.follow(own, self.drive(step), self.plan.coefficients[step])
+        if self.parameters:
+            derivatives, by_contraction = (
+                StepSlopes(self.system, self.parameters),
+                self.contraction_slopes[step],
+            )
+            for part in parts:
+                derivatives.advance(part, own_slopes, by_contraction[..., None], np.ones(1, dtype=bool))
+        marcher.state.put(lane, parts[-1].after)
         slopes.put(lane, own_slopes)
-        stepper.put_lane(lane, alone)
+        marcher.jerk[..., lane], marcher.stress[..., lane] = alone.jerk[..., 0], alone.stress[..., 0]
 
 
 def moving_columns(prepared: PreparedRun, contraction_slopes: np.ndarray) -> list[int]:
@@ -57,38 +68,6 @@ def moving_columns(prepared: PreparedRun, contraction_slopes: np.ndarray) -> lis
     ]
 
 
-@dataclass(frozen=True)
-class Seen:
-    """What is kept of the motion of all lanes: at the markers [boundaries, markers, 8, 2, lanes], its derivatives
-
-    [boundaries, columns, markers, 8, 2, lanes], and where asked for all positions [boundaries, nodes, 2, lanes].
-    """
-
-    local: np.ndarray
-    slopes: np.ndarray
-    shapes: np.ndarray | None
-
-    @staticmethod
-    def of(
-        nodes: np.ndarray, boundaries: int, state: State, slopes: StateSlopes, keep_shapes: bool
-    ) -> "Seen":
-        """Room for so many boundaries; nodes: which the markers see [markers, 8]."""
-        lanes = state.position.shape[-1]
-        place = (*nodes.shape, 2, lanes)
-        shapes = np.zeros((boundaries, *state.position.shape)) if keep_shapes else None
-        return Seen(
-            np.zeros((boundaries, *place)), np.zeros((boundaries, len(slopes.position), *place)), shapes
-        )
-
-    def note(self, boundary: int, nodes: np.ndarray, state: State, slopes: StateSlopes) -> None:
-        """Keep what is seen at a boundary between steps."""
-        self.local[boundary] = state.position[nodes]
-        if self.slopes.shape[1]:
-            self.slopes[boundary] = slopes.position[:, nodes]
-        if self.shapes is not None:
-            self.shapes[boundary] = state.position
-
-
 def step_together(
     lanes: Sequence[Lane], count: int, keep_shapes: bool
 ) -> tuple[Seen, list[SimulationError | None]]:
@@ -98,60 +77,61 @@ def step_together(
     A lane whose step fails makes it by itself, divided; one that fails even so stands still from there on.
     """
     filled = [*lanes, *[lanes[0]] * (count - len(lanes))]
-    stepper = Stepper(System.beside([lane.system for lane in filled]), lanes[0].prepared.stepper.tolerance)
+    system, tolerance = System.beside([lane.system for lane in filled]), lanes[0].prepared.stepper.tolerance
     state, slopes = State.beside([x.state for x in filled]), StateSlopes.beside([x.slopes for x in filled])
     columns = [type(each[0]).beside(each) for each in zip(*(lane.parameters for lane in filled), strict=True)]
     errors: list[SimulationError | None] = [None] * len(lanes)
     steps = max(map(len, lanes))
-    drives, coefficients = _drives(filled, steps), _coefficients(filled, steps)
-    by_contraction = np.stack([_lasting(lane.contraction_slopes, steps) for lane in filled], axis=-1)
-    nodes = lanes[0].prepared.rows.nodes
-    seen = Seen.of(nodes, steps + 1, state, slopes, keep_shapes)
-    seen.note(0, nodes, state, slopes)
+    seen = Seen.of(lanes[0].prepared.rows.nodes, steps + 1, state, len(columns), keep_shapes)
+    seen.note(0, state, slopes)
+    if steps == 0:
+        return seen, errors
+    marcher, derivatives = Marcher(system, tolerance), StepSlopes(system, columns)
+    start = DriveState.beside([lane.prepared.start_drive for lane in filled])
+    motion = Motion(state.position, state.velocity, state.acceleration)
+    marcher.begin(state, system.second_piola(motion, start, Memory()), np.zeros_like(state.position))
+    drives = Drives(*(_beside(filled, name, steps) for name in ("voltage", "contraction", "time")))
+    kinds, coefficients = _coefficients(filled, steps)
     ends = np.array([*map(len, lanes), *[0] * (count - len(lanes))])
-    for step in range(steps):
-        wanted = step < ends
-        if not wanted.any():
-            break
-        part, found = stepper.step(state, drives[step], coefficients[step], wanted)
-        after, slopes_after = part.after, slopes
+    marcher.plan(drives, kinds, coefficients, ends, seen)
+    by_contraction = _beside(filled, "contraction_slopes", steps)
+    step, last = 0, int(ends.max())
+    while step < last:
+        before, until = state.copy() if columns else state, step + 1 if columns else last
+        reached = marcher.advance(step, until)
+        step = min(reached + 1, until)
         if columns:
-            slopes_after = stepper.step_slopes(part, slopes, columns, by_contraction[step])
-            if not found.all():
-                slopes_after.put(~found, slopes, ~found)
-        for index in np.flatnonzero(wanted & ~found):
+            part = Part.between(before, state, drives.at(step - 1), marcher.coefficients_of(step - 1))
+            derivatives.advance(part, slopes, by_contraction[step - 1], marcher.arrived)
+            seen.note_slopes(step, slopes)
+        if reached == until:
+            continue
+        for index in np.flatnonzero((step <= ends) & ~marcher.arrived).tolist():
             try:
-                lanes[index].follow(stepper, step, index, after, slopes_after)  # type: ignore[call-overload]
+                lanes[index].follow(marcher, step - 1, index, slopes)
             except SimulationError as error:
                 errors[index], ends[index] = error, 0
-        state, slopes = after, slopes_after
-        seen.note(step + 1, nodes, state, slopes)
+        seen.note(step, state, slopes)
+        last = int(ends.max())
     return seen, errors
 
 
-def _lasting(series: np.ndarray, steps: int) -> np.ndarray:
-    """A series over the steps of one run, its last entry repeated to so many."""
-    return series[np.minimum(np.arange(steps), len(series) - 1)]
+def _beside(lanes: Sequence[Lane], name: str, steps: int) -> np.ndarray:
+    """A series over the steps [steps, ..., lanes]; the last entry of a shorter one is repeated."""
+    series = [getattr(lane, name) for lane in lanes]
+    return np.stack([one[np.minimum(np.arange(steps), len(one) - 1)] for one in series], axis=-1)
 
 
-def _drives(lanes: Sequence[Lane], steps: int) -> list[DriveState]:
-    voltage, contraction, time = (
-        np.stack(
-            [_lasting(np.array([getattr(d, name)[..., 0] for d in lane.drives]), steps) for lane in lanes], -1
-        )
-        for name in ("voltage", "contraction", "time")
-    )
-    return [DriveState(*each) for each in zip(voltage, contraction, time, strict=True)]
-
-
-def _coefficients(lanes: Sequence[Lane], steps: int) -> list[StepCoefficients]:
-    """The coefficients of every step; equal steps share them."""
-    known: dict[tuple[float, ...], StepCoefficients] = {}
-    out = []
-    for step in range(steps):
-        each = [lane.plan.coefficients[min(step, len(lane) - 1)] for lane in lanes]
-        lengths = tuple(c.step for c in each)
-        if lengths not in known:
-            known[lengths] = StepCoefficients.beside(each)
-        out.append(known[lengths])
-    return out
+def _coefficients(lanes: Sequence[Lane], steps: int) -> tuple[np.ndarray, list[StepCoefficients]]:
+    """The kind of every step [steps], and the coefficients of all lanes for every kind."""
+    each = [[lane.plan.coefficients[min(step, len(lane) - 1)] for step in range(steps)] for lane in lanes]
+    kinds: list[int] = []
+    known: dict[tuple[int, ...], int] = {}
+    out: list[StepCoefficients] = []
+    for beside in zip(*each, strict=True):
+        key = tuple(map(id, beside))
+        if key not in known:
+            known[key] = len(out)
+            out.append(StepCoefficients.beside(beside))
+        kinds.append(known[key])
+    return np.array(kinds), out

@@ -103,10 +103,11 @@ class PreparedRun:
     def drives(self, contraction: np.ndarray) -> list[DriveState]:
         """The drive at the balance of every step, for contractions [steps, muscles]."""
         times = self.plan.balance_times
-        return [
-            DriveState.single(*row)
-            for row in zip(self._chain.at_muscles(self.schedule.at(times)), contraction, times, strict=True)
-        ]
+        return [DriveState.single(*row) for row in zip(self.voltage(times), contraction, times, strict=True)]
+
+    def voltage(self, times: np.ndarray) -> np.ndarray:
+        """What drives every muscle [n, muscles] at times [s] [n]."""
+        return self._chain.at_muscles(self.schedule.at(times))
 
     def contraction(self, times: np.ndarray, values: dict[str, float] | None = None) -> np.ndarray:
         """Contraction [1] [n, muscles] at ascending times [s] [n], at the model's or other parameter values."""

@@ -7,7 +7,8 @@ import numpy as np
 
 from hasel_sim.build import difference_points
 from hasel_sim.errors import HaselSimError
-from hasel_sim.lanes import Lane, Seen, moving_columns, step_together
+from hasel_sim.lanes import Lane, moving_columns, step_together
+from hasel_sim.mechanics.seen import Seen
 from hasel_sim.mechanics.simd import LANES
 from hasel_sim.model import Model
 from hasel_sim.observation import observe
@@ -97,7 +98,7 @@ def _observed(lane: Lane, seen: Seen, place: int, moves: list[int]) -> Simulatio
         prepared.at_frames(derivatives),
         prepared.at_frames(markers),
         prepared.at_frames(prepared.contraction(plan.boundaries)),
-        None if seen.shapes is None else prepared.at_frames(seen.shapes[:until, ..., place]),
+        prepared.at_frames(seen.shapes[:until, ..., place]) if len(seen.shapes) else None,
     )
 
 

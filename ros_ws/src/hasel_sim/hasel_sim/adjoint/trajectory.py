@@ -38,6 +38,7 @@ def follow(prepared: PreparedRun, contraction: np.ndarray) -> Trajectory:
     state, _ = initial_state(
         stepper.system, prepared.start_drive, prepared.load_factor, [], prepared.held_shape
     )
+    stepper.start(state, prepared.start_drive)
     positions, steps, start = [state.position[..., 0]], [], state
     for drive, c in zip(drives, prepared.plan.coefficients, strict=True):
         steps.append(stepper.follow(state, drive, c))

@@ -6,7 +6,7 @@ from rich.console import Console
 from rich.table import Table
 
 from hasel_sim.bench.convergence import MeshError, StepError
-from hasel_sim.bench.speed import Speed
+from hasel_sim.bench.speed import SideBySide, Speed
 
 
 @dataclass(frozen=True)
@@ -34,6 +34,7 @@ class SpeedReport:
     large: Speed
     slope: float
     parameters: list[tuple[int, float]]
+    lanes: SideBySide
     profile: list[tuple[str, float]]
 
     def bars(self) -> list[Bar]:
@@ -47,6 +48,12 @@ class SpeedReport:
                 for name, s in named
             ),
             *(Bar(f"adjoint sweep / forward, {name}", s.adjoint / s.forward, 2) for name, s in named),
+            Bar(
+                f"{self.lanes.runs} runs side by side / one after the other",
+                self.lanes.forward_ratio,
+                4,
+                at_least=True,
+            ),
             Bar("first run, compiling (s)", self.first_run, 30),
         ]
 
@@ -57,7 +64,11 @@ class SpeedReport:
     def print(self, console: Console) -> None:
         """Print the tables."""
         console.print(
-            self._speed_table(), self._parameter_table(), self._profile_table(), bars_table(self.bars())
+            self._speed_table(),
+            self._parameter_table(),
+            self._lanes_table(),
+            self._profile_table(),
+            bars_table(self.bars()),
         )
 
     def _speed_table(self) -> Table:
@@ -83,6 +94,23 @@ class SpeedReport:
         for count, _ in self.parameters:
             table.add_column(str(count), justify="right")
         table.add_row(*(f"{ratio:.2f} x" for _, ratio in self.parameters))
+        return table
+
+    def _lanes_table(self) -> Table:
+        lanes = self.lanes
+        table = Table(title=f"{lanes.runs} runs of 0.5 s, default mesh, processor time")
+        for heading in ("", "one after the other", "side by side", "ratio"):
+            table.add_column(heading, justify="right" if heading else "left")
+        for name, alone, beside, ratio in (
+            ("forward", lanes.after_the_other, lanes.side_by_side, lanes.forward_ratio),
+            (
+                "with all sensitivities",
+                lanes.sensitivities_after_the_other,
+                lanes.sensitivities_side_by_side,
+                lanes.sensitivities_ratio,
+            ),
+        ):
+            table.add_row(name, f"{1e3 * alone:.0f} ms", f"{1e3 * beside:.0f} ms", f"{ratio:.2f} x")
         return table
 
     def _profile_table(self) -> Table:

@@ -1,5 +1,6 @@
 """Cost of a second of motion: forward, with all sensitivities, and by the adjoint; by nodes and by parameters."""
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ from hasel_sim.bench.cases import FRAMES_PER_SECOND, box_run, fitted_swimmer, no
 from hasel_sim.bench.reference import band_solutions
 from hasel_sim.bench.timing import processor_seconds
 from hasel_sim.model import Model
-from hasel_sim.simulate import simulate
+from hasel_sim.simulate import simulate, simulate_many
 
 REPEATS = 5
 MANY_PARAMETERS = (
@@ -80,6 +81,43 @@ def measure_speed(model: Model) -> Speed:
         REPEATS,
     )
     return Speed(node_count(model), len(names), forward, sensitivities, both - forward, reference)
+
+
+@dataclass(frozen=True)
+class SideBySide:
+    """Processor time [s] of several runs of the default swimmer, one after the other and side by side in lanes."""
+
+    runs: int
+    after_the_other: float
+    side_by_side: float
+    sensitivities_after_the_other: float
+    sensitivities_side_by_side: float
+
+    @property
+    def forward_ratio(self) -> float:
+        """How much less the runs cost side by side."""
+        return self.after_the_other / self.side_by_side
+
+    @property
+    def sensitivities_ratio(self) -> float:
+        """The same with the derivatives by all parameters."""
+        return self.sensitivities_after_the_other / self.sensitivities_side_by_side
+
+
+def measure_side_by_side(model: Model) -> SideBySide:
+    """As many runs as there are lanes, at several voltages and frequencies."""
+    drives = itertools.product((5500.0, 4500.0), (2.0, 3.5))
+    cases = [(model, box_run(0.5, voltage, frequency)) for voltage, frequency in drives]
+    names = list(model.parameters)
+    works = [
+        work
+        for asked in ([], names)
+        for work in (
+            lambda asked=asked: [simulate(model, run, asked) for _, run in cases],
+            lambda asked=asked: simulate_many(cases, asked),
+        )
+    ]
+    return SideBySide(len(cases), *processor_seconds(works, REPEATS))
 
 
 def by_nodes(wanted: tuple[int, ...]) -> tuple[list[Speed], float]:

@@ -133,6 +133,7 @@ class LiveSimulator:
         self._stepper = Stepper(self._stepper.system, self._stepper.tolerance)
         self._drive = DriveHistory(self.model, self.history, 0.0)
         self._state, _ = initial_state(self._stepper.system, self._drive.still, self.load_factor, [])
+        self._stepper.start(self._state, self._drive.still)
         self._angles = AngleHistory(self.model, self.history)
         self._see(np.zeros(1), [self.position])
 

@@ -8,6 +8,14 @@ from hasel_sim.mechanics.compiled import clear_band
 from hasel_sim.mechanics.simd import lane_tuple
 
 
+def singular_matrix(unknown: int) -> SimulationError:
+    """What is said of a matrix in which the pivot of an unknown vanishes."""
+    return SimulationError(
+        f"the tangent matrix is singular (unknown {unknown}); a body free to move has no static equilibrium, "
+        "and extreme parameters have none either: clamp the body or move the parameters back into range"
+    )
+
+
 class BandMatrix:
     """Entry (i, j) of each lane is stored at [i, diagonal + j - i] of `entries`, so that `factorise` works in place.
 
@@ -27,7 +35,7 @@ class BandMatrix:
     def clear(self) -> None:
         """Set every entry to zero."""
         self.wipe()
-        clear_band(self.entries, self.reach, self.diagonal)
+        clear_band(self.entries, self.reach, self.diagonal, lane_tuple(self.entries.shape[2]))
 
     def wipe(self) -> None:
         """Take out what factors that are no numbers have left beyond the band, where `clear_band` does not look."""
@@ -50,10 +58,7 @@ class BandMatrix:
         banded_lu.factorise(inner, free, self.half_bandwidth, reach, bad, lane_tuple(lanes))
         self._spoilt = bool((bad >= 0).any() or not np.isfinite(inner[free - 1]).all())
         if (bad >= 0).all():
-            raise SimulationError(
-                f"the tangent matrix is singular (unknown {bad[0]}); a body free to move has no static equilibrium, "
-                "and extreme parameters have none either: clamp the body or move the parameters back into range"
-            )
+            raise singular_matrix(bad[0])
         return BandFactors(inner, reach, self.half_bandwidth, self.held, bad >= 0)
 
 
@@ -73,7 +78,7 @@ class BandFactors:
         """Solution for each right-hand side [columns, nodes, 2, lanes]; held unknowns come back as zero."""
         k, n, held = self._half_bandwidth, len(self._reach), self._held
         count, lanes = len(columns), columns.shape[-1]
-        padded = np.empty((count, n + k, lanes))
+        padded = np.empty((count, n + k + 4, lanes))
         padded[:, n:] = 0.0
         padded[:, :n] = columns.reshape(count, held + n, lanes)[:, held:]
         solve = banded_lu.solve_transposed if transposed else banded_lu.solve

@@ -12,7 +12,7 @@ of the diagonal anything lies, fill-in included.
 
 from numba import njit
 
-from hasel_sim.mechanics.simd import load, of_lane, store, zero
+from hasel_sim.mechanics.simd import four, load, of_lane, store, zero
 
 LEFT, RIGHT = 6, 3
 
@@ -87,42 +87,70 @@ def factorise(A, n, k, reach, bad, lane):
 
 
 @njit(inline="always")
-def _product(A, row, x, place, count, lane):
-    """Sum of `count` entries of a row times as many of x, in four sums so that none waits for the last."""
+def _store_four(array, at, values, lane):
     lanes = len(lane)
-    s0, s1, s2, s3 = zero(lane), zero(lane), zero(lane), zero(lane)
-    whole = count - count % 4
-    for t in range(0, whole * lanes, 4 * lanes):
-        s0 = s0 + load(A, row + t, lane) * load(x, place + t, lane)
-        s1 = s1 + load(A, row + t + lanes, lane) * load(x, place + t + lanes, lane)
-        s2 = s2 + load(A, row + t + 2 * lanes, lane) * load(x, place + t + 2 * lanes, lane)
-        s3 = s3 + load(A, row + t + 3 * lanes, lane) * load(x, place + t + 3 * lanes, lane)
-    for t in range(whole * lanes, count * lanes, lanes):
-        s0 = s0 + load(A, row + t, lane) * load(x, place + t, lane)
-    return (s0 + s1) + (s2 + s3)
+    store(array, at, values[0])
+    store(array, at + lanes, values[1])
+    store(array, at + 2 * lanes, values[2])
+    store(array, at + 3 * lanes, values[3])
+
+
+@njit(inline="always")
+def _less_products(A, rows, x, place, count, y, lane):
+    """Four entries y less the products of four rows of A with `count` entries of x."""
+    lanes = len(lane)
+    r0, r1, r2, r3 = rows
+    y0, y1, y2, y3 = y
+    for t in range(0, count * lanes, lanes):
+        known = load(x, place + t, lane)
+        y0, y1 = y0 - load(A, r0 + t, lane) * known, y1 - load(A, r1 + t, lane) * known
+        y2, y3 = y2 - load(A, r2 + t, lane) * known, y3 - load(A, r3 + t, lane) * known
+    return y0, y1, y2, y3
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
 def solve(A, n, k, reach, x, lane):
-    """Solve in place for every right-hand side in x [columns, n + k, lanes], which ends with k zeros."""
+    """Solve in place for every right-hand side in x [columns, n + k + 4, lanes], which ends with k + 4 zeros."""
     lanes, line, middle = len(lane), A.shape[1] * len(lane), LEFT + k
     columns, height = x.shape[0], x.shape[1] * len(lane)
     first = 0
-    for i in range(n):
+    for i in range(0, n, 4):
         while first + reach[first] < i:
             first += 1
-        lower = i * line + (middle - i + first) * lanes
+        d = i * line + middle * lanes
+        back = (first - i) * lanes
+        rows = d + back, d + line - lanes + back, d + 2 * (line - lanes) + back, d + 3 * (line - lanes) + back
+        f1 = load(A, d + line - lanes, lane)
+        f2, g2 = load(A, d + 2 * (line - lanes), lane), load(A, d + 2 * line - lanes, lane)
+        f3, g3 = load(A, d + 3 * (line - lanes), lane), load(A, d + 3 * line - 2 * lanes, lane)
+        h3 = load(A, d + 3 * line - lanes, lane)
         for c in range(columns):
-            total = _product(A, lower, x, c * height + first * lanes, i - first, lane)
             at = c * height + i * lanes
-            store(x, at, load(x, at, lane) - total)
-    for i in range(n - 1, -1, -1):
-        upper = i * line + (middle + 1) * lanes
-        inverse = 1.0 / load(A, i * line + middle * lanes, lane)
+            y0, y1, y2, y3 = _less_products(A, rows, x, at + back, i - first, four(x, at, lane), lane)
+            y1 = y1 - f1 * y0
+            y2 = y2 - f2 * y0 - g2 * y1
+            _store_four(x, at, (y0, y1, y2, y3 - f3 * y0 - g3 * y1 - h3 * y2), lane)
+    for i in range(4 * ((n - 1) // 4), -1, -4):
+        last = min(i + 3, n - 1)
+        d = i * line + middle * lanes
+        rows = d + 4 * lanes, d + line + 3 * lanes, d + 2 * line + 2 * lanes, d + 3 * line + lanes
+        _, f0, g0, h0 = four(A, d, lane)
+        f1, g1 = load(A, d + line + lanes, lane), load(A, d + line + 2 * lanes, lane)
+        f2 = load(A, d + 2 * line + lanes, lane)
+        i0, i1 = 1.0 / load(A, d, lane), 1.0 / load(A, d + line, lane)
+        i2, i3 = 1.0 / load(A, d + 2 * line, lane), 1.0 / load(A, d + 3 * line, lane)
+        count = last + reach[last] - i - 3
         for c in range(columns):
             at = c * height + i * lanes
-            total = _product(A, upper, x, at + lanes, reach[i], lane)
-            store(x, at, (load(x, at, lane) - total) * inverse)
+            place = at + 4 * lanes
+            y0, y1, y2, y3 = _less_products(A, rows, x, place, count, four(x, at, lane), lane)
+            y3 = y3 * i3
+            y2 = (y2 - f2 * y3) * i2
+            y1 = (y1 - f1 * y2 - g1 * y3) * i1
+            _store_four(x, at, ((y0 - f0 * y1 - g0 * y2 - h0 * y3) * i0, y1, y2, y3), lane)
+    for c in range(columns):
+        for at in range(c * height + n * lanes, (c + 1) * height, lanes):
+            store(x, at, zero(lane))
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")

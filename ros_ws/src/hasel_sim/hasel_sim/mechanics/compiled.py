@@ -16,7 +16,18 @@ A trial shape with an element of no area gives infinities, which end that trial,
 import numpy as np
 from numba import njit
 
-from hasel_sim.mechanics.simd import load, logarithm, of_lane, square_root, store, with_lane, zero
+from hasel_sim.mechanics.simd import (
+    add,
+    four,
+    load,
+    logarithm,
+    of_lane,
+    square_root,
+    store,
+    three,
+    with_lane,
+    zero,
+)
 
 COEFFICIENTS = 7
 SHEAR, LAME, VISCOUS_SHEAR, VISCOUS_LAME, BRANCH_SHEAR, BRANCH_LAME, FIBRE = range(COEFFICIENTS)
@@ -65,28 +76,6 @@ def _thickness(shear, lame, area_ratio, lane):
     return out
 
 
-@njit(inline="always")
-def _four(array, at, lane):
-    lanes = len(lane)
-    return (
-        load(array, at, lane),
-        load(array, at + lanes, lane),
-        load(array, at + 2 * lanes, lane),
-        load(array, at + 3 * lanes, lane),
-    )
-
-
-@njit(inline="always")
-def _three(array, at, lane):
-    lanes = len(lane)
-    return load(array, at, lane), load(array, at + lanes, lane), load(array, at + 2 * lanes, lane)
-
-
-@njit(inline="always")
-def _add(array, at, value, lane):
-    store(array, at, load(array, at, lane) + value)
-
-
 @njit(cache=True, fastmath=True, error_model="numpy")
 def first_piola(F, rate, coefficients, muscle, contraction, history, plane_stress, P, lane):
     """First Piola stress [Pa] at every Gauss point.
@@ -98,14 +87,14 @@ def first_piola(F, rate, coefficients, muscle, contraction, history, plane_stres
     lanes, points = len(lane), F.shape[1]
     for e in range(F.shape[0]):
         own = COEFFICIENTS * lanes * e
-        mu, lam, muv, lamv = _four(coefficients, own, lane)
-        mub, lamb, w = _three(coefficients, own + 4 * lanes, lane)
+        mu, lam, muv, lamv = four(coefficients, own, lane)
+        mub, lamb, w = three(coefficients, own + 4 * lanes, lane)
         rest = 1.0 - load(contraction, muscle[e] * lanes, lane)
         for g in range(points):
             at = 4 * lanes * (e * points + g)
-            a, b, c, d = _four(F, at, lane)
-            ra, rb, rc, rd = _four(rate, at, lane)
-            hxx, hyy, hxy = _three(history, 3 * lanes * (e * points + g), lane)
+            a, b, c, d = four(F, at, lane)
+            ra, rb, rc, rd = four(rate, at, lane)
+            hxx, hyy, hxy = three(history, 3 * lanes * (e * points + g), lane)
             J = a * d - b * c
             volume = J
             if plane_stress:
@@ -135,15 +124,15 @@ def moduli(F, rate, coefficients, muscle, contraction, history, plane_stress, el
     none = zero(lane)
     for e in range(F.shape[0]):
         own = COEFFICIENTS * lanes * e
-        mu, lam, muv, lamv = _four(coefficients, own, lane)
-        mub, lamb, w = _three(coefficients, own + 4 * lanes, lane)
+        mu, lam, muv, lamv = four(coefficients, own, lane)
+        mub, lamb, w = three(coefficients, own + 4 * lanes, lane)
         rest = 1.0 - load(contraction, muscle[e] * lanes, lane)
         for g in range(points):
             point = e * points + g
             at = 4 * lanes * point
-            a, b, c, d = _four(F, at, lane)
-            ra, rb, rc, rd = _four(rate, at, lane)
-            S00, S11, S01 = _three(history, 3 * lanes * point, lane)
+            a, b, c, d = four(F, at, lane)
+            ra, rb, rc, rd = four(rate, at, lane)
+            S00, S11, S01 = three(history, 3 * lanes * point, lane)
             deform, speed = ((a, b), (c, d)), ((ra, rb), (rc, rd))
             J = a * d - b * c
             inverse = ((d / J, (0.0 - b) / J), ((0.0 - c) / J, a / J))
@@ -200,10 +189,10 @@ def moduli(F, rate, coefficients, muscle, contraction, history, plane_stress, el
                 tension = w * (1.0 - rest / stretch)
                 slope = w * rest / (stretch * stretch * stretch)
                 here = 16 * point * lanes
-                _add(elastic, here, tension + slope * a * a, lane)
-                _add(elastic, here + 2 * lanes, slope * a * c, lane)
-                _add(elastic, here + 8 * lanes, slope * a * c, lane)
-                _add(elastic, here + 10 * lanes, tension + slope * c * c, lane)
+                add(elastic, here, tension + slope * a * a)
+                add(elastic, here + 2 * lanes, slope * a * c)
+                add(elastic, here + 8 * lanes, slope * a * c)
+                add(elastic, here + 10 * lanes, tension + slope * c * c)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -215,18 +204,18 @@ def scatter_stress(P, elements, gradients, areas, stretch, force, lane):
         local[:] = 0.0
         for g in range(points):
             point = e * points + g
-            p0, p1, p2, p3 = _four(P, 4 * lanes * point, lane)
+            p0, p1, p2, p3 = four(P, 4 * lanes * point, lane)
             s = areas[e, g]
             wide = s * load(stretch, point * lanes, lane)
             p0, p1, p2, p3 = s * p0, wide * p1, s * p2, wide * p3
             for a in range(8):
                 dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
-                _add(local, 2 * a * lanes, p0 * dx + p1 * dy, lane)
-                _add(local, (2 * a + 1) * lanes, p2 * dx + p3 * dy, lane)
+                add(local, 2 * a * lanes, p0 * dx + p1 * dy)
+                add(local, (2 * a + 1) * lanes, p2 * dx + p3 * dy)
         for a in range(8):
             at = 2 * lanes * elements[e, a]
-            _add(force, at, load(local, 2 * a * lanes, lane), lane)
-            _add(force, at + lanes, load(local, (2 * a + 1) * lanes, lane), lane)
+            add(force, at, load(local, 2 * a * lanes, lane))
+            add(force, at + lanes, load(local, (2 * a + 1) * lanes, lane))
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -239,7 +228,7 @@ def scatter_matrix(
     """
     lanes, points, width = len(lane), areas.shape[1], band.shape[1]
     half = np.empty(64 * points * lanes)
-    by_position, by_velocity, by_acceleration = _three(weights, 0, lane)
+    by_position, by_velocity, by_acceleration = three(weights, 0, lane)
     none = zero(lane)
     for e in range(elements.shape[0]):
         for g in range(points):
@@ -247,8 +236,8 @@ def scatter_matrix(
             along = load(stretch, point * lanes, lane)
             for row in range(4):
                 at = (16 * point + 4 * row) * lanes
-                k0, k1, k2, k3 = _four(elastic, at, lane)
-                v0, v1, v2, v3 = _four(viscous, at, lane)
+                k0, k1, k2, k3 = four(elastic, at, lane)
+                v0, v1, v2, v3 = four(viscous, at, lane)
                 s = areas[e, g] / along if row % 2 == 0 else areas[e, g] + none
                 m0, m1 = by_position * k0 + by_velocity * v0, along * (by_position * k1 + by_velocity * v1)
                 m2, m3 = by_position * k2 + by_velocity * v2, along * (by_position * k3 + by_velocity * v3)
@@ -270,19 +259,19 @@ def scatter_matrix(
                 if j == 1:
                     x0, x1, y0, y1 = none, none, x0, x1
                 for g in range(points):
-                    h0, h1, h2, h3 = _four(half, (column * points + g) * 4 * lanes, lane)
+                    h0, h1, h2, h3 = four(half, (column * points + g) * 4 * lanes, lane)
                     dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
                     x0, y0 = x0 + dx * h0 + dy * h1, y0 + dx * h2 + dy * h3
                     dx, dy = gradients[e, g, a + 1, 0], gradients[e, g, a + 1, 1]
                     x1, y1 = x1 + dx * h0 + dy * h1, y1 + dx * h2 + dy * h3
                 row, to = 2 * elements[e, a], 2 * elements[e, b] + j
                 at = (row * (width - 1) + diagonal + to) * lanes
-                _add(band, at, x0, lane)
-                _add(band, at + (width - 1) * lanes, y0, lane)
+                add(band, at, x0)
+                add(band, at + (width - 1) * lanes, y0)
                 row = 2 * elements[e, a + 1]
                 at = (row * (width - 1) + diagonal + to) * lanes
-                _add(band, at, x1, lane)
-                _add(band, at + (width - 1) * lanes, y1, lane)
+                add(band, at, x1)
+                add(band, at + (width - 1) * lanes, y1)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -313,28 +302,28 @@ def scatter_directions(moduli, stress, elements, gradients, areas, stretch, dire
                 along = load(stretch, point * lanes, lane)
                 d0, d2 = d0 / along, d2 / along
                 at = 16 * point * lanes
-                a0, a1, a2, a3 = _four(moduli, at, lane)
+                a0, a1, a2, a3 = four(moduli, at, lane)
                 p0 = a0 * d0 + a1 * d1 + a2 * d2 + a3 * d3
-                a0, a1, a2, a3 = _four(moduli, at + 4 * lanes, lane)
+                a0, a1, a2, a3 = four(moduli, at + 4 * lanes, lane)
                 p1 = a0 * d0 + a1 * d1 + a2 * d2 + a3 * d3
-                a0, a1, a2, a3 = _four(moduli, at + 8 * lanes, lane)
+                a0, a1, a2, a3 = four(moduli, at + 8 * lanes, lane)
                 p2 = a0 * d0 + a1 * d1 + a2 * d2 + a3 * d3
-                a0, a1, a2, a3 = _four(moduli, at + 12 * lanes, lane)
+                a0, a1, a2, a3 = four(moduli, at + 12 * lanes, lane)
                 p3 = a0 * d0 + a1 * d1 + a2 * d2 + a3 * d3
                 if stress.shape[0] > 0:
-                    s0, s1, s2, s3 = _four(stress, 4 * lanes * (column * count * points + point), lane)
+                    s0, s1, s2, s3 = four(stress, 4 * lanes * (column * count * points + point), lane)
                     p0, p1, p2, p3 = p0 + s0, p1 + s1, p2 + s2, p3 + s3
                 s = areas[e, g]
                 wide = s * along
                 p0, p1, p2, p3 = s * p0, wide * p1, s * p2, wide * p3
                 for a in range(8):
                     dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
-                    _add(local, 2 * a * lanes, p0 * dx + p1 * dy, lane)
-                    _add(local, (2 * a + 1) * lanes, p2 * dx + p3 * dy, lane)
+                    add(local, 2 * a * lanes, p0 * dx + p1 * dy)
+                    add(local, (2 * a + 1) * lanes, p2 * dx + p3 * dy)
             for a in range(8):
                 at = 2 * lanes * (column * nodes + elements[e, a])
-                _add(force, at, load(local, 2 * a * lanes, lane), lane)
-                _add(force, at + lanes, load(local, (2 * a + 1) * lanes, lane), lane)
+                add(force, at, load(local, 2 * a * lanes, lane))
+                add(force, at + lanes, load(local, (2 * a + 1) * lanes, lane))
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -367,8 +356,8 @@ def contraction_force(F, coefficients, muscle, elements, gradients, areas, force
             for n in range(8):
                 dx = gradients[e, g, n, 0]
                 at = 2 * lanes * ((muscle[e] - 1) * nodes + elements[e, n])
-                _add(force, at, pull * a * dx, lane)
-                _add(force, at + lanes, pull * c * dx, lane)
+                add(force, at, pull * a * dx)
+                add(force, at + lanes, pull * c * dx)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -384,8 +373,8 @@ def mass_product(masses, elements, columns, out, lane):
                     at = 2 * lanes * (column * nodes + elements[e, b])
                     x, y = x + mass * load(columns, at, lane), y + mass * load(columns, at + lanes, lane)
                 at = 2 * lanes * (column * nodes + elements[e, a])
-                _add(out, at, x, lane)
-                _add(out, at + lanes, y, lane)
+                add(out, at, x)
+                add(out, at + lanes, y)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -403,8 +392,8 @@ def scatter_sites(direct, along, nodes, shape, slope, measure, band, diagonal, l
                 for b in range(nodes.shape[1]):
                     by_value, by_slope = weight * shape[s, b], weight * slope[s, b]
                     at = (row * width + diagonal + 2 * nodes[s, b] - row) * lanes
-                    _add(band, at, by_value * d0 + by_slope * t0, lane)
-                    _add(band, at + lanes, by_value * d1 + by_slope * t1, lane)
+                    add(band, at, by_value * d0 + by_slope * t0)
+                    add(band, at + lanes, by_value * d1 + by_slope * t1)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -412,29 +401,12 @@ def second_piola(F, P, S, lane):
     """Symmetric second Piola stress (xx, yy, xy) F^-1 P [elements, points, 3, lanes] of a first Piola stress."""
     lanes = len(lane)
     for point in range(F.shape[0] * F.shape[1]):
-        a, b, c, d = _four(F, 4 * point * lanes, lane)
-        p0, p1, p2, p3 = _four(P, 4 * point * lanes, lane)
+        a, b, c, d = four(F, 4 * point * lanes, lane)
+        p0, p1, p2, p3 = four(P, 4 * point * lanes, lane)
         J, at = a * d - b * c, 3 * point * lanes
         store(S, at, (d * p0 - b * p2) / J)
         store(S, at + lanes, (a * p3 - c * p1) / J)
         store(S, at + 2 * lanes, 0.5 * (d * p1 - b * p3 + a * p2 - c * p0) / J)
-
-
-@njit(cache=True, fastmath=True, error_model="numpy")
-def exchange_initial_stress(elastic, old, new, lane):
-    """Replace the second Piola stress (xx, yy, xy) whose geometric stiffness is in the moduli, in place."""
-    lanes = len(lane)
-    for point in range(elastic.shape[0] * elastic.shape[1]):
-        at = 3 * point * lanes
-        xx = load(new, at, lane) - load(old, at, lane)
-        yy = load(new, at + lanes, lane) - load(old, at + lanes, lane)
-        xy = load(new, at + 2 * lanes, lane) - load(old, at + 2 * lanes, lane)
-        for i in (0, 2):
-            here = (16 * point + 5 * i) * lanes
-            _add(elastic, here, xx, lane)
-            _add(elastic, here + lanes, xy, lane)
-            _add(elastic, here + 4 * lanes, xy, lane)
-            _add(elastic, here + 5 * lanes, yy, lane)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -444,7 +416,7 @@ def green_stress(F, shear, lame, out, lane):
     for e in range(F.shape[0]):
         mu, lam = load(shear, e * lanes, lane), load(lame, e * lanes, lane)
         for g in range(points):
-            a, b, c, d = _four(F, 4 * lanes * (e * points + g), lane)
+            a, b, c, d = four(F, 4 * lanes * (e * points + g), lane)
             xx, yy = 0.5 * (a * a + c * c - 1.0), 0.5 * (b * b + d * d - 1.0)
             at = 3 * lanes * (e * points + g)
             store(out, at, lam * (xx + yy) + 2.0 * mu * xx)
@@ -459,8 +431,8 @@ def green_stress_direction(F, change, shear, lame, out, lane):
     for e in range(F.shape[0]):
         mu, lam = load(shear, e * lanes, lane), load(lame, e * lanes, lane)
         for g in range(points):
-            a, b, c, d = _four(F, 4 * lanes * (e * points + g), lane)
-            p, q, r, s = _four(change, 4 * lanes * (e * points + g), lane)
+            a, b, c, d = four(F, 4 * lanes * (e * points + g), lane)
+            p, q, r, s = four(change, 4 * lanes * (e * points + g), lane)
             xx, yy = a * p + c * r, b * q + d * s
             at = 3 * lanes * (e * points + g)
             store(out, at, lam * (xx + yy) + 2.0 * mu * xx)
@@ -476,8 +448,8 @@ def combine(position, velocity, acceleration, new, weights, x, v, a, lane):
     one more is not used.
     """
     lanes = len(lane)
-    xv, xa, xn, va = _four(weights, 0, lane)
-    vn, aa, an, _ = _four(weights, 4 * lanes, lane)
+    xv, xa, xn, va = four(weights, 0, lane)
+    vn, aa, an, _ = four(weights, 4 * lanes, lane)
     for at in range(0, position.size, lanes):
         speed, old, now = load(velocity, at, lane), load(acceleration, at, lane), load(new, at, lane)
         store(x, at, load(position, at, lane) + xv * speed + xa * old + xn * now)
@@ -485,28 +457,15 @@ def combine(position, velocity, acceleration, new, weights, x, v, a, lane):
         store(a, at, aa * old + an * now)
 
 
-@njit(cache=True)
-def corrected(acceleration, correction, wanted, out, largest):
-    """Subtract a correction [nodes, 2, lanes] in the lanes wanted, into out; the largest of each lane's comes back."""
-    lanes = len(wanted)
-    largest[:] = 0.0
-    for node in range(acceleration.shape[0]):
-        for component in range(2):
-            for n in range(lanes):
-                change = correction[node, component, n]
-                if not abs(change) <= largest[n]:
-                    largest[n] = abs(change)
-                out[node, component, n] = acceleration[node, component, n]
-                if wanted[n]:
-                    out[node, component, n] -= change
-
-
-@njit(cache=True)
-def clear_band(band, reach, diagonal):
+@njit(cache=True, fastmath=True, error_model="numpy")
+def clear_band(band, reach, diagonal, lane):
     """Set to zero what lies within reach of the diagonal; the rest of a band matrix always is."""
-    first = 0
-    for row in range(len(reach)):
-        while first + reach[first] < row:
-            first += 1
-        band[row, diagonal - (row - first) - 4 : diagonal + reach[row] + 5] = 0.0
-    band[len(reach) :] = 0.0
+    lanes, width, first = len(lane), band.shape[1], 0
+    for row in range(band.shape[0]):
+        left, right = 0, width
+        if row < len(reach):
+            while first + reach[first] < row:
+                first += 1
+            left, right = diagonal - (row - first) - 4, min(width, diagonal + reach[row] + 5)
+        for at in range((row * width + left) * lanes, (row * width + right) * lanes, lanes):
+            store(band, at, zero(lane))

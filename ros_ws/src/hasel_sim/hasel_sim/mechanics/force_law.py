@@ -40,6 +40,7 @@ class ForceLaw:
         self._rest_normal = (
             normal(sites.tangent(reference[..., None])[..., 0]) if on_skin else np.zeros_like(self._reference)
         )
+        self._unmoved: dict[int, dict[str, np.ndarray]] = {}
         self._moved_by = tuple(name for name in effect.depends_on if name != "contraction")
         self._use_lanes([values])
 
@@ -89,12 +90,14 @@ class ForceLaw:
     ) -> np.ndarray:
         n = len(self._reference)
         times = len(rows["position"]) // n
-        unmoved = {
-            "reference": repeated(self._reference, times),
-            "rest_normal": repeated(self._rest_normal, times),
-            "measure": repeated(self.sites.measure, times),
-            "gravity": self._gravity,
-        }
+        if times not in self._unmoved:
+            self._unmoved[times] = {
+                "reference": repeated(self._reference, times),
+                "rest_normal": repeated(self._rest_normal, times),
+                "measure": repeated(self.sites.measure, times),
+                "gravity": self._gravity,
+            }
+        unmoved = self._unmoved[times]
         state = (SiteState if len(lanes) == 1 else _WatchedState)(
             **rows, **unmoved, **drive.of_lane(int(lanes[0]))
         )
@@ -162,22 +165,61 @@ class ForceLaw:
             change = (force[index, :, 0] - force[index, :, 1]) / (2 * _DIFFERENCE[name])
             self._slopes[name] = np.ascontiguousarray(change.transpose(1, 2, 0, 3))
 
+    def respond(
+        self,
+        motion: Motion,
+        drive: DriveState,
+        weights: np.ndarray,
+        out: np.ndarray,
+        by_value: np.ndarray,
+        by_tangent: np.ndarray,
+    ) -> None:
+        """Subtract the nodal forces from out [nodes, 2, lanes], and note how they change, in one call of the effect.
+
+        by_value, by_tangent [n, 2, 2, lanes]: less the derivatives at the sites by the value and by the tangent of the
+        end-of-step acceleration, which moves position, velocity and acceleration by weights [3, lanes]; one-sided
+        differences, which find a step as well as central ones.
+        """
+        names, at = self._moved_by, self._moved(motion)
+        fields = {name: np.repeat(field[None], 1 + 2 * len(names), axis=0) for name, field in at.items()}
+        for index, name in enumerate(names):
+            for component in range(2):
+                fields[name][1 + 2 * index + component, :, component] += _DIFFERENCE[name]
+        force = self._force(fields, drive)
+        self.sites.scatter(-force[0], out)
+        by_value[:], by_tangent[:] = 0.0, 0.0
+        rows = {"position": 0, "velocity": 1, "acceleration": 2, "tangent": 0}
+        for index, name in enumerate(names):
+            change = (force[1 + 2 * index : 3 + 2 * index] - force[0]) * (
+                -weights[rows[name]] / _DIFFERENCE[name]
+            )
+            table = by_tangent if name == "tangent" else by_value
+            table += change.transpose(1, 2, 0, 3)
+
+    def weighted(self, position, velocity, acceleration) -> tuple[np.ndarray, np.ndarray]:
+        """Less the derivatives, weighted per lane: by the value and by the tangent at the sites [n, 2, 2, lanes]."""
+        shares = {"position": position, "velocity": velocity, "acceleration": acceleration}
+        nothing = np.zeros((len(self._reference), 2, 2, len(self.values)))
+        direct = nothing - sum(shares[name] * slope for name, slope in self._slopes.items() if name in shares)
+        along = -position * self._slopes["tangent"] if "tangent" in self._slopes else nothing
+        return direct, along
+
     def add_matrix(self, position, velocity, acceleration, band: np.ndarray, diagonal: int) -> None:
         """Subtract the derivatives, weighted per lane, from a band matrix (the force stands on the right-hand side)."""
         if not self._moved_by:
             return
-        shares = {"position": position, "velocity": velocity, "acceleration": acceleration}
-        nothing = np.zeros_like(self._slopes[self._moved_by[0]])
-        direct = nothing - sum(shares[name] * slope for name, slope in self._slopes.items() if name in shares)
-        along = -position * self._slopes["tangent"] if "tangent" in self._slopes else nothing
+        direct, along = self.weighted(position, velocity, acceleration)
         s = self.sites
         places = s.nodes, s.shape, s.slope, s.measure
         scatter_sites(direct, along, *places, band, diagonal, lane_tuple(band.shape[-1]))
 
     def add_directions(
-        self, shift: np.ndarray, rate: np.ndarray, acceleration: np.ndarray, out: np.ndarray
+        self, shift: np.ndarray | None, rate: np.ndarray, acceleration: np.ndarray, out: np.ndarray
     ) -> None:
-        """Subtract the change of the nodal forces along many directions [columns, nodes, 2, lanes] from out."""
+        """Subtract the change of the nodal forces along many directions [columns, nodes, 2, lanes] from out.
+
+        shift: None for no change of the positions.
+        """
         moved = {
             "position": lambda: self.sites.value(shift),
             "velocity": lambda: self.sites.value(rate),
@@ -185,6 +227,8 @@ class ForceLaw:
             "tangent": lambda: self.sites.tangent(shift),
         }
         for name in self._moved_by:
+            if shift is None and name in ("position", "tangent"):
+                continue
             slope, change = self._slopes[name], moved[name]()
             self.sites.scatter(
                 -(slope[:, :, 0] * change[..., :1, :] + slope[:, :, 1] * change[..., 1:, :]), out

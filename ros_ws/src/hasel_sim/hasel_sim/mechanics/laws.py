@@ -59,11 +59,11 @@ def by_group(
     for lanes, values in groups:
         everyone = len(lanes) == shape[-1]
         rows = {
-            name: np.moveaxis(field if everyone else field[..., lanes], -1, 1).reshape(-1, shape[2])
+            name: (field if everyone else field[..., lanes]).transpose(0, 3, 1, 2).reshape(-1, shape[2])
             for name, field in fields.items()
         }
         found = call(rows, lanes, values).reshape(shape[0], len(lanes), *shape[1:3])
         if everyone:
-            return np.ascontiguousarray(np.moveaxis(found, 1, -1))
-        out[..., lanes] = np.moveaxis(found, 1, -1)
+            return np.ascontiguousarray(found.transpose(0, 2, 3, 1))
+        out[..., lanes] = found.transpose(0, 2, 3, 1)
     return out

@@ -1,171 +1,150 @@
-"""One correction of Newton's method in all lanes, in as few calls of compiled code as the effects in a model allow."""
+"""Newton's method for the end-of-step acceleration in all lanes, compiled.
+
+A step is made with one matrix, that of the guess: a correction that is not small enough is followed by others with the
+same factors, a quarter as dear. The tuples are those of `march`.
+"""
 
 import numpy as np
 from numba import njit
 
-from hasel_sim.mechanics.banded import BandFactors, BandMatrix
-from hasel_sim.mechanics.compiled import (
-    clear_band,
-    combine,
-    deformation,
-    exchange_initial_stress,
-    first_piola,
-    mass_product,
-    moduli,
-    scatter_matrix,
-    scatter_stress,
-    second_piola,
-)
-from hasel_sim.mechanics.generalised_alpha import StepCoefficients
-from hasel_sim.mechanics.motion import DriveState, Memory, Motion
-from hasel_sim.mechanics.simd import lane_tuple
-from hasel_sim.mechanics.state import State
-from hasel_sim.mechanics.system import System
+from hasel_sim.mechanics import banded_lu
+from hasel_sim.mechanics.balance import balance
+from hasel_sim.mechanics.compiled import clear_band, combine
+from hasel_sim.mechanics.lane_loops import copy_lanes, difference, subtract_lanes
+from hasel_sim.mechanics.law_terms import add_site_matrix
+from hasel_sim.mechanics.simd import store, zero
+
+SLOW_WITH_ONE_MATRIX, SLOW = 0.1, 1.0
+"""Corrections that do not shrink to this share of the last want another way."""
+
+
+@njit(cache=True, error_model="numpy")
+def _judge(iteration, always, vector, unknowns, end_position, bad, progress, taken, limits):
+    """Which lanes take the correction in `vector`, and which arrive with it.
+
+    limits: the tolerance [m], and the largest square of a correction with a fresh matrix that leaves no more than that.
+    """
+    wanted, arrived, due, last = progress
+    tolerance, square = limits
+    fresh, slow = iteration == 0 or always, SLOW if always else SLOW_WITH_ONE_MATRIX
+    for k in range(len(last)):
+        size = 0.0
+        for node in range(unknowns // 2):
+            for i in range(2):
+                found = abs(vector[node, i, k])
+                if not found <= size:
+                    size = found
+        size *= end_position[k]
+        taken[k] = wanted[k] and not arrived[k] and bad[k] < 0 and np.isfinite(size)
+        if iteration > 0 and size > tolerance and size > slow * last[k]:
+            taken[k] = False
+        if taken[k]:
+            arrived[k] = size < tolerance or (fresh and size**2 < square)
+            last[k] = size
+        wanted[k] = wanted[k] and (taken[k] or arrived[k])
+        due[k] = taken[k] and arrived[k]
+
+
+@njit(cache=True, error_model="numpy")
+def _is_spoilt(vector, unknowns, bad):
+    """Whether factors may have left what is no number beyond the band, where `clear_band` does not look."""
+    spoilt = False
+    for k in range(len(bad)):
+        spoilt = spoilt or bad[k] >= 0 or not np.isfinite(vector[unknowns // 2 - 1, 1, k])
+    return spoilt
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def _stressed(before, new, weights, solid, table, contraction, history, at, strain, lane):
-    """Motion at the balance, deformation gradient with its rate, and first Piola stress."""
-    elements, gradients, _, stretch, muscle, plane_stress = solid
-    combine(before[0], before[1], before[2], new, weights, at[0], at[1], at[2], lane)
-    deformation(at[0], elements, gradients, stretch, strain[0], lane)
-    deformation(at[1], elements, gradients, stretch, strain[1], lane)
-    first_piola(strain[0], strain[1], table, muscle, contraction, history, plane_stress, strain[2], lane)
+def factorise(matrix, bad, lane):
+    """Replace a band matrix by its factors; bad [lanes]: see `banded_lu.factorise`."""
+    band, reach, (diagonal, half_bandwidth, held), _ = matrix
+    n, lanes = len(reach), len(lane)
+    line = band.shape[1] * lanes
+    for row in range(held, min(held + half_bandwidth, n)):
+        for at in range(row * line, row * line + (diagonal + held - row) * lanes, lanes):
+            store(band, at, zero(lane))
+    for row in range(n, band.shape[0]):
+        store(band, row * line + diagonal * lanes, zero(lane) + 1.0)
+    banded_lu.factorise(band[held:], n - held, half_bandwidth, reach[held:], bad, lane)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def _out_of_balance(acceleration, P, solid, masses, weight, residual, lane):
-    elements, gradients, areas, stretch, _, _ = solid
-    residual[:] = 0.0
-    mass_product(masses, elements, acceleration, residual, lane)
-    residual[0] -= weight
-    scatter_stress(P, elements, gradients, areas, stretch, residual[0], lane)
+def solve(matrix, columns, lane):
+    """Solve in place with the factors for right-hand sides [columns, nodes and padding, 2, lanes]."""
+    band, reach, (_, half_bandwidth, held), _ = matrix
+    n, lanes = len(reach), len(lane)
+    height = 2 * columns.shape[1] * lanes
+    for c in range(columns.shape[0]):
+        for at in range(c * height, c * height + held * lanes, lanes):
+            store(columns, at, zero(lane))
+        for at in range(c * height + n * lanes, (c + 1) * height, lanes):
+            store(columns, at, zero(lane))
+        own = columns.reshape(columns.shape[0], 2 * columns.shape[1], lanes)[c, held:]
+        inner = own.reshape(1, own.shape[0], lanes)
+        banded_lu.solve(band[held:], n - held, half_bandwidth, reach[held:], inner, lane)
 
 
-@njit(cache=True, fastmath=True, error_model="numpy")
-def _derived(strain, solid, table, contraction, history, expected, stress, elastic, viscous, lane):
-    """Moduli; with `expected`, the second Piola stress of the last balance, in place of the one found."""
-    _, _, _, _, muscle, plane_stress = solid
-    F, rate, P = strain
-    moduli(F, rate, table, muscle, contraction, history, plane_stress, elastic, viscous, lane)
-    if len(expected) > 0:
-        second_piola(F, P, stress, lane)
-        exchange_initial_stress(elastic, stress, expected, lane)
+@njit(cache=True, error_model="numpy")
+def _wanted_yet(wanted, arrived):
+    more = False
+    for k in range(len(wanted)):
+        more = more or (wanted[k] and not arrived[k])
+    return more
 
 
-@njit(cache=True, fastmath=True, error_model="numpy")
-def _assembled(elastic, viscous, masses, weights, solid, band, reach, diagonal, lane):
-    elements, gradients, areas, stretch, _, _ = solid
-    clear_band(band, reach, diagonal)
-    scatter_matrix(
-        elastic, viscous, masses, weights, elements, gradients, areas, stretch, band, diagonal, lane
-    )
+@njit(inline="always")
+def newton(
+    before, guess, kind, scheme, body, matrix, drive, laws, expected, room, limits, progress, how, lane
+):
+    """Correct a guess of the end-of-step acceleration in the lanes wanted; those that fail are wanted no more.
 
-
-class Newton:
-    """Corrections of the end-of-step acceleration of a `System`; arrays are kept from one to the next."""
-
-    def __init__(self, system: System) -> None:
-        self.system, solid = system, system.solid
-        lanes, points = system.lanes, solid.areas.shape
-        nodal = (*system.nodes.shape, lanes)
-        self._lane = lane_tuple(lanes)
-        self._motion = np.empty(nodal), np.empty(nodal), np.empty(nodal)
-        self._strain = tuple(np.empty((*points, 4, lanes)) for _ in range(3))
-        self._residual, self._stress = np.empty((1, *nodal)), np.empty((*points, 3, lanes))
-        self._solid = *solid.places, solid.muscle, solid.plane_stress
-        self._matrix = BandMatrix(system.mesh.reach, 2 * system.held, lanes)
-        self._factors: BandFactors | None = None
-        self._none = np.zeros((0, *points[1:], 3, lanes))
-        self._at_rest = np.zeros((1, lanes))
-
-    def begin(self, state: State, drive: DriveState, c: StepCoefficients, memory: Memory) -> None:
-        """Take up a step."""
-        self._before = state.position, state.velocity, state.acceleration
-        self._drive, self._c, self._memory = drive, c, memory
-        solid = self.system.solid
-        self._table = solid.table(memory.step)
-        self._history = solid.no_history if memory.history is None else memory.history
-        self._contraction = np.concatenate([self._at_rest, drive.contraction])
-
-    def evaluate(self, acceleration: np.ndarray) -> Motion:
-        """Go to an acceleration: motion, strain and stress, and the residual."""
-        _stressed(
-            self._before,
-            acceleration,
-            self._c.to_balance,
-            self._solid,
-            self._table,
-            self._contraction,
-            self._history,
-            self._motion,
-            self._strain,
-            self._lane,
+    expected: second Piola stress of the last balance, replaced by that of this one in the lanes that arrive.
+    how: (the first of the iterations to make, the one to end before, whether each has a matrix of its own).
+    """
+    to_balance, matrix_weights, _, end_position, _ = scheme
+    solid, masses, weight = body
+    forces, sites, further = laws
+    x, v, a, vector, found, _, _ = room
+    band, reach, (diagonal, _, _), spoilt = matrix
+    wanted, arrived, due, _ = progress
+    first, last, always = how
+    bad, taken = np.full(len(lane), -1), np.zeros(len(lane), dtype=np.bool_)
+    for iteration in range(first, last):
+        more = _wanted_yet(wanted, arrived)
+        if not more and not due.any():
+            break
+        fresh = more and (iteration == 0 or always)
+        combine(before[0], before[1], before[2], guess, to_balance[kind], x, v, a, lane)
+        difference(forces, weight, vector, lane)
+        if fresh and spoilt[0]:
+            band[:] = 0.0
+        elif fresh:
+            clear_band(band, reach, diagonal, lane)
+        balance(
+            (x, v, a),
+            solid,
+            drive,
+            further,
+            masses,
+            matrix_weights[kind],
+            expected,
+            (fresh, iteration == 0),
+            (vector, found, band, diagonal),
+            lane,
         )
-        system, motion = self.system, Motion(*self._motion)
-        F, rate, P = self._strain
-        for law in system.stresses:
-            P[law.elements] += law.stress(F, rate, self._drive)
-        return motion
-
-    def correction(
-        self, motion: Motion, fresh: bool, expected: np.ndarray | None
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """The correction [nodes, 2, lanes] at the motion last evaluated, and the lanes whose matrix is singular.
-
-        fresh: with a matrix of this motion, with the stress expected in place of the one found where given; otherwise
-        with the last. Raises SimulationError when all are singular.
-        """
-        system, residual = self.system, self._residual
-        masses, weight = system.mass.masses, system.weight
-        acceleration = self._motion[2][None]
-        _out_of_balance(acceleration, self._strain[2], self._solid, masses, weight, residual, self._lane)
-        for law in system.forces:
-            law.add_force(motion, self._drive, residual[0], -1.0)
-        residual[0, : system.held] = 0.0
+        copy_lanes(found, expected, due, lane)
+        due[:] = False
+        if not more:
+            break
+        bad[:] = -1
         if fresh:
-            self._factorise(motion, expected)
-        return self._factors.solve(residual)[0], self._factors.singular
-
-    def _factorise(self, motion: Motion, expected: np.ndarray | None) -> None:
-        system, c = self.system, self._c
-        elastic, viscous = system.solid.kept_moduli
-        _derived(
-            self._strain,
-            self._solid,
-            self._table,
-            self._contraction,
-            self._history,
-            self._none if expected is None else expected,
-            self._stress,
-            elastic,
-            viscous,
-            self._lane,
-        )
-        F, rate, _ = self._strain
-        for law in system.stresses:
-            law.add_moduli(F, rate, self._drive, elastic, viscous)
-        matrix = self._matrix
-        matrix.wipe()
-        _assembled(
-            elastic,
-            viscous,
-            system.mass.masses,
-            c.matrix_weights,
-            self._solid,
-            matrix.entries,
-            matrix.reach,
-            matrix.diagonal,
-            self._lane,
-        )
-        for law in system.forces:
-            law.linearise(motion, self._drive)
-            law.add_matrix(c.position, c.velocity, c.acceleration, matrix.entries, matrix.diagonal)
-        self._factors = matrix.factorise()
-
-    def second_piola(self) -> np.ndarray:
-        """Second Piola stress [Pa] at the motion last evaluated, in an array of its own."""
-        F, _, P = self._strain
-        out = np.empty_like(self._stress)
-        second_piola(F, P, out, self._lane)
-        return out
+            add_site_matrix(sites, band, diagonal, lane)
+            factorise(matrix, bad, lane)
+        solve(matrix, vector.reshape(1, *vector.shape), lane)
+        if fresh:
+            spoilt[0] = _is_spoilt(vector, len(reach), bad)
+        _judge(iteration, always, vector, len(reach), end_position[kind], bad, progress, taken, limits)
+        subtract_lanes(vector, guess, taken, lane)
+        if not fresh:
+            copy_lanes(found, expected, due, lane)
+            due[:] = False

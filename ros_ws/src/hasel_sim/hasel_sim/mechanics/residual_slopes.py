@@ -10,7 +10,7 @@ from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.solid import Solid
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.stress_law import StressLaw
-from hasel_sim.mechanics.system import Linearisation, System
+from hasel_sim.mechanics.system import Strained, System
 
 
 class ResidualSlope(Protocol):
@@ -20,7 +20,7 @@ class ResidualSlope(Protocol):
         self,
         motion: Motion,
         drive: DriveState,
-        line: Linearisation,
+        line: Strained,
         state: State,
         at: float | np.ndarray,
         out: np.ndarray,

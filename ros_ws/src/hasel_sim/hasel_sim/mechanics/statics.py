@@ -73,6 +73,8 @@ def _balanced(
 
 def equilibrium_slope(line: Linearisation, residual_slope: np.ndarray) -> np.ndarray:
     """Change of the equilibrium along parameters whose residual slopes are given, [columns, nodes, 2, 1]."""
+    if len(residual_slope) == 0:
+        return residual_slope
     factors, still = StaticFactors(line, _inertia_of_unheld_motions(line)), np.zeros_like(residual_slope)
     change = -factors.solve(residual_slope)
     for _ in range(2):

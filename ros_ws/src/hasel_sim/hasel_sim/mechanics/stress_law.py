@@ -105,7 +105,13 @@ class StressLaw:
         viscous: np.ndarray,
     ) -> None:
         """Add the derivatives by F and by its rate to elastic and viscous [elements, points, 4, 4, lanes]."""
-        names, moduli = self.effect.depends_on, {"deformation": elastic, "rate": viscous}
+        moduli = {"deformation": elastic, "rate": viscous}
+        for name, change in self.moduli(deformation, rate, drive).items():
+            moduli[name][self.elements] += change
+
+    def moduli(self, deformation: np.ndarray, rate: np.ndarray, drive: DriveState) -> dict[str, np.ndarray]:
+        """Derivatives by F and by its rate as far as it depends on them, [elements here, points, 4, 4, lanes]."""
+        names = self.effect.depends_on
         fields = {"deformation": deformation[self.elements], "rate": rate[self.elements]}
         shape = fields["deformation"].shape
         n, copies = shape[0] * shape[1], 8 * len(names)
@@ -120,9 +126,38 @@ class StressLaw:
                 batch[name][first + 1, :, component] -= _DIFFERENCE[name]
         P = self._evaluate(batch["deformation"], batch["rate"], drive, shape[1])
         P = P.reshape(len(names), 4, 2, *P.shape[1:])
+        out = {}
         for index, name in enumerate(names):
             change = (P[index, :, 0] - P[index, :, 1]) / (2 * _DIFFERENCE[name])
-            moduli[name][self.elements] += change.transpose(1, 2, 0, 3).reshape(*shape[:3], 4, shape[3])
+            out[name] = change.transpose(1, 2, 0, 3).reshape(*shape[:3], 4, shape[3])
+        return out
+
+    def respond(
+        self, deformation: np.ndarray, rate: np.ndarray, drive: DriveState, weights: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """First Piola stress [elements here, points, 4, lanes] and how it changes, in one call of the effect.
+
+        The change, [elements here, points, 4, 4, lanes], is by the gradient of the end-of-step acceleration, which
+        moves position and velocity by the first two of weights [3, lanes]; one-sided differences, which find a step as
+        well as central ones.
+        """
+        names = self.effect.depends_on
+        fields = {"deformation": deformation[self.elements], "rate": rate[self.elements]}
+        shape = fields["deformation"].shape
+        n, lanes, copies = shape[0] * shape[1], shape[3], 1 + 4 * len(names)
+        batch = {
+            name: np.repeat(field.reshape(1, n, 4, lanes), copies, axis=0) for name, field in fields.items()
+        }
+        for index, name in enumerate(names):
+            for component in range(4):
+                batch[name][1 + 4 * index + component, :, component] += _DIFFERENCE[name]
+        P = self._evaluate(batch["deformation"], batch["rate"], drive, shape[1])
+        by_motion = np.zeros((n, 4, 4, lanes))
+        for index, name in enumerate(names):
+            weight = weights[("deformation", "rate").index(name)] / _DIFFERENCE[name]
+            change = (P[1 + 4 * index : 5 + 4 * index] - P[0]) * weight
+            by_motion += change.transpose(1, 2, 0, 3)
+        return P[0].reshape(shape), by_motion.reshape(*shape[:3], 4, lanes)
 
     def contraction_slopes(self, deformation: np.ndarray, rate: np.ndarray, drive: DriveState) -> np.ndarray:
         """Derivative of the stress by the contraction of every muscle, [muscles, elements here, points, 4, lanes].

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from copy import copy
+from functools import cached_property
 
 import numpy as np
 
@@ -73,7 +74,7 @@ class System:
         out[: self.held] = 0.0
         return out
 
-    def _strain(self, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    def strain(self, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
         """Deformation gradient and its rate; kept for the last motion, which is asked for several times."""
         if self._last_strain is None or self._last_strain[0] is not motion:
             F, rate = self.solid.gradient(motion.position), self.solid.gradient(motion.velocity)
@@ -84,7 +85,7 @@ class System:
         self, motion: Motion, drive: DriveState, memory: Memory
     ) -> tuple[np.ndarray, np.ndarray]:
         """Deformation gradient and first Piola stress; kept for the last motion likewise."""
-        F, rate = self._strain(motion)
+        F, rate = self.strain(motion)
         last = self._last_stress
         if last is None or last[0] is not motion or last[1] is not drive or last[2] is not memory:
             P = self.solid.stress(F, rate, drive.contraction, memory.history, memory.step)
@@ -104,13 +105,13 @@ class System:
         self, motion: Motion, drive: DriveState, memory: Memory, load_factor: float = 1.0
     ) -> "Linearisation":
         """All derivatives of the residual by the motion, at this motion; valid until the next call."""
-        F, rate = self._strain(motion)
+        F, rate = self.strain(motion)
         elastic, viscous = self.solid.moduli(F, rate, drive.contraction, memory.history, memory.step)
         for law in self.stresses:
             law.add_moduli(F, rate, drive, elastic, viscous)
         for law in self.forces:
             law.linearise(motion, drive)
-        return Linearisation(self, elastic, viscous, F, rate, load_factor)
+        return Linearisation(self, motion, elastic, viscous, load_factor)
 
     def held_to_zero(self, columns: np.ndarray) -> np.ndarray:
         """Set the held nodes of [columns, nodes, 2, lanes] to zero in place, and return it."""
@@ -118,20 +119,54 @@ class System:
         return columns
 
 
-class Linearisation:
+class Strained:
+    """A `System` at one motion: F and its rate [elements, points, 4, lanes], found when asked for."""
+
+    def __init__(self, system: System, motion: Motion) -> None:
+        self.system, self.motion = system, motion
+
+    @cached_property
+    def F(self) -> np.ndarray:
+        """Deformation gradient [1]."""
+        return self.system.strain(self.motion)[0]
+
+    @cached_property
+    def rate(self) -> np.ndarray:
+        """Its rate [1/s]."""
+        return self.system.strain(self.motion)[1]
+
+    def by_contraction(self, drive: DriveState) -> np.ndarray:
+        """Derivative of the residual by the contraction of every muscle, [muscles, nodes, 2, lanes]."""
+        out = self.system.solid.contraction_force(self.F)
+        self.add_laws_by_contraction(drive, out)
+        return self.system.held_to_zero(out)
+
+    def add_laws_by_contraction(self, drive: DriveState, out: np.ndarray) -> None:
+        """Add what effects have of it to out [muscles, nodes, 2, lanes]."""
+        for law in self.system.stresses:
+            if law.concerns_muscles:
+                for muscle, slope in enumerate(law.contraction_slopes(self.F, self.rate, drive)):
+                    P = np.zeros_like(self.F)
+                    P[law.elements] = slope
+                    self.system.solid.add_force(P, out[muscle])
+        for law in self.system.forces:
+            law.add_contraction(out)
+
+
+class Linearisation(Strained):
     """Derivatives of a `System`'s residual at one motion: as a band matrix, and along given directions."""
 
     def __init__(
         self,
         system: System,
+        motion: Motion,
         elastic: np.ndarray,
         viscous: np.ndarray,
-        F: np.ndarray,
-        rate: np.ndarray,
         load_factor: float = 1.0,
     ) -> None:
-        self.system, self.elastic, self.viscous, self.F, self.rate = system, elastic, viscous, F, rate
-        self._load_factor = load_factor
+        super().__init__(system, motion)
+        self.F, self.rate = system.strain(motion)
+        self.elastic, self.viscous, self._load_factor = elastic, viscous, load_factor
 
     def matrix(
         self,
@@ -164,15 +199,6 @@ class Linearisation:
                 share * position, share * velocity, share * acceleration, out.entries, out.diagonal
             )
         return out
-
-    def with_initial_stress(self, found: np.ndarray, expected: np.ndarray) -> "Linearisation":
-        """The same with the geometric stiffness of another second Piola stress, both [elements, points, 3, lanes].
-
-        A guessed motion stretches thin parts a little, and the compression this brings would make the matrix
-        indefinite; the stress of the last balance is the better guess (Magisano, Leonetti, Garcea 2017).
-        """
-        compiled.exchange_initial_stress(self.elastic, found, expected, lane_tuple(self.system.lanes))
-        return self
 
     def along(
         self,
@@ -220,17 +246,4 @@ class Linearisation:
             compiled.scatter_directions(transposed, none, *places, weights[None], out[row : row + 1], lane)
         for law in self.system.forces:
             law.add_pulled_back(self._load_factor * weights, out)
-        return self.system.held_to_zero(out)
-
-    def by_contraction(self, drive: DriveState) -> np.ndarray:
-        """Derivative of the residual by the contraction of every muscle, [muscles, nodes, 2, lanes]."""
-        out = self.system.solid.contraction_force(self.F)
-        for law in self.system.stresses:
-            if law.concerns_muscles:
-                for muscle, slope in enumerate(law.contraction_slopes(self.F, self.rate, drive)):
-                    P = np.zeros_like(self.F)
-                    P[law.elements] = slope
-                    self.system.solid.add_force(P, out[muscle])
-        for law in self.system.forces:
-            law.add_contraction(out)
         return self.system.held_to_zero(out)

@@ -54,15 +54,26 @@ class Mesh:
 
         Raises ValueError when the point lies outside the mesh.
         """
-        best = None
-        for element in self.elements:
-            corners = self.nodes[element]
-            if np.any(position < corners.min(axis=0) - 1e-9) or np.any(position > corners.max(axis=0) + 1e-9):
-                continue
+        if position not in self._points:
+            self._points[position] = self._found(position)
+        return self._points[position]
+
+    @cached_property
+    def _points(self) -> dict:
+        """Points that were asked for before."""
+        return {}
+
+    def _found(self, position: tuple[float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        best, every = None, self.nodes[self.elements]
+        near = np.all((position >= every.min(axis=1) - 1e-9) & (position <= every.max(axis=1) + 1e-9), axis=1)
+        for element, corners in zip(self.elements[near], every[near], strict=True):
             local = np.zeros(2)
             for _ in range(20):
                 value, slope = shape_functions(*local)
-                local += np.linalg.solve(corners.T @ slope, np.asarray(position) - value @ corners)
+                step = np.linalg.solve(corners.T @ slope, np.asarray(position) - value @ corners)
+                local += step
+                if np.abs(step).max() < 1e-15:
+                    break
             if np.abs(local).max() < 1 + 1e-6 and (best is None or np.abs(local).max() < best[0]):
                 value, slope = shape_functions(*local)
                 best = np.abs(local).max(), element, value, slope @ np.linalg.inv(corners.T @ slope)

@@ -5,6 +5,8 @@ With 2 x 2 quadrature it bends and keeps its volume without locking, and its one
 by neighbours (Zienkiewicz, Taylor, Zhu: The Finite Element Method, 7th ed., sections 6 and 10).
 """
 
+from functools import lru_cache
+
 import numpy as np
 
 _CORNER = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
@@ -40,16 +42,29 @@ def square_quadrature(order: int) -> tuple[np.ndarray, np.ndarray]:
     return points, np.array([wx * wy for wy in weight for wx in weight])
 
 
+@lru_cache(maxsize=8)
+def _rule(order: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Shape functions [points, 8], their slopes [points, 8, 2] and the weights [points] at the Gauss points."""
+    points, weights = square_quadrature(order)
+    values, slopes = zip(*(shape_functions(x, y) for x, y in points), strict=True)
+    return np.array(values), np.array(slopes), weights
+
+
 def reference_gradients(coordinates: np.ndarray, order: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Shape functions and their gradients at the Gauss points of every element.
 
     coordinates: node positions per element [m], shape [elements, 8, 2].
     Returns values [points, 8], gradients [1/m] [elements, points, 8, 2] and areas [m^2] [elements, points].
     """
-    points, weights = square_quadrature(order)
-    values, slopes = zip(*(shape_functions(x, y) for x, y in points), strict=True)
-    slopes = np.array(slopes)
-    jacobian = np.einsum("gad,eac->egcd", slopes, coordinates)
+    values, gradients, areas = _gradients(np.asarray(coordinates, dtype=float).tobytes(), order)
+    return values.copy(), gradients.copy(), areas.copy()
+
+
+@lru_cache(maxsize=64)
+def _gradients(coordinates: bytes, order: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The same; a fit asks for those of one mesh again and again."""
+    values, slopes, weights = _rule(order)
+    jacobian = np.einsum("gad,eac->egcd", slopes, np.frombuffer(coordinates).reshape(-1, 8, 2))
     determinant = np.linalg.det(jacobian)
     gradients = np.einsum("gad,egdc->egac", slopes, np.linalg.inv(jacobian))
-    return np.array(values), gradients, determinant * weights
+    return values, gradients, determinant * weights

@@ -39,4 +39,5 @@ class AddedMass(ForceEffect):
     def force(self, at: SiteState, p: SimpleNamespace) -> np.ndarray:
         """Force per skin length [N/m^2], [n, 2]."""
         normal = at.normal
-        return -p.added_mass * np.sum(at.acceleration * normal, axis=1)[:, None] * normal
+        across = at.acceleration[:, 0] * normal[:, 0] + at.acceleration[:, 1] * normal[:, 1]
+        return -p.added_mass * across[:, None] * normal

@@ -45,5 +45,5 @@ class QuadraticDrag(ForceEffect):
     def force(self, at: SiteState, p: SimpleNamespace) -> np.ndarray:
         """Force per skin length [N/m^2], [n, 2]."""
         normal = at.normal
-        speed = np.sum(at.velocity * normal, axis=1)
+        speed = at.velocity[:, 0] * normal[:, 0] + at.velocity[:, 1] * normal[:, 1]
         return (-0.5 * FLUID_DENSITY * p.coefficient * np.abs(speed) * speed)[:, None] * normal

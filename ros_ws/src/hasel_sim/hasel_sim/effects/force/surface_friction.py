@@ -47,5 +47,5 @@ class SurfaceFriction(ForceEffect):
 
     def force(self, at: SiteState, p: SimpleNamespace) -> np.ndarray:
         """Force per mass [N/kg], [n, 2]."""
-        speed = np.sqrt(np.sum(at.velocity**2, axis=1, keepdims=True) + SMOOTHING_VELOCITY**2)
-        return -p.coefficient * GRAVITY * at.velocity / speed
+        speed = np.sqrt(at.velocity[:, 0] ** 2 + at.velocity[:, 1] ** 2 + SMOOTHING_VELOCITY**2)
+        return -p.coefficient * GRAVITY * at.velocity / speed[:, None]

@@ -1,0 +1,192 @@
+"""Forces out of balance and their matrix, in one compiled pass over the elements.
+
+What `compiled` does in one loop per quantity, with the same laws, coefficients and shapes; nothing but nodal forces,
+the band and the stress leaves the pass.
+"""
+
+import numpy as np
+from numba import njit
+
+from hasel_sim.mechanics.compiled import COEFFICIENTS, _thickness
+from hasel_sim.mechanics.simd import add, four, load, logarithm_near_one, square_root, store, three, zero
+from hasel_sim.mechanics.tangent import add_elastic_rows, viscous_rows
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def balance(motion, solid, drive, added, masses, weights, expected, wanted, out, lane):
+    """Add inertia and internal force to the residual; where wanted, their matrix to the band.
+
+    motion: position, velocity, acceleration [nodes, 2, lanes]; solid: elements, gradients, areas, stretch, muscle of
+    each element, whether in plane stress; drive: coefficients per element, contraction, history of the branches (see
+    `compiled.first_piola`); added: index of every element among those with further stress or -1 [elements], first
+    Piola stress of these [n, points, 4, lanes] and its derivative by the gradient of the end-of-step acceleration
+    [n, points, 4, 4, lanes]; weights [3, lanes] of stiffness, damping and mass; wanted: (the matrix, with the geometric
+    stiffness of the second Piola stress `expected` [elements, points, 3, lanes] in place of the one found); out:
+    residual [nodes, 2, lanes], second Piola stress found, band, its diagonal.
+    """
+    position, velocity, acceleration = motion
+    elements, gradients, areas, stretch, muscle, plane_stress = solid
+    table, contraction, history = drive
+    fresh, guessed = wanted
+    further, further_stress, further_matrix = added
+    residual, stress, band, diagonal = out
+    lanes, points, width = len(lane), areas.shape[1], band.shape[1]
+    none = zero(lane)
+    x, v, force = np.empty(16 * lanes), np.empty(16 * lanes), np.empty(16 * lanes)
+    half = np.empty(64 * points * lanes)
+    by_position, by_velocity, by_acceleration = three(weights, 0, lane)
+    for e in range(elements.shape[0]):
+        own = COEFFICIENTS * lanes * e
+        mu, lam, muv, lamv = four(table, own, lane)
+        mub, lamb, w = three(table, own + 4 * lanes, lane)
+        rest = 1.0 - load(contraction, muscle[e] * lanes, lane)
+        lam_f, lam_rate = by_velocity * lamv + by_position * lamb, by_position * lamv
+        mu_f, mu_rate = by_velocity * muv + by_position * mub, by_position * muv
+        for a in range(8):
+            at, to = 2 * lanes * elements[e, a], 2 * lanes * a
+            store(x, to, load(position, at, lane))
+            store(x, to + lanes, load(position, at + lanes, lane))
+            store(v, to, load(velocity, at, lane))
+            store(v, to + lanes, load(velocity, at + lanes, lane))
+            store(force, to, none)
+            store(force, to + lanes, none)
+        for b in range(8):
+            at = 2 * lanes * elements[e, b]
+            ax, ay = load(acceleration, at, lane), load(acceleration, at + lanes, lane)
+            for a in range(8):
+                mass = load(masses, (64 * e + 8 * b + a) * lanes, lane)
+                add(force, 2 * a * lanes, mass * ax)
+                add(force, (2 * a + 1) * lanes, mass * ay)
+        for g in range(points):
+            point = e * points + g
+            along, area = load(stretch, point * lanes, lane), areas[e, g]
+            a, b, c, d = none, none, none, none
+            ra, rb, rc, rd = none, none, none, none
+            for n in range(8):
+                dx, dy = gradients[e, g, n, 0], gradients[e, g, n, 1]
+                nx, ny = load(x, 2 * n * lanes, lane), load(x, (2 * n + 1) * lanes, lane)
+                a, b, c, d = a + nx * dx, b + nx * dy, c + ny * dx, d + ny * dy
+                nx, ny = load(v, 2 * n * lanes, lane), load(v, (2 * n + 1) * lanes, lane)
+                ra, rb, rc, rd = ra + nx * dx, rb + nx * dy, rc + ny * dx, rd + ny * dy
+            shrink = 1.0 / along
+            a, c, ra, rc = a * shrink, c * shrink, ra * shrink, rc * shrink
+            J = a * d - b * c
+            inverse = 1.0 / J
+            volume, bulk = J, lam
+            if plane_stress:
+                f = _thickness(mu, lam, J, lane)
+                volume, bulk = J * f, lam * 2.0 * mu * f * f / (2.0 * mu * f * f + lam)
+            pull = mu - lam * logarithm_near_one(volume, lane)
+            q = (0.0 - pull) * inverse
+            exx, eyy, exy = a * ra + c * rc, b * rb + d * rd, 0.5 * (a * rb + b * ra + c * rd + d * rc)
+            gxx, gyy = 0.5 * (a * a + c * c - 1.0), 0.5 * (b * b + d * d - 1.0)
+            hxx, hyy, hxy = three(history, 3 * lanes * point, lane)
+            trace = lamv * (exx + eyy) + lamb * (gxx + gyy)
+            sxx = trace + 2.0 * (muv * exx + mub * gxx) + hxx
+            syy = trace + 2.0 * (muv * eyy + mub * gyy) + hyy
+            sxy = 2.0 * muv * exy + mub * (a * b + c * d) + hxy
+            p0, p1 = mu * a + q * d + a * sxx + b * sxy, mu * b - q * c + a * sxy + b * syy
+            p2, p3 = mu * c - q * b + c * sxx + d * sxy, mu * d + q * a + c * sxy + d * syy
+            tension, slope = none, none
+            if muscle[e] != 0:
+                long = 1.0 / square_root(a * a + c * c)
+                tension, slope = w * (1.0 - rest * long), w * rest * long * long * long
+                p0, p2 = p0 + tension * a, p2 + tension * c
+            if further[e] >= 0:
+                s0, s1, s2, s3 = four(further_stress, 4 * lanes * (further[e] * points + g), lane)
+                p0, p1, p2, p3 = p0 + s0, p1 + s1, p2 + s2, p3 + s3
+            txx, tyy = (d * p0 - b * p2) * inverse, (a * p3 - c * p1) * inverse
+            txy = 0.5 * (d * p1 - b * p3 + a * p2 - c * p0) * inverse
+            at = 3 * lanes * point
+            store(stress, at, txx)
+            store(stress, at + lanes, tyy)
+            store(stress, at + 2 * lanes, txy)
+            wide = area * along
+            p0, p1, p2, p3 = area * p0, wide * p1, area * p2, wide * p3
+            for n in range(8):
+                dx, dy = gradients[e, g, n, 0], gradients[e, g, n, 1]
+                add(force, 2 * n * lanes, p0 * dx + p1 * dy)
+                add(force, (2 * n + 1) * lanes, p2 * dx + p3 * dy)
+            if not fresh:
+                continue
+            kxx, kyy, kxy = txx, tyy, txy
+            if guessed:
+                kxx, kyy, kxy = three(expected, at, lane)
+            kxx = by_position * (kxx - txx + mu + sxx + tension)
+            kyy = by_position * (kyy - tyy + mu + syy)
+            kxy = by_position * (kxy - txy + sxy)
+            rows = viscous_rows((a, b, c, d), (ra, rb, rc, rd), (lam_f, mu_f), (lam_rate, mu_rate), lane)
+            (m00, m01, m02, m03), (m10, m11, m12, m13), (m20, m21, m22, m23), (m30, m31, m32, m33) = (
+                add_elastic_rows(
+                    rows,
+                    (a, b, c, d),
+                    inverse,
+                    by_position * bulk,
+                    by_position * pull,
+                    (kxx, kyy, kxy),
+                    by_position * slope,
+                    lane,
+                )
+            )
+            if further[e] >= 0:
+                to = 16 * lanes * (further[e] * points + g)
+                s0, s1, s2, s3 = four(further_matrix, to, lane)
+                m00, m01, m02, m03 = m00 + s0, m01 + s1, m02 + s2, m03 + s3
+                s0, s1, s2, s3 = four(further_matrix, to + 4 * lanes, lane)
+                m10, m11, m12, m13 = m10 + s0, m11 + s1, m12 + s2, m13 + s3
+                s0, s1, s2, s3 = four(further_matrix, to + 8 * lanes, lane)
+                m20, m21, m22, m23 = m20 + s0, m21 + s1, m22 + s2, m23 + s3
+                s0, s1, s2, s3 = four(further_matrix, to + 12 * lanes, lane)
+                m30, m31, m32, m33 = m30 + s0, m31 + s1, m32 + s2, m33 + s3
+            narrow = area * shrink
+            m00, m02, m20, m22 = narrow * m00, narrow * m02, narrow * m20, narrow * m22
+            m01, m03, m21, m23 = area * m01, area * m03, area * m21, area * m23
+            m10, m12, m30, m32 = area * m10, area * m12, area * m30, area * m32
+            m11, m13, m31, m33 = wide * m11, wide * m13, wide * m31, wide * m33
+            for n in range(8):
+                dx, dy = gradients[e, g, n, 0], gradients[e, g, n, 1]
+                to = 8 * (n * points + g) * lanes
+                store(half, to, m00 * dx + m01 * dy)
+                store(half, to + lanes, m10 * dx + m11 * dy)
+                store(half, to + 2 * lanes, m20 * dx + m21 * dy)
+                store(half, to + 3 * lanes, m30 * dx + m31 * dy)
+                store(half, to + 4 * lanes, m02 * dx + m03 * dy)
+                store(half, to + 5 * lanes, m12 * dx + m13 * dy)
+                store(half, to + 6 * lanes, m22 * dx + m23 * dy)
+                store(half, to + 7 * lanes, m32 * dx + m33 * dy)
+        for n in range(8):
+            at = 2 * lanes * elements[e, n]
+            add(residual, at, load(force, 2 * n * lanes, lane))
+            add(residual, at + lanes, load(force, (2 * n + 1) * lanes, lane))
+        if not fresh:
+            continue
+        for b in range(8):
+            for a in range(0, 8, 2):
+                at = (64 * e + 8 * b + a) * lanes
+                xx, zz = (
+                    by_acceleration * load(masses, at, lane),
+                    by_acceleration * load(masses, at + lanes, lane),
+                )
+                xy, yx, yy = none, none, xx
+                zw, wz, ww = none, none, zz
+                for g in range(points):
+                    to = 8 * (b * points + g) * lanes
+                    h0, h1, h2, h3 = four(half, to, lane)
+                    i0, i1, i2, i3 = four(half, to + 4 * lanes, lane)
+                    dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
+                    xx, xy = xx + dx * h0 + dy * h1, xy + dx * i0 + dy * i1
+                    yx, yy = yx + dx * h2 + dy * h3, yy + dx * i2 + dy * i3
+                    dx, dy = gradients[e, g, a + 1, 0], gradients[e, g, a + 1, 1]
+                    zz, zw = zz + dx * h0 + dy * h1, zw + dx * i0 + dy * i1
+                    wz, ww = wz + dx * h2 + dy * h3, ww + dx * i2 + dy * i3
+                line, to = (width - 1) * lanes, diagonal + 2 * elements[e, b]
+                at = 2 * elements[e, a] * line + to * lanes
+                add(band, at, xx)
+                add(band, at + lanes, xy)
+                add(band, at + line, yx)
+                add(band, at + line + lanes, yy)
+                at = 2 * elements[e, a + 1] * line + to * lanes
+                add(band, at, zz)
+                add(band, at + lanes, zw)
+                add(band, at + line, wz)
+                add(band, at + line + lanes, ww)

@@ -1,0 +1,165 @@
+"""Steps of the bodies in all lanes, one after the other in compiled code.
+
+The tuples that the functions share:
+`body`: solid as in `balance`, element masses, weight.
+`matrix`: band, reach, (diagonal, half bandwidth, held unknowns), whether factors that are no numbers lie in it [1].
+`laws`: what effects add, (nodal forces, sites of `law_terms`, further stress of `balance`).
+`scheme`: weights of every kind of step, first axis: to the balance, of the matrix, to the end, of the acceleration in
+the end position, length.
+`memory`: internal branches: stresses, C : E, what a step leaves and adds up to the balance and up to its end, moduli.
+`progress`: which lanes are to make a step, which made it, whose stress is still due, their last correction [lanes].
+`room`: arrays to work in.
+"""
+
+from numba import njit
+
+from hasel_sim.mechanics.compiled import combine, deformation, green_stress
+from hasel_sim.mechanics.lane_loops import chosen_of, copy_lanes
+from hasel_sim.mechanics.newton import newton
+from hasel_sim.mechanics.simd import load, store, zero
+
+PREDICT, BALANCE, COMMIT = 1, 2, 4
+MOST_WITH_ONE_MATRIX, MOST_ITERATIONS = 5, 15
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def _history(memory, kind, out, lane):
+    """The part of the branches' stress at the balance that no new strain changes, [elements, points, 3, lanes]."""
+    stresses, green, left, gain, _, _, _ = memory
+    lanes, branches = len(lane), left.shape[1]
+    for at in range(0, out.size, lanes):
+        total = zero(lane)
+        for b in range(branches):
+            factor = (kind * branches + b) * lanes
+            total = total + load(left, factor, lane) * load(stresses, b * out.size + at, lane)
+            total = total - load(gain, factor, lane) * load(green, at, lane)
+        store(out, at, total)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def _advance_branches(memory, kind, new_green, chosen, lane):
+    """Bring the branches to the end of a step, in the lanes chosen."""
+    stresses, green, _, _, left, gain, _ = memory
+    lanes, branches = len(lane), left.shape[1]
+    for at in range(0, green.size, lanes):
+        more = load(new_green, at, lane) - load(green, at, lane)
+        for b in range(branches):
+            factor, place = (kind * branches + b) * lanes, b * green.size + at
+            old = load(stresses, place, lane)
+            new = load(left, factor, lane) * old + load(gain, factor, lane) * more
+            store(stresses, place, chosen_of(new, old, chosen, lane))
+    copy_lanes(new_green, green, chosen, lane)
+
+
+@njit(inline="always")
+def _predict(moving, kind, step, guess, lane):
+    """Extrapolate the acceleration into `guess`."""
+    _, _, acceleration, jerk = moving
+    lanes = len(lane)
+    for at in range(0, guess.size, lanes):
+        value = load(acceleration, at, lane) + load(step, kind * lanes, lane) * load(jerk, at, lane)
+        store(guess, at, value)
+
+
+@njit(inline="always")
+def _commit(moving, kind, scheme, solid, memory, guess, room, chosen, lane):
+    """Go to the end of a step in the lanes chosen [lanes], which know its acceleration; the others stay."""
+    position, velocity, acceleration, jerk = moving
+    _, _, to_end, _, step = scheme
+    x, v, a, _, _, strain, green = room
+    combine(position, velocity, acceleration, guess, to_end[kind], x, v, a, lane)
+    lanes = len(lane)
+    for at in range(0, guess.size, lanes):
+        change = load(guess, at, lane) - load(acceleration, at, lane)
+        new = change / load(step, kind * lanes, lane)
+        store(jerk, at, chosen_of(new, load(jerk, at, lane), chosen, lane))
+    copy_lanes(x, position, chosen, lane)
+    copy_lanes(v, velocity, chosen, lane)
+    copy_lanes(guess, acceleration, chosen, lane)
+    if memory[2].shape[1] > 0:
+        elements, gradients, _, stretch, _, _ = solid
+        shear, lame = memory[6]
+        deformation(position, elements, gradients, stretch, strain, lane)
+        green_stress(strain, shear, lame, green, lane)
+        _advance_branches(memory, kind, green, chosen, lane)
+
+
+@njit(inline="always")
+def _note(position, seen, boundary, lane):
+    """Keep what is seen at a boundary between steps: at the markers, and all positions where there is room."""
+    nodes, local, shapes = seen
+    lanes, to = len(lane), boundary * nodes.size * 2 * len(lane)
+    for m in range(nodes.shape[0]):
+        for n in range(nodes.shape[1]):
+            at = 2 * lanes * nodes[m, n]
+            store(local, to, load(position, at, lane))
+            store(local, to + lanes, load(position, at + lanes, lane))
+            to += 2 * lanes
+    if shapes.shape[0] > 0:
+        for at in range(0, position.size, lanes):
+            store(shapes, boundary * position.size + at, load(position, at, lane))
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def march(
+    parts,
+    steps,
+    how,
+    moving,
+    plan,
+    body,
+    matrix,
+    laws,
+    memory,
+    history,
+    expected,
+    guess,
+    room,
+    limits,
+    seen,
+    progress,
+    lane,
+):
+    """Make steps from the first until before the last of `steps`, or to one that fails in a lane: this step comes back.
+
+    parts: which of PREDICT, BALANCE and COMMIT to do; how: see `newton`. moving: position, velocity, acceleration and
+    its rate [nodes, 2, lanes]. plan: the kind of every step, `scheme`, the solid's coefficients for every kind, the
+    contraction [steps, 1 + muscles, lanes], how many steps each lane makes [lanes]. Compiled as one function, which
+    takes a third of the time that many take.
+    """
+    kinds, scheme, tables, contraction, ends = plan
+    wanted, arrived, due, _ = progress
+    state = moving[0], moving[1], moving[2]
+    for step in range(steps[0], steps[1]):
+        kind = kinds[step]
+        if parts & PREDICT:
+            for k in range(len(ends)):
+                wanted[k], arrived[k], due[k] = step < ends[k], False, False
+            _predict(moving, kind, scheme[4], guess, lane)
+            if memory[2].shape[1] > 0:
+                _history(memory, kind, history, lane)
+        if parts & BALANCE:
+            drive = tables[min(kind, len(tables) - 1)], contraction[step], history
+            newton(
+                state,
+                guess,
+                kind,
+                scheme,
+                body,
+                matrix,
+                drive,
+                laws,
+                expected,
+                room,
+                limits,
+                progress,
+                how,
+                lane,
+            )
+        if parts & COMMIT:
+            _commit(moving, kind, scheme, body[0], memory, guess, room, arrived, lane)
+            _note(moving[0], seen, step + 1, lane)
+            for k in range(len(ends)):
+                if step < ends[k] and not arrived[k]:
+                    return step
+    return steps[1]

@@ -1,0 +1,191 @@
+"""Bodies that step together: what the compiled loops of `march` work on, and the calls of effects between them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from operator import is_not
+
+import numpy as np
+
+from hasel_sim.mechanics.banded import BandMatrix
+from hasel_sim.mechanics.generalised_alpha import StepCoefficients
+from hasel_sim.mechanics.law_table import LawTable
+from hasel_sim.mechanics.march import (
+    BALANCE,
+    COMMIT,
+    MOST_ITERATIONS,
+    MOST_WITH_ONE_MATRIX,
+    PREDICT,
+    march,
+)
+from hasel_sim.mechanics.motion import DriveState
+from hasel_sim.mechanics.part import balance_motion
+from hasel_sim.mechanics.seen import Seen
+from hasel_sim.mechanics.simd import lane_tuple
+from hasel_sim.mechanics.state import State
+from hasel_sim.mechanics.system import System
+
+
+@dataclass(frozen=True)
+class Drives:
+    """The drive at the balance of every step: voltage and contraction [steps, muscles, lanes], time [steps, lanes]."""
+
+    voltage: np.ndarray
+    contraction: np.ndarray
+    time: np.ndarray
+
+    def at(self, step: int) -> DriveState:
+        """That of one step."""
+        return DriveState(self.voltage[step], self.contraction[step], self.time[step])
+
+
+class Marcher:
+    """Steps a `System`; each lane takes the steps, and ends with the numbers, that it would alone.
+
+    tolerance: largest error of a nodal position [m] left by Newton's method. A correction made with a fresh matrix
+    leaves about its square over the length of an element.
+    """
+
+    def __init__(self, system: System, tolerance: float) -> None:
+        self.system, self.tolerance, lanes = system, tolerance, system.lanes
+        nodal, points = (*system.nodes.shape, lanes), system.solid.areas.shape
+        self._lane = lane_tuple(lanes)
+        length = float(np.ptp(system.nodes[system.mesh.elements], axis=1).max(axis=1).min())
+        self._limits = tolerance, tolerance * length
+        solid, matrix = system.solid, BandMatrix(system.mesh.reach, 2 * system.held, lanes)
+        self._body = (*solid.places, solid.muscle, solid.plane_stress), system.mass.masses, system.weight
+        shape = matrix.diagonal, matrix.half_bandwidth, matrix.held
+        self._matrix = matrix.entries, matrix.reach, shape, np.zeros(1, dtype=bool)
+        self._laws = LawTable(system)
+        self._guess, self._history = np.empty(nodal), np.zeros((*points, 3, lanes))
+        self._room = (
+            *(np.empty(nodal) for _ in range(3)),
+            np.zeros((nodal[0] + matrix.half_bandwidth + 4, 2, lanes)),
+            *(np.empty((*points, n, lanes)) for n in (3, 4, 3)),
+        )
+        self._wanted, self.arrived, self._due = (np.zeros(lanes, dtype=bool) for _ in range(3))
+        self.coefficients: Sequence[StepCoefficients] = ()
+        self._progress = self._wanted, self.arrived, self._due, np.zeros(lanes)
+
+    def begin(self, state: State, stress: np.ndarray, jerk: np.ndarray) -> None:
+        """Take up bodies in a state, which is moved in place from now on.
+
+        stress: second Piola stress [Pa] at the last balance [elements, points, 3, lanes]; jerk: rate of the
+        acceleration [m/s^3].
+        """
+        self.state, self.stress, self.jerk = state, stress, jerk
+
+    def plan(
+        self,
+        drives: Drives,
+        kinds: np.ndarray,
+        coefficients: Sequence[StepCoefficients],
+        ends: np.ndarray,
+        seen: Seen,
+    ) -> None:
+        """What to do from here.
+
+        kinds: of every step [steps], numbers among the coefficients; ends: how many steps each lane makes [lanes].
+        """
+        self.drives, self.ends = drives, ends
+        self._seen, self._kinds = (seen.nodes, seen.local, seen.shapes), kinds
+        if len(coefficients) != len(self.coefficients) or any(map(is_not, coefficients, self.coefficients)):
+            self.coefficients = coefficients
+            self._tabulate()
+        solid, branches = self.system.solid, (self.state.branch, self.state.green)
+        none = np.zeros((0, 1, 1, 3, self.system.lanes)), np.zeros((1, 1, 3, self.system.lanes))
+        stresses = branches if len(solid.branches) else none
+        self._memory = *stresses, *self._factors, (solid.shear, solid.linear_lame)
+        rest = np.zeros((len(kinds), 1, self.system.lanes))
+        contraction = np.concatenate([rest, drives.contraction], axis=1)
+        self._plan = kinds, self._scheme, self._tables, contraction, ends
+
+    def _tabulate(self) -> None:
+        """What depends on the kind of a step."""
+        each, solid, lanes = self.coefficients, self.system.solid, self.system.lanes
+
+        def table(of_one) -> np.ndarray:
+            return np.stack([np.broadcast_to(of_one(c), (*np.shape(of_one(c))[:-1], lanes)) for c in each])
+
+        self._scheme = (
+            table(lambda c: c.to_balance),
+            table(lambda c: c.matrix_weights),
+            table(lambda c: c.to_end),
+            table(lambda c: np.atleast_1d(c.end_position)),
+            table(lambda c: np.atleast_1d(c.step)),
+        )
+        self._factors: tuple[np.ndarray, ...]
+        if len(solid.branches) == 0:
+            self._factors, self._tables = (np.zeros((1, 0, lanes)),) * 4, solid.table(0.0)[None]
+            return
+        factors = [solid.branches.factors(c.at) + solid.branches.factors(c.step) for c in each]
+        self._factors = tuple(np.stack(f) for f in zip(*factors, strict=True))
+        self._tables = np.stack([solid.table(c.at) for c in each])
+
+    def advance(self, first: int, last: int) -> int:
+        """Make steps from the first until before the last, or to one that fails in a lane: this step comes back.
+
+        `arrived` tells which lanes made it; what is seen after it is noted all the same.
+        """
+        if not self._laws:
+            return self._march(PREDICT | BALANCE | COMMIT, (first, last))
+        for step in range(first, last):
+            self._march(PREDICT, (step, step + 1))
+            self._balance(step, one_matrix=True)
+            if self._march(COMMIT, (step, step + 1)) == step:
+                return step
+        return last
+
+    def try_again(self, step: int) -> bool:
+        """Make a step that failed, with a matrix for every correction, from the extrapolated acceleration and then from
+        the last; whether all lanes have made it.
+        """
+        for extrapolated in (True, False):
+            self._march(PREDICT, (step, step + 1))
+            if not extrapolated:
+                self._guess[:] = self.state.acceleration
+            self._balance(step, one_matrix=False)
+            if self._march(COMMIT, (step, step + 1)) != step:
+                return True
+        return False
+
+    def coefficients_of(self, step: int) -> StepCoefficients:
+        """Those of one step."""
+        return self.coefficients[self._kinds[step]]
+
+    def _march(self, parts: int, steps: tuple[int, int], how: tuple[int, int, bool] | None = None) -> int:
+        return march(
+            parts,
+            steps,
+            how or (0, MOST_WITH_ONE_MATRIX + 1, False),
+            (self.state.position, self.state.velocity, self.state.acceleration, self.jerk),
+            self._plan,
+            self._body,
+            self._matrix,
+            self._laws.terms,
+            self._memory,
+            self._history,
+            self.stress,
+            self._guess,
+            self._room,
+            self._limits,
+            self._seen,
+            self._progress,
+            self._lane,
+        )
+
+    def _balance(self, step: int, one_matrix: bool) -> None:
+        """Find the acceleration at the end of a step; effects are called before every correction."""
+        most = MOST_WITH_ONE_MATRIX if one_matrix else MOST_ITERATIONS
+        if not self._laws:
+            self._march(BALANCE, (step, step + 1), (0, most + 1, not one_matrix))
+            return
+        kind, drive = self._kinds[step], self.drives.at(step)
+        for iteration in range(most + 1):
+            more = bool((self._wanted & ~self.arrived).any())
+            if not more and not self._due.any():
+                break
+            fresh = more and (iteration == 0 or not one_matrix)
+            weights = self._scheme[1][kind] if fresh else None
+            motion = balance_motion(self.state, self._guess, self._scheme[0][kind])
+            self._laws.call(motion, drive, weights)
+            self._march(BALANCE, (step, step + 1), (iteration, iteration + 1, not one_matrix))
