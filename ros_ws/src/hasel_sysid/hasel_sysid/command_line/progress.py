@@ -2,38 +2,59 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from datetime import timedelta
 
 from rich.console import Console
 from rich.progress import (
     BarColumn,
     Progress,
+    ProgressColumn,
+    Task,
     TaskProgressColumn,
     TextColumn,
     TimeElapsedColumn,
-    TimeRemainingColumn,
 )
+from rich.text import Text
 
 Show = Callable[[str, float], None]
 """Called with a line of text and the share done, 0 to 1."""
 
 
+_ENOUGH_TO_TELL = 0.02
+"""Share done before which what is left is not told."""
+
+
+class TimeLeft(ProgressColumn):
+    """How long the rest takes if it goes on as what was done; steps are too uneven to go by the last ones."""
+
+    def render(self, task: Task) -> Text:
+        """Such as `about 0:02:10 left`; nothing at the very beginning."""
+        if task.completed < _ENOUGH_TO_TELL or not task.elapsed:
+            return Text("")
+        left = task.elapsed * (1.0 - task.completed) / task.completed
+        return Text(f"about {timedelta(seconds=round(left))} left")
+
+
 @contextmanager
 def progress_bar(title: str) -> Iterator[Show]:
-    """A bar on stderr; call what it gives with a line of text and the share done, 0 to 1."""
+    """A bar on stderr; call what it gives with a line of text and the share done, 0 to 1.
+
+    It never goes back, where a step turns out to be longer than was thought.
+    """
     console = Console(stderr=True)
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
         TaskProgressColumn(),
         TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
+        TimeLeft(),
     )
     with Progress(*columns, console=console, transient=not console.is_terminal) as bar:
         task = bar.add_task(title, total=1.0)
 
         def show(text: str, share: float) -> None:
-            bar.update(task, description=text, completed=min(max(share, 0.0), 1.0))
+            done = max(bar.tasks[0].completed, min(share, 1.0))
+            bar.update(task, description=text, completed=done)
 
         yield show
 

@@ -1,0 +1,39 @@
+"""The bar on the terminal."""
+
+import pytest
+from hasel_sysid.command_line import progress
+from rich.progress import Progress
+
+
+def shown_by(elapsed: float, done: float) -> str:
+    """What is said to be left after so much time [s] with this share done."""
+    clock = iter([0.0])
+    bar = Progress(get_time=lambda: next(clock, elapsed), auto_refresh=False)
+    task = bar.add_task("improve", total=1.0)
+    bar.update(task, completed=done)
+    return str(progress.TimeLeft().render(bar.tasks[0]))
+
+
+@pytest.mark.parametrize(
+    ("elapsed", "done", "text"),
+    [(60.0, 0.25, "about 0:03:00 left"), (60.0, 1.0, "about 0:00:00 left"), (60.0, 0.01, "")],
+)
+def test_what_is_left_goes_by_all_that_was_done(elapsed, done, text):
+    """Not by the last step; nothing is told before a fiftieth is done."""
+    assert shown_by(elapsed, done) == text
+
+
+def test_the_bar_never_goes_back(monkeypatch):
+    """A search that finds more to do stays where it is until that is done; what is beyond the ends is cut."""
+    seen = []
+    update = Progress.update
+
+    def watched(self, task, **what):
+        update(self, task, **what)
+        seen.append(self.tasks[0].completed)
+
+    monkeypatch.setattr(Progress, "update", watched)
+    with progress.progress_bar("improve") as show:
+        for share in (0.06, 0.04, 0.5, -1.0, 2.0):
+            show("step", share)
+    assert seen == [0.06, 0.06, 0.5, 0.5, 1.0]
