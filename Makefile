@@ -23,7 +23,7 @@ format: build ## rewrite the code in the project's format
 
 # What computes runs two at a time; what keeps time (the driver's heartbeat, nodes) runs alone, and both are run to their end.
 test: lint ## lint, then every test but the slow ones
-	@$(ENVIRONMENT) && failed=0; \
+	@$(ENVIRONMENT) && python -m hasel_sim.first_run && failed=0; \
 	python -m pytest -n 2 --dist loadfile $(filter-out %/hasel_driver,$(wildcard ros_ws/src/*)) || failed=1; \
 	python -m pytest ros_ws/src/hasel_driver tests || failed=1; \
 	exit $$failed

@@ -47,3 +47,18 @@ def announce_compilation() -> None:
 
 def _folder() -> Path:
     return Path(march.march.stats.cache_path)
+
+
+def main() -> None:
+    """`python -m hasel_sim.first_run`: compile now, so that nothing that is timed has to."""
+    from hasel_sim.bench.cases import box_run, fitted_swimmer
+    from hasel_sim.mechanics.simd import LANES
+    from hasel_sim.simulate import simulate_many
+
+    model, run = fitted_swimmer(), box_run(0.02)
+    for count in LANES:
+        simulate_many([(model, run)] * count, ("slope",))
+
+
+if __name__ == "__main__":
+    main()
