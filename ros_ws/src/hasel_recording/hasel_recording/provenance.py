@@ -24,6 +24,16 @@ def provenance(recorder: str, packages: Iterable[str], parameters: Mapping[str, 
     return {f"{PREFIX}{key}": str(value) for key, value in lines.items()}
 
 
+def without_provenance(header: Mapping[str, str]) -> tuple[dict[str, str], str]:
+    """Header lines but for those of `provenance`, and these in a sentence; it is empty where there are none."""
+    made = {key.removeprefix(PREFIX): value for key, value in header.items() if key.startswith(PREFIX)}
+    others = {key: value for key, value in header.items() if not key.startswith(PREFIX)}
+    if not made:
+        return others, ""
+    recorder, when = made.get("node", "an unknown recorder"), made.get("time", "an unknown time")
+    return others, f"by {recorder} at {when}; `info` lists versions and parameters, {len(made)} lines"
+
+
 def _version(package: str) -> str:
     try:
         return version(package)

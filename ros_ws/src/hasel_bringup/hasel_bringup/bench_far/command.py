@@ -14,6 +14,7 @@ from hasel_sysid.problem import Problem
 
 from hasel_bringup.bench_far.constants_far_off import BODIES
 from hasel_bringup.bench_far.far_case import FarCase, baseline, far_cases, measure, value_of
+from hasel_bringup.bench_far.options import parser
 
 
 @dataclass(frozen=True)
@@ -73,6 +74,11 @@ def run_case(case: FarCase, pool: Executor, only: Sequence[str] | None = None) -
         found["stages"][-1]["mae_validation"],
         time.monotonic() - started,
     )
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    return run(parser().parse_args(arguments))
 
 
 def run(options: argparse.Namespace) -> int:

@@ -12,11 +12,16 @@ from hasel_sim.parallel import executor, worker_count
 from hasel_bringup.bench_hidden.case import Case
 from hasel_bringup.bench_hidden.case_list import list_cases, quick_cases
 from hasel_bringup.bench_hidden.explain import explain
-from hasel_bringup.bench_hidden.options import KINDS, PAGE
+from hasel_bringup.bench_hidden.options import KINDS, PAGE, parser
 from hasel_bringup.bench_hidden.outcome import Outcome
 from hasel_bringup.bench_hidden.page import as_json, as_markdown, outcomes_of
 from hasel_bringup.bench_hidden.run_cases import run_cases
 from hasel_bringup.errors import BringupError
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    return run(parser().parse_args(arguments))
 
 
 def run(options: argparse.Namespace) -> int:

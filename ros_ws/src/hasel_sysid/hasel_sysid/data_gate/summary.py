@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from hasel_recording import DriveChannel, Recording
+from hasel_recording.provenance import without_provenance
 
 from hasel_sysid.data_gate.check import check_recording
 from hasel_sysid.data_gate.finding import Finding, Severity
@@ -53,7 +54,9 @@ def summary(recording: Recording, model: Sequence[str] = (), misfit: bool = Fals
     rows += [("drive", line) for line in _drive(recording)]
     rows += [("markers", _markers(recording)), ("start", _start(recording))]
     rows += [("read", sentence) for sentence in recording.understood]
-    rows += [("header", f"{key}: {value}") for key, value in recording.metadata.items()]
+    header, made = without_provenance(recording.metadata)
+    rows += [("header", f"{key}: {value}") for key, value in header.items()]
+    rows += [("recorded", made)] if made else []
     rows += [("model", sentence) for sentence in model]
     rows += [("model", "does not fit: see the error")] if misfit else []
     return Summary(recording, tuple(rows), tuple(check_recording(recording)), misfit)
