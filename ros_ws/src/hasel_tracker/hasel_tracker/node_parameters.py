@@ -65,6 +65,10 @@ PARAMETERS = (
         -180.0,
         180.0,
     ),
+    _search(
+        "spacing",
+        "distances from marker to marker, head first, in any unit, such as 89,96; empty for even ones",
+    ),
     _search("body", "of midline: light or dark against the ground, or auto", choices=BODY_KINDS),
     _search(
         "points",

@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.table import Table
 
 from hasel_tracker.bench.accuracy import CONDITIONS, Accuracy, measure_accuracy
+from hasel_tracker.bench.latency import Latency, measure_latency
 from hasel_tracker.bench.robustness import CASES, Robustness, measure_robustness
 from hasel_tracker.bench.speed import Speed, measure_speed
 from hasel_tracker.lab.catalogue import ADVERSARIAL, REAL
@@ -45,6 +46,7 @@ class BenchReport:
     honesty: list[Honesty]
     deceiving: list[Honesty]
     speed: Speed
+    latency: Latency
 
     def bars(self) -> list[Bar]:
         """The figures that have a bar."""
@@ -60,6 +62,10 @@ class BenchReport:
                 "false angles in the robustness cases", sum(each.false_angles for each in self.robustness), 0
             ),
             Bar("wrong while valid in the laboratory's scenes", sum(each.wrong for each in self.honesty), 0),
+            Bar(
+                "wrong while valid in the scenes that deceive", sum(each.wrong for each in self.deceiving), 0
+            ),
+            Bar("latency from capture to angle (ms, median)", 1e3 * self.latency.median_s, 50.0),
             Bar("frames late to recover", sum(each.late_frames for each in self.robustness), 0),
         ]
 
@@ -68,11 +74,12 @@ class BenchReport:
         console.print(
             self._accuracy_table(),
             _honesty_table("Laboratory scenes of another renderer, 1280 × 720", self.honesty),
-            _honesty_table("Scenes that deceive by their nature; no bar", self.deceiving),
+            _honesty_table("Scenes that deceive, 1280 × 720", self.deceiving),
             self._robustness_table(),
             self._bars_table(),
         )
         console.print(f"Speed at 1080p, one core: {self.speed}")
+        console.print(f"Latency at 1080p: {self.latency}")
 
     def values(self) -> dict[str, Any]:
         """Everything as plain values, for JSON."""
@@ -83,6 +90,7 @@ class BenchReport:
             "honesty": [_plain(each) for each in self.honesty],
             "deceiving": [_plain(each) for each in self.deceiving],
             "speed": _plain(self.speed),
+            "latency": _plain(self.latency),
             "bars": [_plain(each) | {"met": bool(each.met)} for each in self.bars()],
         }
 
@@ -141,6 +149,8 @@ def run_bench(frames: int, told: Callable[[str], None]) -> BenchReport:
     """Run everything; `told` is given a sentence after each part."""
     speed = measure_speed()
     told(f"Speed: {speed}")
+    latency = measure_latency()
+    told(f"Latency: {latency}")
     accuracies = []
     for condition in CONDITIONS:
         accuracies.append(measure_accuracy(condition, frames))
@@ -160,7 +170,7 @@ def run_bench(frames: int, told: Callable[[str], None]) -> BenchReport:
     deceiving = [measure_honesty(case, case.least_frames, DECEIVING_SEEDS) for case in DECEIVING]
     for each in deceiving:
         told(str(each))
-    return BenchReport(accuracies, csrt, robustness, honesty, deceiving, speed)
+    return BenchReport(accuracies, csrt, robustness, honesty, deceiving, speed, latency)
 
 
 def _shown(value: float, form: str, unit: str = "") -> str:

@@ -1,4 +1,4 @@
-"""Learn the markers' colour range and size from one frame."""
+"""Learn the markers' colour range, size and spacing from one frame."""
 
 from dataclasses import dataclass, replace
 
@@ -29,11 +29,9 @@ class LearnedColour:
     def __str__(self) -> str:
         colour, radius = self.settings.colour, self.settings.marker_radius_px
         return (
-            f"Markers of hue {colour.hue_low} to {colour.hue_high}, saturation from "
-            f"{colour.saturation_low}, value from "
-            f"{colour.value_low}, radius {radius:.1f} px; {100.0 * self.stray_share:.2g} % of the other "
-            f"pixels have "
-            "that colour too."
+            f"Markers of hue {colour.hue_low} to {colour.hue_high}, saturation from {colour.saturation_low}, value "
+            f"from {colour.value_low}, radius {radius:.1f} px, {self.settings.spacing.replace(',', ' and ')} px apart; "
+            f"{100.0 * self.stray_share:.2g} % of the other pixels have that colour too."
         )
 
 
@@ -59,6 +57,8 @@ def learn_colour(
         markers = markers if markers.found.all() else tracker.place(image, centres, 0.0)
     except TrackerError as error:
         raise TrackerError(f"With the colour learned the markers are not found: {error}") from error
+    apart = np.linalg.norm(np.diff(markers.positions, axis=0), axis=1)
+    settings = replace(settings, spacing=",".join(f"{each:.1f}" for each in apart))
     return LearnedColour(
         settings, markers.positions, _stray_share(colour.mask(image), markers.positions, radius)
     )

@@ -184,8 +184,8 @@ UNFORESEEN = (
     _case("a ruler with blue marks", _ruler),
     _case("sixty blue specks", _specks),
 )
-# Beyond what the dots' colour and the body's shade can tell: a loose dot on or beside the body, in place of a marker
-# that is out of sight, or another body of the same shade along the swimmer.
+# A loose dot on or beside the body, in place of a marker that is out of sight, or another body of the same shade along
+# the swimmer.
 DECEIVING = (
     _case("a marker out of sight from the start, four loose dots", _one_hidden),
     _case("three dots drift past a marker while it is hidden", _drifting_dots),

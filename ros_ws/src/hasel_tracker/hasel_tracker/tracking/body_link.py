@@ -6,10 +6,12 @@ path between the dots and those beside it are described by a normal distribution
 in nats per sample, and must hold on every third of the way: a path that leaves the body half-way has none.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
+
+from hasel_tracker.tracking.body_colours import StraightView, covariance, log_densities, log_density
 
 STATIONS = 18
 THIRDS = 3
@@ -20,9 +22,6 @@ PATHS_KEPT = 24
 REFINED_STEPS = 4
 BESIDE_RADII = (2.5, 5.0)
 BESIDE_SAMPLES = 3
-LEAST_SPREAD = 3.0
-OUTLIER_SHARE = 0.1
-OUTLIER_DENSITY = np.log(OUTLIER_SHARE) - 3 * np.log(256.0)
 LEAST_EVIDENCE = 5.0  # random grounds reach 4.8 in hundreds of trials, bodies have 6 and more
 WIDEST_SHARE = 0.2
 SKIN_RADII = 0.7
@@ -32,11 +31,12 @@ CLEAR_OF_RIM = 2.5
 
 @dataclass(frozen=True)
 class BodyLink:
-    """Evidence of a body between two dots (least of the thirds) [nats per sample], and its width [px] (NaN if it
-    cannot be told)."""
+    """Evidence of a body between two dots (least of the thirds) [nats per sample], its width [px] (NaN if it cannot be
+    told), and the views in which it is seen."""
 
     evidence: float
     width_px: float
+    views: tuple[StraightView, ...] = field(default=(), repr=False, compare=False)
 
     @property
     def seen(self) -> bool:
@@ -67,12 +67,16 @@ def body_link(image: np.ndarray, first: np.ndarray, last: np.ndarray, radius_px:
         borderMode=cv2.BORDER_REPLICATE,
     ).astype(np.float32)  # (stations, offsets, 3)  # fmt: skip
     candidates, centre, band = _paths(station, length, step), len(offset) // 2, 2.0 * radius_px / step
-    most, width = -np.inf, 0.0
+    most, width, seen_along = -np.inf, 0.0, []
     for gap in beside:
         paths = _most_distinct(colours, candidates, centre, gap / step)
         evidence, models = _evidence(colours, paths, centre, gap / step, band)
         number = int(np.argmax(evidence))
-        smooth = paths[number]
+        smooth, straight = paths[number], np.abs(paths).max(axis=1)
+        likely = np.flatnonzero(evidence > LEAST_EVIDENCE)
+        if likely.size:
+            straightest = likely[straight[likely].argmin()]
+            seen_along.append((paths[straightest], tuple(each[straightest] for each in models)))
         near = _refined(colours, paths[number], tuple(each[number] for each in models), centre)
         paths = np.stack([paths[number], near])
         evidence, models = _evidence(colours, paths, centre, gap / step, band)
@@ -80,9 +84,16 @@ def body_link(image: np.ndarray, first: np.ndarray, last: np.ndarray, radius_px:
         most = max(most, float(evidence[number]))
         # The widest gap at which a body is seen: a nearer one may see no more than a spine within it.
         if evidence[number] > LEAST_EVIDENCE:
+            seen_along.append((paths[number], tuple(each[number] for each in models)))
             skin = max(round(SKIN_RADII * radius_px / step), 1)
             width = _width(colours, smooth, models[2][number], centre, skin) * step
-    return BodyLink(most, width)
+    views = [
+        StraightView(
+            first, along / length, across, length, station * length, step, colours, path * step, described
+        )
+        for path, described in seen_along
+    ]
+    return BodyLink(most, width, tuple(views))
 
 
 def _paths(station: np.ndarray, length: float, step: float) -> np.ndarray:
@@ -112,7 +123,7 @@ def _refined(
     colours: np.ndarray, path: np.ndarray, models: tuple[np.ndarray, ...], centre: int
 ) -> np.ndarray:
     """The smooth path within a few steps of `path` (stations,) that looks most like the body."""
-    inner, outer = _log_densities(colours, models)
+    inner, outer = log_densities(colours, models)
     reach = np.arange(-REFINED_STEPS, REFINED_STEPS + 1)
     places = np.clip(np.rint(centre + path).astype(int)[:, None] + reach, 0, colours.shape[1] - 1)
     gain = np.take_along_axis((inner - outer).reshape(colours.shape[:2]), places, axis=1)
@@ -126,13 +137,6 @@ def _refined(
     for back in reversed(came):
         chosen.append(chosen[-1] + int(back[chosen[-1]]))
     return places[np.arange(STATIONS), chosen[::-1]].astype(float) - centre
-
-
-def _log_densities(colours: np.ndarray, models: tuple[np.ndarray, ...]) -> tuple[np.ndarray, np.ndarray]:
-    """Log densities of every colour (1, stations · offsets) as the body's and as that of what is beside."""
-    trend, inner_spread, beside, outer_spread = models
-    inner = _log_density((colours - trend).reshape(1, -1, 3), inner_spread[None])
-    return inner, _log_density((colours - beside[:, None]).reshape(1, -1, 3), outer_spread[None])
 
 
 def _evidence(
@@ -150,30 +154,13 @@ def _evidence(
     sides = np.stack([at(paths + sign * each) for sign in (-1, 1) for each in away])
     beside = np.median(sides, axis=0)  # per station: light and shadow change along the way
     rest = sides - beside
-    outer_spread = _covariance(rest.transpose(1, 0, 2, 3).reshape(len(paths), -1, 3))
+    outer_spread = covariance(rest.transpose(1, 0, 2, 3).reshape(len(paths), -1, 3))
     trend = np.median(path, axis=1, keepdims=True)
-    inner_spread = _covariance(path - trend)
-    inner = _log_density(path - trend, inner_spread)
-    outer = _log_density(path - beside, outer_spread)
+    inner_spread = covariance(path - trend)
+    inner = log_density(path - trend, inner_spread)
+    outer = log_density(path - beside, outer_spread)
     thirds = (inner - outer).reshape(len(paths), THIRDS, -1).mean(axis=2)
     return thirds.min(axis=1), (trend, inner_spread, beside, outer_spread)
-
-
-def _covariance(rest: np.ndarray) -> np.ndarray:
-    """Covariance (paths, 3, 3) of most of the colours (paths, samples, 3), with a floor for noise and coding."""
-    size = np.abs(rest).sum(axis=2)
-    share = int(0.8 * size.shape[1])
-    kept = size <= np.partition(size, share, axis=1)[:, share, None]
-    weighted = rest * (kept / kept.sum(axis=1, keepdims=True)).astype(np.float32)[..., None]
-    spread = weighted.transpose(0, 2, 1) @ rest
-    return 1.6 * spread + np.float32(LEAST_SPREAD**2) * np.eye(3, dtype=np.float32)
-
-
-def _log_density(rest: np.ndarray, spread: np.ndarray) -> np.ndarray:
-    """Log density of colours (paths, samples, 3) about zero, with a share of outliers."""
-    distance = ((rest @ np.linalg.inv(spread)) * rest).sum(axis=2)
-    usual = -0.5 * (distance + np.linalg.slogdet(spread)[1][:, None] + 3.0 * np.log(2.0 * np.pi))
-    return np.logaddexp(usual, OUTLIER_DENSITY)
 
 
 def _width(colours: np.ndarray, path: np.ndarray, beside: np.ndarray, centre: int, skin: int) -> float:

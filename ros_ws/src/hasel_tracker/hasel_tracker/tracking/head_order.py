@@ -12,13 +12,14 @@ LOOK_ALIKE = "both halves of the body look alike: say where the head is with --h
 class HeadOrder:
     """What the user says holds for the first row alone; later rows may lie any way round.
 
-    chords_px: (m - 1,) distances from marker to marker, head first, once the markers are known for certain.
+    chords_px: (m - 1,) distances from marker to marker, head first: in any unit if said, then those that are seen once
+    the markers are known for certain.
     """
 
-    def __init__(self, head: str) -> None:
+    def __init__(self, head: str, chords_px: np.ndarray | None = None) -> None:
         self._said = head_word(head)
         self._known = False
-        self._chords_px: np.ndarray | None = None
+        self._chords_px = chords_px
 
     def learn(self, chords_px: np.ndarray | None = None) -> None:
         """The head is known now, and the distances if given."""

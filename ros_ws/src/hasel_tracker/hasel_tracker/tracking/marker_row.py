@@ -1,6 +1,6 @@
 """Which blobs are a row of markers along one body: alike, apart, not folded, and with the body between them."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,9 @@ LARGEST_TURN_RAD = 2.1
 CLOSEST_RADII = 3.0
 ON_THE_WAY_RADII = 1.5
 RIVAL_SHARE_OF_CHORD = 0.4
+LARGEST_UNEVENNESS = (
+    4.0 / 3.0
+)  # of the distances against those said: hands that glue, perspective, a bent body
 
 
 @dataclass(frozen=True)
@@ -139,13 +142,33 @@ def rival_near(
     return False
 
 
+def spaced_as(centres: np.ndarray, distances: Sequence[float]) -> bool:
+    """Whether points (m, 2), either end first, are as far from each other as `distances` (m - 1) say, in any unit."""
+    chords = np.linalg.norm(np.diff(centres, axis=0), axis=1)
+    ratios = [chords / np.asarray(each) for each in (distances, distances[::-1])]
+    return bool(min(ratio.max() / ratio.min() for ratio in ratios) <= LARGEST_UNEVENNESS)
+
+
 def rows_on_a_body(
-    blobs: list[Blob], count: int, link: Callable[[Blob, Blob], BodyLink], most: int = 2
+    blobs: list[Blob],
+    count: int,
+    link: Callable[[Blob, Blob], BodyLink],
+    most: int = 2,
+    distances: Sequence[float] | None = None,
 ) -> list[MarkerRow]:
-    """Up to `most` rows between whose markers a body is seen; two mean that the picture does not say which it is."""
+    """Up to `most` rows between whose markers a body is seen; two mean that the picture does not say which it is.
+
+    distances: from marker to marker, in any unit; None for any.
+    """
     known: dict[tuple[int, int], BodyLink] = {}
     found: list[MarkerRow] = []
-    for row in possible_rows(blobs, count)[:ROWS_LOOKED_AT]:
+    centres = np.array([blob.centre for blob in blobs]).reshape(-1, 2)
+    rows = [
+        row
+        for row in possible_rows(blobs, count)
+        if distances is None or spaced_as(centres[list(row)], distances)
+    ]
+    for row in rows[:ROWS_LOOKED_AT]:
         links = []
         for pair in zip(row[:-1], row[1:], strict=True):
             key = (min(pair), max(pair))

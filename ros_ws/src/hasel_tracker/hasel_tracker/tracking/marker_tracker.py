@@ -1,5 +1,6 @@
 """Follow the markers from frame to frame; find them at the start and when lost; say when that is in doubt."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.tracking.blobs import Blob
 from hasel_tracker.tracking.body_link import BodyLink, body_link
+from hasel_tracker.tracking.body_row import misfit
 from hasel_tracker.tracking.body_watch import BodyWatch
 from hasel_tracker.tracking.doubt import Doubt
 from hasel_tracker.tracking.head_order import HeadOrder, as_before
@@ -43,11 +45,12 @@ class MarkerTracker:
         self.note = ""
         self._asked = self._finder = MarkerFinder(settings, measure)
         self._count = settings.marker_count
-        self._head = HeadOrder(settings.head)
+        self._head = HeadOrder(settings.head, np.array(settings.distances) if settings.spacing else None)
         self._search_after_s = -np.inf
         self._trust = Trust()
         self._memory: MarkerMemory | None = None
         self._body: BodyWatch | None = None
+        self._whole = True
         self._back: set[int] = set()
 
     @property
@@ -68,8 +71,12 @@ class MarkerTracker:
         found = self._pointed_at(image, np.asarray(points, float), time_s)
         self._begin(found, time_s)
         links = links_at(image, places(found), range(self._count - 1), self.radius_px)
-        self._body = BodyWatch(links, time_s)
+        # A person may point at dots that are not at the body's ends; these are found again, then, as they are.
+        self._whole = not misfit(image, places(found), links, self.radius_px)
+        self._body = BodyWatch(links, time_s, self._whole)
         self._head.learn()
+        spacing = ",".join(f"{each:.1f}" for each in self._memory.chords_px)
+        self.settings = replace(self.settings, spacing=spacing)
         self.note = "the markers are where they were pointed at"
         return self._as_set(found, np.ones(self._count, bool), Doubt.NONE, 0)
 
@@ -139,11 +146,11 @@ class MarkerTracker:
             return MarkerSet.lost(self._count, doubt)
         self.note = note
         self._begin(found, time_s)
-        self._body = BodyWatch(row.links, time_s)
+        self._body = BodyWatch(row.links, time_s, self._whole)
         return self._as_set(found, np.ones(self._count, bool), self._trust.shake(Doubt.STARTING), 0)
 
     def _searched(self, image: np.ndarray, time_s: float) -> StartSearch:
-        search = search_start(image, self.settings)
+        search = search_start(image, self.settings, self._whole)
         if search.links > CHEAP_SEARCH_LINKS:
             self._search_after_s = time_s + SEARCH_PERIOD_S
         return search

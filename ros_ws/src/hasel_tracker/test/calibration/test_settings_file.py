@@ -7,7 +7,7 @@ from hasel_tracker.tracking.tracker_settings import TrackerSettings
 
 def test_saved_and_loaded(tmp_path):
     """A settings file gives back the same settings."""
-    settings = TrackerSettings(ColourRange(40, 80, 60, 20), 9.5, head="right", edge_px=5)
+    settings = TrackerSettings(ColourRange(40, 80, 60, 20), marker_radius_px=9.5, head="right", edge_px=5)
     save_settings(settings, tmp_path / "markers.yaml")
     assert load_settings(tmp_path / "markers.yaml") == settings
 

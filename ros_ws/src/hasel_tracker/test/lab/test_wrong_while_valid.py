@@ -1,8 +1,10 @@
 """Scenes of another renderer in which a wrong angle was once called valid, and pictures of real laboratories."""
 
+from dataclasses import replace
+
 import pytest
 from hasel_tracker.lab.catalogue import ADVERSARIAL, REAL
-from hasel_tracker.lab.unforeseen import UNFORESEEN
+from hasel_tracker.lab.unforeseen import DECEIVING, UNFORESEEN
 from hasel_tracker.lab.wrong_while_valid import measure_honesty
 
 QUICK = (
@@ -32,6 +34,19 @@ def test_scenes_without_a_rule_of_their_own(case):
     assert honesty.wrong == 0, str(honesty)
     if case.expected:
         assert honesty.valid, str(honesty)
+
+
+@pytest.mark.parametrize(
+    ("case", "drawing", "frames"),
+    [(DECEIVING[0], 10, 6), (DECEIVING[0], 11, 9), (DECEIVING[0], 19, 6), (DECEIVING[1], 4, 11), (DECEIVING[2], 5, 10),
+     (DECEIVING[2], 7, 7)],
+    ids=["beside the body", "within the body's ends", "beside the axis", "short of the nose", "where bodies cross",
+         "another body alongside"],
+)  # fmt: skip
+def test_what_takes_a_markers_place_is_not_taken_for_it(case, drawing, frames):
+    """A loose dot where no marker of a whole body would be, or a body along another, gives no angle."""
+    honesty = measure_honesty(replace(case, scene=lambda _: case.scene(drawing)), frames)
+    assert honesty.wrong == 0, str(honesty)
 
 
 @pytest.mark.parametrize("case", [each for each in REAL if each.name in QUICK], ids=lambda case: case.name)

@@ -11,6 +11,7 @@ from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.video_source import VideoSource
 from hasel_tracker.tracking.bending_tracker import BendingTracker
 
+QUEUE_SIZE = 4
 PATIENCE_S = 100.0  # on a machine that is busy with other things
 
 
@@ -54,7 +55,7 @@ def run_to_the_end(live: LiveTracker) -> None:
 def test_every_frame_is_published_in_order(frames, as_jpeg, threads):
     """All frames of a camera, decoded here or by several threads, give their angle in order with their stamp."""
     published = []
-    read = camera(frames[:40], 60.0, as_jpeg)
+    begin, read = time.monotonic(), camera(frames[:40], 60.0, as_jpeg)
     live = LiveTracker(BendingTracker(), lambda f, t: published.append((f, t)), 60, threads, read)
     run_to_the_end(live)
     assert [frame.index for frame, _ in published] == list(range(40))
@@ -63,22 +64,27 @@ def test_every_frame_is_published_in_order(frames, as_jpeg, threads):
     assert angles[2:] == pytest.approx([frame.sin_theta for frame in frames[2:40]], abs=2e-3)
     health = live.statistics.take()
     assert health.frames == 40
-    assert 0.0 < health.mean_latency_s <= health.worst_latency_s < PATIENCE_S
+    assert 0.0 < health.mean_latency_s <= health.worst_latency_s < time.monotonic() - begin
     assert live.queue.dropped == 0
 
 
 def test_slow_tracking_drops_the_oldest_and_counts(frames):
-    """When tracking takes longer than a frame, frames are dropped and counted, and the latency stays bounded."""
-    published = []
-    live = LiveTracker(
-        SlowTracker(), lambda frame, _: published.append(frame.index), 4, 1, camera(frames[:60], 200.0)
-    )
+    """When tracking takes longer than a frame, frames are dropped and counted, and none waits longer than a full queue
+    takes, however slow the machine."""
+    published, done_s = [], [time.monotonic()]
+
+    def publish(frame, _):
+        published.append(frame.index)
+        done_s.append(time.monotonic())
+
+    live = LiveTracker(SlowTracker(), publish, QUEUE_SIZE, 1, camera(frames[:60], 200.0))
     run_to_the_end(live)
     assert live.queue.dropped == 60 - len(published)
     assert 10 < live.queue.dropped < 58
     assert published == sorted(published)
     assert published[-1] == 59
-    assert live.statistics.take().worst_latency_s < PATIENCE_S
+    slowest_s = max(np.diff(done_s))
+    assert live.statistics.take().worst_latency_s < (QUEUE_SIZE + 2) * slowest_s
 
 
 @pytest.mark.parametrize("as_jpeg", [False, True])
