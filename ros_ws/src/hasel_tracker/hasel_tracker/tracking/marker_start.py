@@ -78,8 +78,8 @@ def search_start(image: np.ndarray, settings: TrackerSettings, whole: bool = Tru
         seen, said = ", ".join(f"{each:.0f}" for each in apart), settings.spacing or "even"
         note = (
             f"{word} dots lie on a body, {seen} px from each other, where the spacing is {said}: a marker may be out "
-            "of sight; if they are the markers, point at them with --at, or with --at in `calibrate colour`, which learns "
-            "the spacing"
+            "of sight; if they are the markers, point at them with --at, also in `calibrate colour`, which learns the "
+            "spacing"
         )
     if cv2.mean(image[::8, ::8])[1] < DARK_PICTURE:
         note += "; the picture is dark: learn the colour with `calibrate colour --at`"
