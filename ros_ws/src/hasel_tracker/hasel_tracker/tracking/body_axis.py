@@ -81,13 +81,13 @@ class AxisAtDot:
         return self.through >= LEAST_STATIONS and self.any_axis - self.through < CLEARLY_MORE
 
 
-def axis_at(view: StraightView, radius_px: float, at_first: bool) -> AxisAtDot:
-    """The body's axis at the dot at this end of the view.
+def axis_at(view: StraightView, band: OwnBand, radius_px: float, at_first: bool) -> AxisAtDot:
+    """The body's axis at the dot at this end of the view, of which `band` is the body.
 
     Something over the body hides its middle at some stations; an axis is a parabola through three of them, or through
     two and the dot, and one that comes within a radius of the dot leads through it.
     """
-    middle = own_band(view, radius_px).middle_px
+    middle = band.middle_px
     inward = view.station_px if at_first else view.length_px - view.station_px
     nearest = np.argsort(inward)[:NEAR_STATIONS]
     inward, middle = np.append(inward[nearest], 0.0), np.append(middle[nearest], 0.0)
@@ -139,8 +139,6 @@ def goes_on(
 
 def _likeness(colours: np.ndarray, models: tuple[np.ndarray, ...]) -> tuple[np.ndarray, np.ndarray]:
     """How much more the colours (stations, offsets, 3) look like the body than like what is beside it, and like that
-    than like anything else [nats]. What differs from the ground the other way, as a shadow does, is no body."""
+    than like anything else [nats]."""
     inner, outer = (each.reshape(colours.shape[:2]) for each in log_densities(colours, models))
-    trend, _, beside, _ = models
-    share = ((colours - beside[:, None]) * (trend - beside)[:, None]).sum(axis=2)
-    return np.where(share > 0.0, inner - outer, 0.0), outer - OUTLIER_DENSITY
+    return inner - outer, outer - OUTLIER_DENSITY

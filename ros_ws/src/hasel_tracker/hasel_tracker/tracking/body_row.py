@@ -1,9 +1,11 @@
 """Whether dots between which a body is seen are where its markers must be: on its axis, out to its ends, and on a body
 beside which no other of its shade lies."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
-from hasel_tracker.tracking.body_axis import axis_at, goes_on, own_band
+from hasel_tracker.tracking.body_axis import AxisAtDot, OwnBand, axis_at, goes_on, own_band
 from hasel_tracker.tracking.body_colours import StraightView
 from hasel_tracker.tracking.body_link import BodyLink
 
@@ -30,28 +32,40 @@ def misfit(image: np.ndarray, positions: np.ndarray, links: tuple[BodyLink, ...]
     span = float(np.linalg.norm(np.diff(positions, axis=0), axis=1).sum())
     near = CLEAR_OF_DOT_RADII * radius_px + CLEAR_OF_DOT_PX
     far = max(span / END_SHARE, near + radius_px)
+    bodies = [_Bodies(link, radius_px) for link in links]
     for number, dot in enumerate(positions):
-        outward = []
-        for link in links[max(number - 1, 0) : number + 1]:
-            fitting = [
-                (view, at_first, axis)
-                for view in link.views
-                for at_first in [_is_at_first(view, dot)]
-                for axis in [axis_at(view, radius_px, at_first)]
-                if axis.on_axis
-            ]
-            if not fitting:
-                return OFF_AXIS
-            if number in (0, len(positions) - 1) and any(
-                goes_on(image, view, at_first, axis.outward, near, far) for view, at_first, axis in fitting
-            ):
-                return GOES_ON
-            outward.append([axis.outward for _, _, axis in fitting])
-        if len(outward) == 2 and not any(
-            -before @ after > SHARPEST_CORNER for before in outward[0] for after in outward[1]
-        ):
+        beside = [each.through(dot) for each in bodies[max(number - 1, 0) : number + 1]]
+        first = [next(each, None) for each in beside]
+        if None in first:
             return OFF_AXIS
+        if len(first) == 1:
+            view, axis = first[0]
+            if goes_on(image, view, _is_at_first(view, dot), axis.outward, near, far):
+                return GOES_ON
+        else:
+            before, after = ([start, *rest] for start, rest in zip(first, beside, strict=True))
+            if not any(
+                -one.outward @ other.outward > SHARPEST_CORNER for _, one in before for _, other in after
+            ):
+                return OFF_AXIS
     return ""
+
+
+class _Bodies:
+    """What may be the body between two dots, looked at one after the other."""
+
+    def __init__(self, link: BodyLink, radius_px: float) -> None:
+        self._views, self._radius_px = link.views, radius_px
+        self._bands: dict[int, OwnBand] = {}
+
+    def through(self, dot: np.ndarray) -> Iterator[tuple[StraightView, AxisAtDot]]:
+        """Those whose axis leads through this one of the two dots."""
+        for number, view in enumerate(self._views):
+            if number not in self._bands:
+                self._bands[number] = own_band(view, self._radius_px)
+            axis = axis_at(view, self._bands[number], self._radius_px, _is_at_first(view, dot))
+            if axis.on_axis:
+                yield view, axis
 
 
 def _is_crowded(view: StraightView, radius_px: float) -> bool:

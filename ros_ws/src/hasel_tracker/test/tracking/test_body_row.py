@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hasel_tracker.bench.accuracy import CONDITIONS, renderer_for
 from hasel_tracker.lab.lab_scene import LabScene
 from hasel_tracker.lab.lab_swimmer import LabSwimmer
 from hasel_tracker.tracking.body_link import body_link
@@ -48,3 +49,11 @@ def test_another_body_alongside_is_said():
     """A second body of the same shade along the first may be mistaken for a part of it."""
     beside = replace(SWIMMER, start_px=(320.0, 430.0), marked=False)
     assert judged((SWIMMER, beside), SWIMMER.dots(0.2))[0] == CROWDED
+
+
+def test_a_spine_darker_than_the_ground_is_part_of_a_light_body():
+    """The other renderer's swimmer at 1080p, a pale skin on a thin dark spine: its markers are a row."""
+    for frame in renderer_for(CONDITIONS[2]).frames(12.0, 3):
+        dots = frame.markers_px
+        links = tuple(body_link(frame.image, *pair, RADIUS) for pair in zip(dots[:-1], dots[1:], strict=True))
+        assert misfit(frame.image, dots, links, RADIUS) == ""

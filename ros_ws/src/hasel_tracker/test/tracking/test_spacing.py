@@ -16,8 +16,8 @@ UNEVEN = LabSwimmer(stations=(0.05, 0.35, 0.97))
 
 
 def angles(swimmer, **told):
-    """Five frames: sin θ as tracked and as it is, and the tracker's note."""
-    pictures = list(LabScene((swimmer,), exposure_s=0.0).frames(5))
+    """Four frames: sin θ as tracked and as it is, and the tracker's note."""
+    pictures = list(LabScene((swimmer,), exposure_s=0.0).frames(4))
     tracker = BendingTracker(**told)
     found = [tracker.update(each.image, each.time_s).sin_theta for each in pictures]
     return np.array(found), np.array([each.sin_theta for each in pictures]), tracker.note
