@@ -14,9 +14,9 @@ import time
 import numpy as np
 from hasel_sim.bench.cases import box_run, fitted_swimmer
 from hasel_sim.simulate import simulate
-start = time.perf_counter()
+start = time.process_time()
 simulate(fitted_swimmer(), box_run(0.02), ["slope"])
-print(time.perf_counter() - start)
+print(time.process_time() - start)
 """
 
 
@@ -36,7 +36,7 @@ def _seconds(work: Callable[[], object]) -> float:
 
 
 def first_run_seconds() -> float:
-    """Wall time [s] of the first simulation on a machine that has compiled nothing yet."""
+    """Processor time [s] of the first simulation on a machine that has compiled nothing yet."""
     with tempfile.TemporaryDirectory() as cache:
         environment = {**os.environ, "NUMBA_CACHE_DIR": cache}
         output = subprocess.run(

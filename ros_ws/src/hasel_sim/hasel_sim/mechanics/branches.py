@@ -19,6 +19,7 @@ class Branches:
     def __init__(self, pairs: list[tuple[float, float]]) -> None:
         self.ratio = np.array([ratio for ratio, _ in pairs]).reshape(-1, 1)
         self.time = np.array([time for _, time in pairs]).reshape(-1, 1)
+        self._factors: dict[bytes, tuple[np.ndarray, np.ndarray]] = {}
 
     @staticmethod
     def beside(each: Sequence["Branches"]) -> "Branches":
@@ -32,8 +33,12 @@ class Branches:
 
     def factors(self, step: float | np.ndarray | Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
         """What a step [s] leaves of Q, and what it adds per C : (E1 - E0), both [branches, lanes]."""
-        r = step / self.time
-        return np.exp(-r), self.ratio * -np.expm1(-r) / r
+        key = np.asarray(step, dtype=float).tobytes()
+        if key not in self._factors:
+            r = np.frombuffer(key) / self.time
+            self._factors = dict([*self._factors.items()][-7:])  # a run has few lengths of steps
+            self._factors[key] = np.exp(-r), self.ratio * -np.expm1(-r) / r
+        return self._factors[key]
 
     def history(self, stresses: np.ndarray, green: np.ndarray, step: float | np.ndarray) -> np.ndarray:
         """The part of the branches' stress after a step that no new strain changes, [elements, points, 3, lanes]."""

@@ -126,6 +126,15 @@ class Marcher:
 
         `arrived` tells which lanes made it; what is seen after it is noted all the same.
         """
+        step = self.advance_with_one_matrix(first, last)
+        while step < last and self.try_again(step):
+            step += 1
+            if step < last:
+                step = self.advance_with_one_matrix(step, last)
+        return step
+
+    def advance_with_one_matrix(self, first: int, last: int) -> int:
+        """The same, with a single matrix for every step."""
         if not self._laws:
             return self._march(PREDICT | BALANCE | COMMIT, (first, last))
         for step in range(first, last):
@@ -136,15 +145,21 @@ class Marcher:
         return last
 
     def try_again(self, step: int) -> bool:
-        """Make a step that failed, with a matrix for every correction, from the extrapolated acceleration and then from
-        the last; whether all lanes have made it.
+        """Make a step where it failed, with a matrix for every correction; whether all lanes have made it now.
+
+        It starts from the extrapolated acceleration, and then from the last.
         """
+        made = self.arrived.copy()
         for extrapolated in (True, False):
             self._march(PREDICT, (step, step + 1))
             if not extrapolated:
                 self._guess[:] = self.state.acceleration
+            self._wanted &= ~made
             self._balance(step, one_matrix=False)
-            if self._march(COMMIT, (step, step + 1)) != step:
+            self._march(COMMIT, (step, step + 1))
+            made |= self.arrived
+            self.arrived[:] = made
+            if made[step < self.ends].all():
                 return True
         return False
 

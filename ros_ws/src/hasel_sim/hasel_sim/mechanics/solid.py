@@ -56,6 +56,7 @@ class Solid:
     def _use_lanes(self) -> None:
         lanes = self._table.shape[-1]
         self._lane, self._shape = lane_tuple(lanes), (*self.areas.shape, 4, lanes)
+        self._last_table: tuple[np.ndarray, np.ndarray] | None = None
         self.no_history = np.zeros((*self.areas.shape, 3, lanes))
         self.kept_moduli = np.empty((2, *self.areas.shape, 4, 4, lanes))
 
@@ -97,10 +98,13 @@ class Solid:
         """
         if len(self.branches) == 0 or not np.any(step):
             return self._table
-        table, gain = self._table.copy(), self.branches.factors(step)[1].sum(axis=0)
-        table[:, compiled.BRANCH_SHEAR] = gain * self.shear
-        table[:, compiled.BRANCH_LAME] = gain * self.linear_lame
-        return table
+        gain = self.branches.factors(step)[1].sum(axis=0)
+        if self._last_table is None or not np.array_equal(self._last_table[0], gain):
+            table = self._table.copy()
+            table[:, compiled.BRANCH_SHEAR] = gain * self.shear
+            table[:, compiled.BRANCH_LAME] = gain * self.linear_lame
+            self._last_table = gain, table
+        return self._last_table[1]
 
     def green_stress(self, F: np.ndarray) -> np.ndarray:
         """C : E at the Gauss points (xx, yy, xy), [elements, points, 3, lanes]."""

@@ -88,5 +88,5 @@ class Stepper:
             np.ones(1, dtype=int),
             Seen.of(_NO_MARKERS, 2, state, 0, False),
         )
-        found = marcher.advance(0, 1) == 1 or marcher.try_again(0)
+        found = marcher.advance(0, 1) == 1
         return Part.between(state, after, drive, c) if found else None

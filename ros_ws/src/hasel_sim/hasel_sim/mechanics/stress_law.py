@@ -38,6 +38,7 @@ class StressLaw:
 
     def _use_lanes(self, values: list[SimpleNamespace], fibres: np.ndarray, shear: np.ndarray) -> None:
         self.values, self._groups, self._fibres, self._shear = values, grouped(values), fibres, shear
+        self._constant: dict[tuple[int, ...], tuple[np.ndarray, np.ndarray]] = {}
 
     @staticmethod
     def beside(each: Sequence["StressLaw"]) -> "StressLaw":
@@ -74,15 +75,18 @@ class StressLaw:
             """What each muscle has [1 + muscles, all lanes] at the points, lane by lane, [copies lanes n]."""
             return repeated(of_each[:, lanes][which].T.ravel(), times)
 
-        none = np.zeros((1, drive.contraction.shape[-1]))
+        key = times, *lanes.tolist()
+        if key not in self._constant:
+            self._constant[key] = at_points(self._fibres), at_points(self._shear, element)
+        constant, none = self._constant[key], np.zeros((1, drive.contraction.shape[-1]))
         at = (MaterialPoints if len(lanes) == 1 else _WatchedPoints)(
             rows["deformation"].reshape(-1, 2, 2),
             rows["rate"].reshape(-1, 2, 2),
             at_points(np.concatenate([none, drive.contraction])),
             at_points(np.concatenate([none, drive.voltage])),
-            at_points(self._fibres),
+            constant[0],
             float(drive.time[lanes[0]]),
-            at_points(self._shear, element),
+            constant[1],
         )
         stress = np.asarray(self.effect.first_piola(at, values)).reshape(-1, 4)
         if len(lanes) == 1 or not at.looked:
