@@ -6,6 +6,7 @@ import numpy as np
 FINER = 4
 DISC_SAMPLES = 8
 TAG_CELLS = 8
+BLUR_REACH = 4.0  # in σ: beyond, nothing of an 8-bit mask is left
 
 
 class Canvas:
@@ -70,10 +71,16 @@ class Canvas:
 
     def shade(self, corners: np.ndarray, blur_px: float, depth: float) -> None:
         """A soft shadow of a polygon that takes the share `depth` of the light."""
-        mask = np.zeros(self.picture.shape[:2], np.uint8)
-        cv2.fillPoly(mask, [np.rint(corners).astype(np.int32)], 255, cv2.LINE_AA)
+        height, width = self.picture.shape[:2]
+        reach = int(np.ceil(BLUR_REACH * blur_px)) + 2
+        left, top = np.maximum(np.floor(corners.min(axis=0)).astype(int) - reach, 0)
+        right, bottom = np.minimum(np.ceil(corners.max(axis=0)).astype(int) + reach + 1, (width, height))
+        if left >= right or top >= bottom:
+            return
+        mask = np.zeros((bottom - top, right - left), np.uint8)
+        cv2.fillPoly(mask, [np.rint(corners).astype(np.int32) - (left, top)], 255, cv2.LINE_AA)
         soft = cv2.GaussianBlur(mask, (0, 0), blur_px).astype(np.float32) / 255
-        self.picture *= (1.0 - depth * soft)[..., None]
+        self.picture[top:bottom, left:right] *= (1.0 - depth * soft)[..., None]
 
     def _blend(
         self, left: int, top: int, covered: np.ndarray, colour: tuple[float, ...] | np.ndarray

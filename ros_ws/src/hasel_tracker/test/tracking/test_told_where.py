@@ -1,6 +1,7 @@
 """What a picture leaves open is settled by what the user says: --roi, --at, --head."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ SCENES = {case.name: case for case in ADVERSARIAL}
 MARGIN_PX = 40
 
 
+@cache
 def shown(name: str, seed: int = 0, count: int = 10) -> list[LabFrame]:
     """The first frames of a scene."""
     return list(SCENES[name].scene(seed).frames(count))
