@@ -26,7 +26,6 @@ def improved(case, pool):
     return answer(load_model("swimmer"), fitted, unseen, pool)
 
 
-@slow
 @pytest.mark.timeout(900)
 def test_nothing_hidden_is_nothing_missing(pool):
     """No effect is accused, and the model is left as it was fitted."""

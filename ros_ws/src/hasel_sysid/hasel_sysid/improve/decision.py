@@ -38,14 +38,8 @@ def decide(stage: Stage, found: Diagnosis) -> Decision:
         what = "What is left is noise" if stage.effects else "Nothing is missing"
         return Decision(None, f"{what}: noise alone looks like this in {found.p_value:.0%} of cases.")
     candidates = [f for f in found.findings if f.verdict is Verdict.MISSING and f.fit is not None]
-    trifle = _trifle(stage, found, candidates)
-    if trifle and near:
-        return Decision(None, f"Nothing that matters is missing: {trifle}.", negligible=True)
-    if trifle:
-        return Decision(
-            None,
-            f"{trifle}; what is left is {_not_noise(stage, found)}.",
-        )
+    if trifle := _trifle(stage, found, candidates):
+        return _left_alone(trifle, stage, found)
     squares = 1 - (1 - found.explained) ** 2
     enough = max(0.5, _NEARLY * squares)
     numerics = {name: share for name, share in found.suspects.items() if share > enough}
@@ -55,18 +49,34 @@ def decide(stage: Stage, found: Diagnosis) -> Decision:
         return Decision(None, f"{what}: refine it first.")
     if not candidates:
         return Decision(None, _none_convinces(found), none_alone=True)
+    if trifle := _trifle(stage, found, candidates, _known_to_be_numerical(found)):
+        return _left_alone(trifle, stage, found)
     return Decision(candidates[0])
 
 
-def _trifle(stage: Stage, found: Diagnosis, candidates: Sequence[Finding]) -> str:
-    """Why what is missing does not matter; empty if it does."""
+def _left_alone(trifle: str, stage: Stage, found: Diagnosis) -> Decision:
+    if near_noise(stage.fit, found):
+        return Decision(None, f"Nothing that matters is missing: {trifle}.", negligible=True)
+    return Decision(None, f"{trifle}; what is left is {_not_noise(stage, found)}.")
+
+
+def _known_to_be_numerical(found: Diagnosis) -> float:
+    """Share of the squared error that finer numerics would remove: of that no effect is accused."""
+    return max(found.suspects.values(), default=0.0) * found.context.excess / found.context.base
+
+
+def _trifle(stage: Stage, found: Diagnosis, candidates: Sequence[Finding], numerical: float = 0.0) -> str:
+    """Why what is missing does not matter; empty if it does. numerical: share of the squared error."""
     if not candidates:
         times = stage.fit.mean_absolute_error / found.noise.mean_absolute
         reason = f"the error is {times:.2f} times the noise's, and no effect accounts for it"
         return reason if near_noise(stage.fit, found) else ""
     squares = stage.fit.evaluation.sum_of_squares
     most = max(1 - f.fit.evaluation.sum_of_squares / squares for f in candidates)
-    return f"{candidates[0].effect} makes {most:.1%} of the squared error" if most < LEAST_GAIN else ""
+    if most - numerical >= LEAST_GAIN:
+        return ""
+    of_it = f", of which finer numerics would remove {numerical:.1%}" if numerical > 0 else ""
+    return f"{candidates[0].effect} makes {most:.1%} of the squared error{of_it}"
 
 
 def _not_noise(stage: Stage, found: Diagnosis) -> str:

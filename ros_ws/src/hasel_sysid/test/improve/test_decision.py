@@ -48,6 +48,7 @@ def decided(before, after=None, chance=0.002, mesh=0.0, explained=0.9, refuted=N
         explained=explained,
         ceiling=0.9,
         noise=SimpleNamespace(mean_absolute=NOISE),
+        context=SimpleNamespace(base=before**2, excess=before**2 - min(NOISE, 0.95 * before) ** 2),
     )
     return decide(Stage((), fit(before), None), diagnosis)
 
@@ -91,3 +92,14 @@ def test_reasons_to_add_nothing(arguments, reason, negligible):
 def test_only_where_no_effect_alone_explains_are_two_worth_a_try(arguments, alone):
     """Neither where noise or the numerics do, nor where one does."""
     assert decided(0.01, **arguments).none_alone is alone
+
+
+def test_what_finer_numerics_would_remove_too_is_not_to_an_effects_credit():
+    """An effect that brings the error to the noise, most of which half the time step would bring as well."""
+    before, after = 0.00265, 0.0024
+    assert decided(before, after).accepted is not None
+    found = decided(before, after, mesh=0.67)
+    assert found.accepted is None
+    assert found.negligible
+    assert "of which finer numerics would remove 12" in found.reason
+    assert decided(0.01, 0.0025, mesh=0.67).accepted is not None
