@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -46,6 +46,11 @@ class Evaluation:
     def sum_of_squares(self) -> float:
         """Sum of the squared residuals."""
         return float(self.residual @ self.residual)
+
+    def by(self, names: Sequence[str]) -> "Evaluation":
+        """The same with derivatives by these of its parameters only, in this order."""
+        columns = self.jacobian[:, [self.names.index(name) for name in names]]
+        return replace(self, names=tuple(names), jacobian=columns)
 
     def simulated(self) -> np.ndarray:
         """The simulated series at the frames of `residual`, the mean of every run removed, [frames]."""

@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 
 from hasel_sim.mechanics.compiled import COEFFICIENTS, _thickness
+from hasel_sim.mechanics.element_force import add_stress, add_to_nodes
 from hasel_sim.mechanics.simd import add, four, load, logarithm_near_one, square_root, store, three, zero
 from hasel_sim.mechanics.tangent import add_elastic_rows, viscous_rows
 
@@ -102,11 +103,7 @@ def balance(motion, solid, drive, added, masses, weights, expected, wanted, out,
             store(stress, at + lanes, tyy)
             store(stress, at + 2 * lanes, txy)
             wide = area * along
-            p0, p1, p2, p3 = area * p0, wide * p1, area * p2, wide * p3
-            for n in range(8):
-                dx, dy = gradients[e, g, n, 0], gradients[e, g, n, 1]
-                add(force, 2 * n * lanes, p0 * dx + p1 * dy)
-                add(force, (2 * n + 1) * lanes, p2 * dx + p3 * dy)
+            add_stress(force, (p0, p1, p2, p3), gradients, e, g, area, wide, lane)
             if not fresh:
                 continue
             kxx, kyy, kxy = txx, tyy, txy
@@ -154,10 +151,7 @@ def balance(motion, solid, drive, added, masses, weights, expected, wanted, out,
                 store(half, to + 5 * lanes, m12 * dx + m13 * dy)
                 store(half, to + 6 * lanes, m22 * dx + m23 * dy)
                 store(half, to + 7 * lanes, m32 * dx + m33 * dy)
-        for n in range(8):
-            at = 2 * lanes * elements[e, n]
-            add(residual, at, load(force, 2 * n * lanes, lane))
-            add(residual, at + lanes, load(force, (2 * n + 1) * lanes, lane))
+        add_to_nodes(force, elements, e, 0, residual, lane)
         if not fresh:
             continue
         for b in range(8):

@@ -16,6 +16,7 @@ A trial shape with an element of no area gives infinities, which end that trial,
 import numpy as np
 from numba import njit
 
+from hasel_sim.mechanics.element_force import add_stress, add_to_nodes, product
 from hasel_sim.mechanics.simd import (
     add,
     four,
@@ -204,18 +205,10 @@ def scatter_stress(P, elements, gradients, areas, stretch, force, lane):
         local[:] = 0.0
         for g in range(points):
             point = e * points + g
-            p0, p1, p2, p3 = four(P, 4 * lanes * point, lane)
-            s = areas[e, g]
-            wide = s * load(stretch, point * lanes, lane)
-            p0, p1, p2, p3 = s * p0, wide * p1, s * p2, wide * p3
-            for a in range(8):
-                dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
-                add(local, 2 * a * lanes, p0 * dx + p1 * dy)
-                add(local, (2 * a + 1) * lanes, p2 * dx + p3 * dy)
-        for a in range(8):
-            at = 2 * lanes * elements[e, a]
-            add(force, at, load(local, 2 * a * lanes, lane))
-            add(force, at + lanes, load(local, (2 * a + 1) * lanes, lane))
+            area = areas[e, g]
+            wide = area * load(stretch, point * lanes, lane)
+            add_stress(local, four(P, 4 * lanes * point, lane), gradients, e, g, area, wide, lane)
+        add_to_nodes(local, elements, e, 0, force, lane)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -301,29 +294,13 @@ def scatter_directions(moduli, stress, elements, gradients, areas, stretch, dire
                     d0, d1, d2, d3 = d0 + x * dx, d1 + x * dy, d2 + y * dx, d3 + y * dy
                 along = load(stretch, point * lanes, lane)
                 d0, d2 = d0 / along, d2 / along
-                at = 16 * point * lanes
-                a0, a1, a2, a3 = four(moduli, at, lane)
-                p0 = a0 * d0 + a1 * d1 + a2 * d2 + a3 * d3
-                a0, a1, a2, a3 = four(moduli, at + 4 * lanes, lane)
-                p1 = a0 * d0 + a1 * d1 + a2 * d2 + a3 * d3
-                a0, a1, a2, a3 = four(moduli, at + 8 * lanes, lane)
-                p2 = a0 * d0 + a1 * d1 + a2 * d2 + a3 * d3
-                a0, a1, a2, a3 = four(moduli, at + 12 * lanes, lane)
-                p3 = a0 * d0 + a1 * d1 + a2 * d2 + a3 * d3
+                p0, p1, p2, p3 = product(moduli, 16 * point * lanes, (d0, d1, d2, d3), lane)
                 if stress.shape[0] > 0:
                     s0, s1, s2, s3 = four(stress, 4 * lanes * (column * count * points + point), lane)
                     p0, p1, p2, p3 = p0 + s0, p1 + s1, p2 + s2, p3 + s3
-                s = areas[e, g]
-                wide = s * along
-                p0, p1, p2, p3 = s * p0, wide * p1, s * p2, wide * p3
-                for a in range(8):
-                    dx, dy = gradients[e, g, a, 0], gradients[e, g, a, 1]
-                    add(local, 2 * a * lanes, p0 * dx + p1 * dy)
-                    add(local, (2 * a + 1) * lanes, p2 * dx + p3 * dy)
-            for a in range(8):
-                at = 2 * lanes * (column * nodes + elements[e, a])
-                add(force, at, load(local, 2 * a * lanes, lane))
-                add(force, at + lanes, load(local, (2 * a + 1) * lanes, lane))
+                area = areas[e, g]
+                add_stress(local, (p0, p1, p2, p3), gradients, e, g, area, area * along, lane)
+            add_to_nodes(local, elements, e, column * nodes, force, lane)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")

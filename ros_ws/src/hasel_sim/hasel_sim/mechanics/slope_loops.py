@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 
 from hasel_sim.mechanics.compiled import COEFFICIENTS
+from hasel_sim.mechanics.element_force import add_stress, add_to_nodes, product
 from hasel_sim.mechanics.lane_loops import chosen_of
 from hasel_sim.mechanics.simd import add, four, load, square_root, store, three, zero
 
@@ -106,24 +107,10 @@ def right_hand_sides(position, body, drive, moved, by_contraction, stress, furth
                     p0, p2 = p0 + more * a, p2 + more * c
                 if places[e] >= 0:
                     at = 16 * lanes * (places[e] * points + g)
-                    m0, m1, m2, m3 = four(further_by_rate, at, lane)
-                    p0 = p0 + m0 * p + m1 * q + m2 * r + m3 * s
-                    m0, m1, m2, m3 = four(further_by_rate, at + 4 * lanes, lane)
-                    p1 = p1 + m0 * p + m1 * q + m2 * r + m3 * s
-                    m0, m1, m2, m3 = four(further_by_rate, at + 8 * lanes, lane)
-                    p2 = p2 + m0 * p + m1 * q + m2 * r + m3 * s
-                    m0, m1, m2, m3 = four(further_by_rate, at + 12 * lanes, lane)
-                    p3 = p3 + m0 * p + m1 * q + m2 * r + m3 * s
-                wide = area * along
-                p0, p1, p2, p3 = area * p0, wide * p1, area * p2, wide * p3
-                for n in range(8):
-                    dx, dy = gradients[e, g, n, 0], gradients[e, g, n, 1]
-                    add(force, 2 * n * lanes, p0 * dx + p1 * dy)
-                    add(force, (2 * n + 1) * lanes, p2 * dx + p3 * dy)
-            for n in range(8):
-                at = 2 * lanes * (column * nodes + elements[e, n])
-                add(out, at, load(force, 2 * n * lanes, lane))
-                add(out, at + lanes, load(force, (2 * n + 1) * lanes, lane))
+                    m0, m1, m2, m3 = product(further_by_rate, at, (p, q, r, s), lane)
+                    p0, p1, p2, p3 = p0 + m0, p1 + m1, p2 + m2, p3 + m3
+                add_stress(force, (p0, p1, p2, p3), gradients, e, g, area, area * along, lane)
+            add_to_nodes(force, elements, e, column * nodes, out, lane)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")

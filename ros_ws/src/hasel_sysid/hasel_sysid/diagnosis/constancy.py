@@ -1,7 +1,7 @@
 """Whether one value of an effect does for every voltage and frequency, as it must if its law is the right one."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -63,7 +63,7 @@ def trends(fit: FitResult, noise: NoiseModel, effects: Sequence[str]) -> list[Tr
         for p in effect.parameters
         if not p.scan
     }
-    inside = _without(fit.evaluation, fit.at_bound)
+    inside = fit.evaluation.by([name for name in fit.evaluation.names if name not in fit.at_bound])
     names = [name for name in inside.names if name in sizes and name not in fit.undetermined]
     found = []
     for condition, values in conditions(fit.evaluation.simulations).items():
@@ -71,13 +71,6 @@ def trends(fit: FitResult, noise: NoiseModel, effects: Sequence[str]) -> list[Tr
             unit = "Hz" if condition == "frequency" else drive_unit(fit.model)
             found += [_trend(inside, noise, name, condition, values, unit) for name in names]
     return found
-
-
-def _without(evaluation: Evaluation, fixed: Sequence[str]) -> Evaluation:
-    """The evaluation without derivatives by these parameters."""
-    kept = [index for index, name in enumerate(evaluation.names) if name not in fixed]
-    names = tuple(evaluation.names[index] for index in kept)
-    return replace(evaluation, names=names, jacobian=evaluation.jacobian[:, kept])
 
 
 def _trend(

@@ -98,9 +98,7 @@ class Trials:
         trials = []
         for start in starts:
             names = (*self.fitted.names, *start.names)
-            columns = found.jacobian[:, [found.names.index(name) for name in names]]
-            alone = replace(found, names=names, jacobian=columns)
-            trials.append(self._trial(start, self._with(start), names, alone))
+            trials.append(self._trial(start, self._with(start), names, found.by(names)))
         return trials
 
     def _evaluate(self, models: Sequence[tuple[Start, Model]]) -> list[Trial]:
