@@ -83,11 +83,10 @@ class VirtualCameraNode(Node):
         fast = share < _REAL_TIME_SHARE and cores >= _REAL_TIME_CORES
         asked = self._value("real_time")
         real_time = fast if asked == "auto" else asked == "yes"
-        measured = f"{1e3 * per_frame_s:.1f} ms to move the swimmer on and draw one, {cores} cores"
-        if not real_time:
-            os.nice(_LATER_NICENESS)
-        else:
+        measured = f"{1e3 * per_frame_s:.1f} ms per picture, {cores} cores"
+        if real_time:
             return True, f"Real time: pictures are sent as they are exposed ({measured})."
+        os.nice(_LATER_NICENESS)
         return False, f"Not real time: each run's pictures are drawn, then tracked, after it ({measured})."
 
     def _trial(self) -> float:
@@ -146,10 +145,9 @@ class VirtualCameraNode(Node):
 
     def _end(self, done: threading.Event) -> None:
         self._capturing = False
-        for stamp_ns, voltage in self._kept:
-            for exposure in self._swimmer.state(stamp_ns, voltage):
-                self._await_tracker()
-                self._send(exposure)
+        for exposure in self._swimmer.film(self._kept):
+            self._await_tracker()
+            self._send(exposure)
         self._kept = []
         done.set()
 

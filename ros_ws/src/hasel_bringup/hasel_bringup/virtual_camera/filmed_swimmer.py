@@ -1,10 +1,14 @@
 """The true swimmer, moved on to every exposure of a camera that has a clock of its own."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.live.live_simulator import LiveSimulator
 from hasel_sim.model import Model
+from hasel_sim.run import Run
+from hasel_sim.simulate import simulate
 
 
 @dataclass(frozen=True)
@@ -16,7 +20,7 @@ class Exposure:
 
 
 class FilmedSwimmer:
-    """Takes the supply's states in order and gives the exposures between them.
+    """Takes the supply's states in order and gives the exposures between them, one by one or for a whole run.
 
     ripple: how far [m rms, each axis] the water's surface displaces the picture of a marker.
     """
@@ -57,6 +61,31 @@ class FilmedSwimmer:
             self._last_ns = stamp_ns
         return exposures
 
+    def film(self, states: Sequence[tuple[int, np.ndarray]]) -> list[Exposure]:
+        """All exposures of a run that is over, from its states (stamp [ns], voltage [V]); several times as fast."""
+        kept = _in_order(states)
+        if len(kept) < 2:
+            return []
+        origin_ns, until_ns = kept[0][0], kept[-1][0]
+        stamps = np.arange(origin_ns + self._period_ns, until_ns, self._period_ns)
+        if len(stamps) == 0:
+            return []
+        schedule = DriveSchedule(
+            np.array([stamp - origin_ns for stamp, _ in kept]) * 1e-9, np.array([voltage for _, voltage in kept])
+        )
+        simulation = simulate(self._live.model, Run("filmed", (stamps - origin_ns) * 1e-9, schedule))
+        markers = simulation.markers - self._middle
+        markers += self._ripple * self._generator.standard_normal(markers.shape)
+        return [Exposure(int(stamp), each) for stamp, each in zip(stamps, markers, strict=True)]
+
     def _seen(self) -> np.ndarray:
         markers = self._live.markers - self._middle
         return markers + self._ripple * self._generator.standard_normal(markers.shape)
+
+
+def _in_order(states: Sequence[tuple[int, np.ndarray]]) -> list[tuple[int, np.ndarray]]:
+    kept: list[tuple[int, np.ndarray]] = []
+    for stamp_ns, voltage in states:
+        if not kept or stamp_ns > kept[-1][0]:
+            kept.append((stamp_ns, voltage))
+    return kept

@@ -19,6 +19,10 @@ from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.model import Model
 
 
+_SHORTEST = 1e-3
+"""Of a usual step: the body is not moved on by less, since in so short a time nothing but rounding accelerates it."""
+
+
 @dataclass(frozen=True)
 class LiveAngle:
     """The simulated sine of the bending angle at a state message's stamp [ns]."""
@@ -141,7 +145,7 @@ class LiveSimulator:
         """Step to a stamp [ns] and return by how much [s]."""
         time, numerics = (stamp_ns - self._origin_ns) * 1e-9, self.model.description.numerics
         step = time - self._time
-        if step > 0:
+        if step > _SHORTEST / numerics.steps_per_second:
             plan = plan_steps(
                 np.array([time]), numerics.steps_per_second, numerics.spectral_radius, self._time, time
             )
@@ -154,7 +158,7 @@ class LiveSimulator:
                 positions.append(self.position)
             self._see(plan.boundaries[1:], positions)
             self._time = time
-        self._angles.expect(stamp_ns, time)
+        self._angles.expect(stamp_ns, self._time)
         return step
 
     def _see(self, times: np.ndarray, positions: list[np.ndarray]) -> None:

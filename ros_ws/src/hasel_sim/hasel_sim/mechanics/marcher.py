@@ -147,13 +147,14 @@ class Marcher:
     def try_again(self, step: int) -> bool:
         """Make a step where it failed, with a matrix for every correction; whether all lanes have made it now.
 
-        It starts from the extrapolated acceleration, and then from the last.
+        It starts from the extrapolated acceleration, then from the last, then from none: after a step that was much
+        shorter neither of the first two says anything.
         """
         made = self.arrived.copy()
-        for extrapolated in (True, False):
+        for start in (None, self.state.acceleration, 0.0):
             self._march(PREDICT, (step, step + 1))
-            if not extrapolated:
-                self._guess[:] = self.state.acceleration
+            if start is not None:
+                self._guess[:] = start
             self._wanted &= ~made
             self._balance(step, one_matrix=False)
             self._march(COMMIT, (step, step + 1))

@@ -213,6 +213,20 @@ def test_a_motion_that_cannot_be_followed_is_said_and_starts_anew(swimmer):
     assert answers[answers.index(failed[0]) + 1].arrival == Arrival.START
 
 
+def test_two_stamps_that_nearly_coincide_do_not_end_the_motion(swimmer):
+    """Two clocks meet now and then; a step of some nanoseconds says nothing of the acceleration."""
+    stamps, voltage = frames(2.0, 0.5)
+    simulator, twice = LiveSimulator(swimmer), LiveSimulator(swimmer)
+    heard = list(live(simulator, stamps, voltage).values())
+    sines, sentences = [], []
+    for stamp, each in zip(stamps, voltage, strict=True):
+        answers = [twice.receive(int(stamp) + later, each) for later in (0, 10)]
+        sines.append(answers[0].angles[-1].sin_theta)
+        sentences += [answer.sentence for answer in answers]
+    assert not any(sentences)
+    assert np.abs(np.array(sines) - heard).max() < 1e-5
+
+
 def test_another_model_of_the_same_body_goes_on_in_the_present_motion(swimmer):
     """Adding an effect at run time does not make the body jump, and acts from then on."""
     stamps, voltage = frames(2.0, 1.0)
