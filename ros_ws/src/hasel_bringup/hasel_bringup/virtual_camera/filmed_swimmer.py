@@ -71,7 +71,8 @@ class FilmedSwimmer:
         if len(stamps) == 0:
             return []
         schedule = DriveSchedule(
-            np.array([stamp - origin_ns for stamp, _ in kept]) * 1e-9, np.array([voltage for _, voltage in kept])
+            np.array([stamp - origin_ns for stamp, _ in kept]) * 1e-9,
+            np.array([voltage for _, voltage in kept]),
         )
         simulation = simulate(self._live.model, Run("filmed", (stamps - origin_ns) * 1e-9, schedule))
         markers = simulation.markers - self._middle

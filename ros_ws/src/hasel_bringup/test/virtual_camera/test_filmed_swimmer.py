@@ -41,7 +41,9 @@ def test_states_that_come_twice_or_late_are_left_out(swimmer):
     disturbed = states()
     disturbed.insert(12, disturbed[4])
     disturbed.insert(20, disturbed[19])
-    assert [each.markers.tolist() for each in swimmer.film(disturbed)] == [e.markers.tolist() for e in expected]
+    assert [each.markers.tolist() for each in swimmer.film(disturbed)] == [
+        e.markers.tolist() for e in expected
+    ]
 
 
 def test_a_run_without_states_has_no_pictures(swimmer):

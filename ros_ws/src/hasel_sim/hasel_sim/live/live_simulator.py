@@ -18,7 +18,6 @@ from hasel_sim.mechanics.steps import plan_steps
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.model import Model
 
-
 _SHORTEST = 1e-3
 """Of a usual step: the body is not moved on by less, since in so short a time nothing but rounding accelerates it."""
 

@@ -1,6 +1,6 @@
 """Which experiment would make the remaining explanations differ most, in units of the noise."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from itertools import combinations
@@ -8,8 +8,9 @@ from itertools import combinations
 import numpy as np
 from hasel_recording import HASEL_PAIR
 from hasel_sim.errors import SimulationError
+from hasel_sim.mechanics.simd import LANES
 from hasel_sim.model import Model
-from hasel_sim.simulate import simulate
+from hasel_sim.simulate import simulate_many
 
 from hasel_sysid.draft import draft
 from hasel_sysid.drive_match import drive_unit, model_channels
@@ -67,20 +68,37 @@ def suggest(
             f"no experiment is possible: the highest level allowed is {highest:g} {unit} and the lowest known one "
             f"{levels[0]:g} {unit}; raise --max-voltage"
         )
+    drafts = {name: draft(model) for name, model in candidates.items()}
     futures = [
-        {name: pool.submit(simulate, draft(model), manoeuvre.run()) for name, model in candidates.items()}
-        for manoeuvre in library
+        {name: pool.submit(_simulated, each, group) for name, each in drafts.items()}
+        for group in _alike(library)
     ]
     found = []
-    for number, (manoeuvre, pending) in enumerate(zip(library, futures, strict=True)):
-        try:
-            series = {name: future.result().sin_theta for name, future in pending.items()}
-        except SimulationError:
-            continue
-        found.append(_suggestion(manoeuvre, series, noise))
+    for number, (group, pending) in enumerate(zip(_alike(library), futures, strict=True)):
+        simulated = {name: future.result() for name, future in pending.items()}
+        for index, manoeuvre in enumerate(group):
+            series = {name: each[index] for name, each in simulated.items() if each[index] is not None}
+            if len(series) == len(drafts):
+                found.append(_suggestion(manoeuvre, series, noise))
         if progress:
-            progress(str(manoeuvre), (number + 1) / len(library))
+            progress(str(group[-1]), (number + 1) / len(futures))
     return sorted(found, key=lambda suggestion: -suggestion.difference)
+
+
+def _alike(library: Sequence[Manoeuvre]) -> list[list[Manoeuvre]]:
+    """In groups of about the same duration, each as large as runs are simulated side by side."""
+    by_duration = sorted(library, key=lambda manoeuvre: len(manoeuvre.run().time))
+    return [by_duration[first : first + LANES[-1]] for first in range(0, len(by_duration), LANES[-1])]
+
+
+def _simulated(model: Model, group: Sequence[Manoeuvre]) -> list[np.ndarray | None]:
+    """The angle in every manoeuvre; None where the motion could not be followed."""
+    series: list[np.ndarray | None] = []
+    for result in simulate_many([(model, manoeuvre.run()) for manoeuvre in group]):
+        if isinstance(result, Exception) and not isinstance(result, SimulationError):
+            raise result
+        series.append(None if isinstance(result, Exception) else result.sin_theta)
+    return series
 
 
 def _suggestion(manoeuvre: Manoeuvre, series: dict[str, np.ndarray], noise: NoiseModel) -> Suggestion:
