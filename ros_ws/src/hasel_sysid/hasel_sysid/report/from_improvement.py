@@ -49,7 +49,7 @@ def improvement_content(
         parameters=parameter_rows(last.fit.model, dict.fromkeys(last.fit.at_bound, "on its bound")),
         remains=_remains(improvement),
         messages=tuple(last.fit.sentences),
-        next_runs=tuple(_next_run(suggestion) for suggestion in suggestions[:_SHOWN_SUGGESTIONS]),
+        next_runs=tuple(next_run(suggestion) for suggestion in suggestions[:_SHOWN_SUGGESTIONS]),
     )
 
 
@@ -148,6 +148,7 @@ def _remains(improvement: Improvement) -> tuple[str, ...]:
     return (left, *(() if last is None else what_remains(last)))
 
 
-def _next_run(suggestion: Suggestion) -> NextRun:
+def next_run(suggestion: Suggestion) -> NextRun:
+    """A suggestion as the report shows it."""
     names = sorted({name for pair in suggestion.pairs for name in pair})
     return NextRun(f"{suggestion.manoeuvre}.".capitalize(), suggestion.difference, names)

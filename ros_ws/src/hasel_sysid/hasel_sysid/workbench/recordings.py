@@ -1,0 +1,71 @@
+"""Recordings read for the workbench: what can be used, and what must be said of them."""
+
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from hasel_recording import Recording, RecordingError, RecordingWarning, read_recording
+from hasel_sim.model import Model
+
+from hasel_sysid.data_gate import check_recording
+from hasel_sysid.dataset import Experiment, for_model, usable
+from hasel_sysid.errors import SysidError
+from hasel_sysid.workbench.state import Banner
+
+DEFAULT_MODEL = "swimmer"
+
+
+@dataclass(frozen=True)
+class Reading:
+    """How recordings are read. mapping: columns, as of --map; drives: the file of the drive of each recording, by the
+    recording's path, for those that have one.
+    """
+
+    mapping: Mapping[str, str] = field(default_factory=dict)
+    drives: Mapping[str, Path] = field(default_factory=dict)
+
+
+def read(paths: Sequence[str | Path], reading: Reading) -> tuple[list[Recording], list[Banner]]:
+    """What can be read, and a sentence for each that cannot."""
+    found, banners = [], []
+    for path in paths:
+        try:
+            found.append(read_recording(path, reading.mapping or None, reading.drives.get(str(path))))
+        except RecordingError as error:
+            banners.append(Banner("error", str(error)))
+    return found, banners
+
+
+def chosen_name(asked: str | None, recordings: Sequence[Recording]) -> str:
+    """The model asked for, else the one that all headers name, else the swimmer."""
+    named = {recording.metadata.get("model") for recording in recordings}
+    return asked or (named.pop() if len(named) == 1 else None) or DEFAULT_MODEL
+
+
+def checked(
+    model: Model, recordings: Sequence[Recording], known: Sequence[str]
+) -> tuple[list[Experiment], list[Banner]]:
+    """Those that this model can be compared with, and what the data check finds in them.
+
+    known: names that are taken already; a run of the same name is not loaded twice.
+    """
+    found: list[Experiment] = []
+    banners: list[Banner] = []
+    for recording in recordings:
+        if recording.name in (*known, *(each.name for each in found)):
+            banners.append(
+                Banner("warning", f"{recording.name} is loaded already; rename the file to load another.")
+            )
+            continue
+        try:
+            with warnings.catch_warnings(record=True) as said:
+                warnings.simplefilter("always", RecordingWarning)
+                (experiment,) = for_model(model.with_levels([]), usable([recording]))
+        except (RecordingError, SysidError) as error:
+            banners.append(Banner("error", str(error)))
+            continue
+        found.append(experiment)
+        banners += [Banner("warning", str(each.message)) for each in said]
+        banners += [Banner(f.severity.value, str(f)) for f in check_recording(experiment.recording)]
+    return found, banners

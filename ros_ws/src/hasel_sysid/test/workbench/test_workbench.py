@@ -1,0 +1,184 @@
+"""The session: load, compare, diagnose, try, keep, take back, export; no page is needed."""
+
+import json
+import subprocess
+import sys
+from importlib import import_module
+
+import numpy as np
+import pytest
+from hasel_sim.model import load_model
+from hasel_sysid.errors import SysidError
+from hasel_sysid.suggest import Manoeuvre
+from hasel_sysid.workbench.waterfall import waterfall
+
+suggest_module = import_module("hasel_sysid.suggest.suggest")
+
+
+def test_the_four_steps(loaded, monkeypatch):
+    """The hidden effect comes first; switched on, the error falls on unseen runs too; taken back, it is as before."""
+    loaded.diagnose()
+    fitted = loaded.state.current
+    assert [step.label for step in loaded.state.steps] == ["start", "fit"]
+    best = loaded.cards()[0]
+    assert (best.effect, best.verdict) == ("quadratic_drag", "missing")
+    assert best.expected.startswith("coefficient = 0.2")
+
+    loaded.switch_on("quadratic_drag")
+    trial = loaded.state.trial
+    assert trial.error < 0.3 * fitted.error
+    assert trial.error_unseen < 0.3 * fitted.error_unseen
+    assert waterfall(loaded.state).tried
+    assert loaded.cards()[0].on
+
+    loaded.fit()  # what is being tried goes on being tried
+    assert loaded.state.trial.label == "+ quadratic_drag"
+    loaded.keep()
+    assert loaded.state.trial is None
+    assert [stage.label for stage in waterfall(loaded.state).stages] == ["start", "fit", "+ quadratic_drag"]
+    kept = load_model(loaded.folder / loaded.state.current.file)
+    assert kept.values == pytest.approx(loaded.state.current.model.values)
+
+    loaded.take_back()
+    assert loaded.state.current is fitted
+    assert not any(card.on for card in loaded.cards())
+    loaded.go_to(2)
+    assert loaded.state.current.label == "+ quadratic_drag"
+    loaded.go_to(1)
+    lines = [json.loads(line) for line in (loaded.folder / "workbench.jsonl").read_text().splitlines()]
+    assert [line["what"] for line in lines] == ["kept"] * 3 + ["taken back", "restored", "taken back"]
+    assert all((loaded.folder / line["model"]).exists() for line in lines)
+
+    few = [Manoeuvre(5500.0, 3.5, 2, "box", "both"), Manoeuvre(5500.0, 3.5, 2, "box", "upper")]
+    monkeypatch.setattr(suggest_module, "manoeuvres", lambda *_: few)
+    loaded.suggest()
+    first, second = loaded.state.suggestions
+    assert first.difference > second.difference > 0
+
+
+def test_the_exported_script_does_it_all_again(new_session, short_runs, tmp_path):
+    """Run by itself, it ends with the same model and the same errors."""
+    session = new_session()
+    session.load(short_runs[0][:1])
+    session.switch_on("quadratic_drag")
+    session.set_values({"quadratic_drag.coefficient": 0.3})
+    session.keep()
+    session.fit()
+    written = {path.name for path in session.export(tmp_path / "export")}
+    assert {"model.yaml", "report.html", "session.py", "waterfall.svg", "waterfall.png"} <= written
+    assert "fit_4500V_3.5Hz.svg" in written
+    done = subprocess.run(
+        [sys.executable, "session.py"],
+        cwd=tmp_path / "export",
+        capture_output=True,
+        text=True,
+        timeout=100,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    for step in session.state.kept:
+        assert f"{step.label}: mean |Δ sin θ| = {step.error:.5f}" in done.stdout
+    again = load_model(tmp_path / "export" / "model_again.yaml").values
+    assert again == pytest.approx(load_model(tmp_path / "export" / "model.yaml").values, rel=1e-3)
+
+
+def test_a_small_change_is_foretold_by_the_derivatives(loaded):
+    """Curve and errors of the linear prediction are those of the true simulation, to second order."""
+    state = loaded.state
+    value = state.current.model.values["amplitude_5500"]
+    values = {"amplitude_5500": 1.02 * value}
+    foretold = loaded.predict("fit_5500V_2.0Hz", values)
+    truth = loaded.true("fit_5500V_2.0Hz", values).result()
+    before = state.current.simulations[state.number_of("fit_5500V_2.0Hz")]
+    moved = np.abs(truth.sin_theta - before.sin_theta).max()
+    assert moved > 0.002
+    assert np.abs(foretold.sin_theta - truth.sin_theta).max() < 0.15 * moved
+
+    loaded.set_values(values)
+    trial = loaded.state.trial
+    assert trial.model.values["amplitude_5500"] == pytest.approx(1.02 * value)
+    assert foretold.error == pytest.approx(trial.error, rel=0.01)
+    assert foretold.error_unseen == pytest.approx(trial.error_unseen, rel=0.01)
+
+
+def test_values_stay_within_their_bounds(loaded):
+    """A slope below what the model allows is the lowest that it allows."""
+    loaded.set_values({"slope": -3.0})
+    assert loaded.state.trial.model.values["slope"] == loaded.state.current.model.parameters["slope"].lower
+
+
+def test_an_effect_can_be_tried_before_any_diagnosis(loaded):
+    """At its typical size; the card says what it is; switched off again, the model is the one before."""
+    loaded.switch_on("quadratic_drag")
+    effect = next(card for card in loaded.cards() if card.effect == "quadratic_drag")
+    assert effect.on and effect.equation and effect.parameters and not effect.said
+    loaded.keep()
+    loaded.switch_off("quadratic_drag")
+    assert loaded.state.trial.error == pytest.approx(loaded.state.steps[0].error)
+    with pytest.raises(SysidError, match="'− quadratic_drag' is being tried; keep it or take it back first"):
+        loaded.diagnose()
+
+
+def test_what_cannot_be_read_is_a_banner(loaded, unseen_rig, tmp_path):
+    """A truncated file, a run that is there already and a missing file get a sentence each; the session goes on."""
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(b"\x89MCAP0\r\n\x00\x01")
+    known = unseen_rig / "quadratic_drag" / "fit_5500V_2.0Hz.csv"
+    steps = loaded.state.steps
+    loaded.load([cut, tmp_path / "none.csv"])
+    loaded.load([known])
+    texts = [banner.text for banner in loaded.state.banners]
+    assert any("cut.mcap" in text for text in texts)
+    assert any("none.csv" in text for text in texts)
+    assert any("is loaded already" in text for text in texts)
+    assert loaded.state.steps == steps
+    loaded.dismiss()
+    assert loaded.state.banners == ()
+
+
+def test_more_runs_judge_every_step_anew(loaded, unseen_rig):
+    """The history stays, with the errors that it has on all runs there are now."""
+    loaded.switch_on("quadratic_drag")
+    loaded.keep()
+    before = [step.error for step in loaded.state.steps]
+    loaded.load([unseen_rig / "quadratic_drag" / "fit_3500V_3.5Hz.csv"])
+    after = loaded.state.steps
+    assert [step.label for step in after] == ["start", "+ quadratic_drag"]
+    assert all(len(step.comparison.runs) == 4 for step in after)
+    assert [step.error for step in after] != before
+
+
+def test_nothing_changes_where_work_is_broken_off(loaded):
+    """A progress that raises leaves the session as it was, and free for the next work."""
+
+    def cancelled(_text, share):
+        if share > 0.01:
+            raise KeyboardInterrupt
+
+    version = loaded.version
+    with pytest.raises(KeyboardInterrupt):
+        loaded.fit(cancelled)
+    assert loaded.version == version
+    loaded.set_values({"slope": 0.4})
+
+
+@pytest.mark.parametrize(
+    ("act", "sentence"),
+    [
+        (lambda s: s.keep(), "nothing is being tried"),
+        (lambda s: s.take_back(), "this is the first step"),
+        (lambda s: s.go_to(7), "there is no step 7"),
+        (lambda s: s.suggest(), "diagnose first"),
+        (lambda s: s.predict("fit_1V", {}), "there is no run 'fit_1V'"),
+    ],
+)
+def test_what_cannot_be_done_is_a_sentence(loaded, act, sentence):
+    """With what to do instead."""
+    with pytest.raises(SysidError, match=sentence):
+        act(loaded)
+
+
+def test_an_empty_session_asks_for_runs(new_session):
+    """Nothing can be fitted yet."""
+    with pytest.raises(SysidError, match=r"drop \.csv or \.mcap files"):
+        new_session().fit()
