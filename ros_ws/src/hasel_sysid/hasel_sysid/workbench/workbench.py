@@ -156,7 +156,7 @@ class Workbench:
     ) -> "Future[Simulation]":
         """The simulation of one run with the model shown and these values, in a process of its own."""
         state = self.state
-        model = state.shown.model.with_values(values or {})
+        model = state.shown.model.with_values(dict(values or {}))
         return self.hand.submit(simulate, model, state.every[state.number_of(run)].run, (), shapes)
 
     def _take(self, recordings: Sequence[Recording], unseen: bool, progress: Progress) -> None:
