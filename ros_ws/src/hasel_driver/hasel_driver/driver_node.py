@@ -10,6 +10,7 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_interfaces.msg import SupplyState
 from hasel_recording.endpoints import Role, frame_of, publisher
+from hasel_recording.spinning import quiet_at_shutdown, spin
 from hasel_recording.topics import DIAGNOSTICS, NAMESPACE, STATE
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.duration import Duration
@@ -28,7 +29,6 @@ from hasel_driver.middleware import avoid_shared_memory
 from hasel_driver.node_parameters import declare, values
 from hasel_driver.parameter_files import check_files
 from hasel_driver.realtime import middleware_threads, request_realtime
-from hasel_driver.spinning import quiet_at_shutdown, spin
 from hasel_driver.status import Status
 from hasel_driver.supervisor import Supervisor
 from hasel_driver.supply_history import SupplyHistory

@@ -13,6 +13,7 @@ from hasel_interfaces.msg import SupplyState
 from hasel_recording.endpoints import Role
 from hasel_recording.errors import RecordingError
 from hasel_recording.provenance import provenance
+from hasel_recording.spinning import quiet_at_shutdown
 from hasel_recording.topics import STATE, TOPIC_TYPES, known_as, relative
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import CallbackGroup
@@ -24,7 +25,6 @@ from hasel_driver.experiment import Experiment, ExperimentPlan
 from hasel_driver.experiment_recording import ExperimentRecording
 from hasel_driver.node_parameters import values
 from hasel_driver.recording_path import chosen_path, reserve, reserve_unique
-from hasel_driver.spinning import quiet_at_shutdown
 from hasel_driver.supply_thread import SupplyThread
 from hasel_driver.waveform import Waveform
 from hasel_driver.waveform_file import read_waveform

@@ -7,13 +7,13 @@ from collections.abc import Callable
 import rclpy
 from hasel_interfaces.msg import Actuation
 from hasel_recording.endpoints import Role
+from hasel_recording.spinning import quiet_at_shutdown
 from hasel_recording.topics import COMMAND, relative
 from rclpy.clock import Clock, ClockType
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
 from hasel_driver.realtime import request_realtime
-from hasel_driver.spinning import quiet_at_shutdown
 from hasel_driver.stop_holders import StopHolders
 from hasel_driver.stop_topic import StopTopic
 

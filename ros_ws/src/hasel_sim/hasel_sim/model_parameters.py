@@ -1,9 +1,10 @@
 """The model's parameters as parameters of the node, so that they can be changed while it runs."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from math import isfinite
 
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
+from rclpy.exceptions import InvalidParameterValueException
 from rclpy.node import Node
 from rclpy.parameter import Parameter as RosParameter
 
@@ -25,17 +26,31 @@ class ModelParameters:
     def declare(self, model: Model) -> Model:
         """Replace the declared parameters by this model's; values given from outside at the start go first."""
         first = self._model is None
-        for name in [] if first else self._model.parameters:
-            self._node.undeclare_parameter(PREFIX + name)
-        self._model = None
-        values = {}
-        for parameter in model.parameters.values():
-            declared = self._node.declare_parameter(
-                PREFIX + parameter.name, parameter.value, _descriptor(parameter), ignore_override=not first
-            )
-            values[parameter.name] = declared.value
+        self.forget()
+        values: dict[str, float] = {}
+        try:
+            for parameter in model.parameters.values():
+                declared = self._node.declare_parameter(
+                    PREFIX + parameter.name,
+                    parameter.value,
+                    _descriptor(parameter),
+                    ignore_override=not first,
+                )
+                values[parameter.name] = declared.value
+        except InvalidParameterValueException:
+            self._undeclare(values)
+            raise
         self._model = model.with_values(values)
         return self._model
+
+    def forget(self) -> None:
+        """Undeclare all of them."""
+        model, self._model = self._model, None
+        self._undeclare(model.parameters if model is not None else ())
+
+    def _undeclare(self, names: Iterable[str]) -> None:
+        for name in names:
+            self._node.undeclare_parameter(PREFIX + name)
 
     def _changed(self, parameters: list[RosParameter]) -> Model:
         values = {p.name.removeprefix(PREFIX): p.value for p in parameters if p.name.startswith(PREFIX)}

@@ -9,12 +9,14 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_interfaces.srv import AddEffect, LoadModel, RemoveEffect
 from hasel_recording.endpoints import STEADY, Role, frame_of, publisher, subscription
+from hasel_recording.managed_node import ManagedNode, start_and_spin
 from hasel_recording.topics import DIAGNOSTICS, NAMESPACE, SIMULATED, STATE, SWIMMER
-from rclpy.node import Node
+from rclpy.exceptions import InvalidParameterValueException
+from rclpy.subscription import Subscription
 from threadpoolctl import threadpool_limits
 from visualization_msgs.msg import MarkerArray
 
-from hasel_sim.errors import HaselSimError
+from hasel_sim.errors import HaselSimError, SimulationError
 from hasel_sim.live.live_model import live_model
 from hasel_sim.live.live_simulator import LiveAnswer, LiveSimulator
 from hasel_sim.live.pace import Pace
@@ -27,22 +29,19 @@ from hasel_sim.simulator_messages import BodyMessage, angle_message, diagnostics
 from hasel_sim.simulator_parameters import PARAMETERS
 
 
-class SimulatorNode(Node):
-    """Thin: all that is simulated happens in `LiveSimulator`."""
+class SimulatorNode(ManagedNode):
+    """Thin: all that is simulated happens in `LiveSimulator`. Inactive, it has its model and hears no state."""
+
+    expected_errors = (HaselSimError, InvalidParameterValueException)
 
     def __init__(self) -> None:
         super().__init__("hasel_simulator", namespace=NAMESPACE)
         self._warnings = RepeatedWarnings()
         declare(self, PARAMETERS)
-        model, warning = live_model(self._value("model"), words(self, "effects"))
-        self._warn(warning)
-        options = {name: self._value(name) for name in ("history", "gap", "reset", "late", "load_factor")}
         self.model_parameters = ModelParameters(self, self._use)
-        model = self.model_parameters.declare(model)
-        self.live = LiveSimulator(model, **options)
-        _warm_up(LiveSimulator(model, **options))
+        self._live: LiveSimulator | None = None
+        self._states: Subscription | None = None
         self._frame_id = frame_of(self, self._value("frame_id"))
-        self._body = BodyMessage(self.live.mesh, len(self.live.markers), self._frame_id)
         self._pace = Pace()
         self._counts: Counter[str] = Counter()
         self._next_angle_ns = self._next_shape_s = 0
@@ -53,8 +52,45 @@ class SimulatorNode(Node):
         self.create_service(RemoveEffect, "remove_effect", self._remove_effect)
         self.create_service(LoadModel, "load_model", self._load_model)
         self.create_timer(1.0, self._report, clock=STEADY)
-        states = subscription(self, SupplyState, STATE, self._on_state, Role.EVERY_SAMPLE)
-        self.get_logger().info(f"Simulating model '{model.name}', ready for {states.topic_name}.")
+
+    @property
+    def live(self) -> LiveSimulator:
+        """The simulation. Raises SimulationError where the node has not been configured."""
+        if self._live is None:
+            raise SimulationError("no model has been built: configure the node (lifecycle) first")
+        return self._live
+
+    # Lifecycle
+
+    def configure(self) -> None:
+        """Build the model and compile what simulates it."""
+        model, warning = live_model(self._value("model"), words(self, "effects"))
+        self._warn(warning)
+        options = {name: self._value(name) for name in ("history", "gap", "reset", "late", "load_factor")}
+        model = self.model_parameters.declare(model)
+        self._live = LiveSimulator(model, **options)
+        _warm_up(LiveSimulator(model, **options))
+        self._body = BodyMessage(self._live.mesh, len(self._live.markers), self._frame_id)
+
+    def activate(self) -> None:
+        """Listen to the supply's state."""
+        self._states = subscription(self, SupplyState, STATE, self._on_state, Role.EVERY_SAMPLE)
+        self.get_logger().info(
+            f"Simulating model '{self.live.model.name}', ready for {self._states.topic_name}."
+        )
+
+    def deactivate(self) -> None:
+        """Hear no state any more; the next one starts from rest."""
+        if self._states is not None:
+            self.destroy_subscription(self._states)
+            self._states = None
+        if self._live is not None:
+            self._live.restart()
+
+    def cleanup(self) -> None:
+        """Forget the model and its parameters."""
+        self.model_parameters.forget()
+        self._live = None
 
     def _value(self, name: str):
         return self.get_parameter(name).value
@@ -63,6 +99,8 @@ class SimulatorNode(Node):
         sentence = sentence and self._warnings.to_say(sentence, time.monotonic())
         if sentence:
             self.get_logger().warning(sentence[:1].upper() + sentence[1:] + ".")
+
+    # Topics
 
     def _on_state(self, state: SupplyState, info: dict) -> None:
         begun = time.perf_counter()
@@ -94,6 +132,12 @@ class SimulatorNode(Node):
 
     def _report(self) -> None:
         pace, counts = self._pace.report(), self._counts
+        name, stamp = self.get_fully_qualified_name().lstrip("/"), self.get_clock().now().to_msg()
+        if not self.active:
+            state = "inactive" if self._live is not None else "unconfigured"
+            words = f"{state}: nothing is simulated"
+            self._diagnostics.publish(diagnostics(name, DiagnosticStatus.OK, words, {}, stamp))
+            return
         level = DiagnosticStatus.WARN if pace.behind else DiagnosticStatus.OK
         values = {
             "model": self.live.model.name,
@@ -108,7 +152,6 @@ class SimulatorNode(Node):
         }
         if counts["held"] or counts["gap"]:
             level = DiagnosticStatus.WARN
-        name, stamp = self.get_fully_qualified_name().lstrip("/"), self.get_clock().now().to_msg()
         self._diagnostics.publish(diagnostics(name, level, str(pace), values, stamp))
         self._counts = Counter({name: counts[name] for name in ("start", "restart")})
 
@@ -117,6 +160,8 @@ class SimulatorNode(Node):
         self.live.use(model)
         if self.live.mesh is not before:
             self._body = BodyMessage(self.live.mesh, len(self.live.markers), self._frame_id)
+
+    # Services
 
     def _add_effect(self, request: AddEffect.Request, response: AddEffect.Response) -> AddEffect.Response:
         def add() -> str:
@@ -139,6 +184,7 @@ class SimulatorNode(Node):
 
     def _load_model(self, request: LoadModel.Request, response: LoadModel.Response) -> LoadModel.Response:
         def load() -> str:
+            _ = self.live  # configured
             model, warning = live_model(request.model)
             self._warn(warning)
             self._change(model)
@@ -169,7 +215,7 @@ def _warm_up(live: LiveSimulator) -> None:
 def main() -> int:
     """Run the node until it is interrupted; returns the exit code."""
     with threadpool_limits(1):
-        return run_node(SimulatorNode)
+        return run_node(SimulatorNode, start_and_spin)
 
 
 if __name__ == "__main__":

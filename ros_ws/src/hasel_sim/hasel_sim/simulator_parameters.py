@@ -1,8 +1,11 @@
 """The simulator node's parameters."""
 
+from hasel_recording.autostart import AUTOSTART
+
 from hasel_sim.node_parameters import NodeParameter
 
 PARAMETERS = (
+    NodeParameter(*AUTOSTART),
     NodeParameter("model", "swimmer", "model simulated at the start: its name or file"),
     NodeParameter(
         "effects", [""], "effects added to the model at the start: ids, or path/to/file.py:ClassName"

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.subscription import Subscription
 from sensor_msgs.msg import CompressedImage, Image
 
 from hasel_tracker.errors import TrackerError
@@ -32,7 +33,14 @@ class ImageTopic:
         self._last_stamp_ns: int | None = None
         self._intervals_ns: deque[int] = deque(maxlen=USUAL_INTERVALS)
         self.lost = 0
+        self._subscription: Subscription | None = None
         self._waiting = node.create_timer(LOOK_PERIOD_S, self._subscribe)
+
+    def close(self) -> None:
+        """Hear no image any more."""
+        self._node.destroy_timer(self._waiting)
+        if self._subscription is not None:
+            self._node.destroy_subscription(self._subscription)
 
     def _subscribe(self) -> None:
         """Subscribe reliably if the images are sent so: best effort loses most large images."""
@@ -43,7 +51,7 @@ class ImageTopic:
         reliable = all(each.qos_profile.reliability == ReliabilityPolicy.RELIABLE for each in publishers)
         policy = ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT
         kind = CompressedImage if self._topic.endswith("compressed") else Image
-        self._node.create_subscription(
+        self._subscription = self._node.create_subscription(
             kind, self._topic, self._take, QoSProfile(depth=QUEUE_DEPTH, reliability=policy)
         )
 

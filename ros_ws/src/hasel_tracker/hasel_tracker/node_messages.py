@@ -66,6 +66,16 @@ def diagnostic_status(
     )
 
 
+def resting_status(node_name: str) -> DiagnosticStatus:
+    """That of a node that is not active."""
+    return DiagnosticStatus(
+        level=DiagnosticStatus.OK,
+        name=f"{node_name}: tracking",
+        message="Not active: nothing is tracked.",
+        hardware_id="camera",
+    )
+
+
 def parameter_descriptor(parameter: NodeParameter) -> ParameterDescriptor:
     """Description, range and whether it may change, for `ros2 param describe`."""
     descriptor = ParameterDescriptor(description=parameter.meaning, read_only=not parameter.changeable)

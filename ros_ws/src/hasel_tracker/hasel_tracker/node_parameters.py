@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import Any
 
+from hasel_recording.autostart import AUTOSTART
+
 from hasel_tracker.calibration.settings_file import COLOUR_KEYS, SEARCH_KEYS, flat
 from hasel_tracker.choices import BODY_KINDS, DEFAULT_METHOD, METHODS
 from hasel_tracker.tracking.tracker_settings import TrackerSettings
@@ -31,6 +33,7 @@ def _search(
 
 
 PARAMETERS = (
+    NodeParameter(*AUTOSTART),
     NodeParameter("source", "0", "camera number or device, video file, folder of images, or topic:NAME"),
     NodeParameter("width", 1920, "asked of the camera [px]", 16, 8192),
     NodeParameter("height", 1080, "asked of the camera [px]", 16, 8192),

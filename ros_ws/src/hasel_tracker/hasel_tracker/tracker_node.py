@@ -10,13 +10,13 @@ from typing import Any
 import cv2
 import numpy as np
 import rclpy
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from hasel_interfaces.msg import BendingAngle
 from hasel_recording.endpoints import STEADY, Role, frame_of, publisher
+from hasel_recording.managed_node import ManagedNode, start_and_spin
 from hasel_recording.topics import DIAGNOSTICS, MEASURED, NAMESPACE
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.executors import ExternalShutdownException
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import CompressedImage
@@ -36,6 +36,7 @@ from hasel_tracker.node_messages import (
     compressed_image,
     diagnostic_status,
     parameter_descriptor,
+    resting_status,
 )
 from hasel_tracker.node_parameters import PARAMETERS, SEARCH_NAMES
 from hasel_tracker.sources.camera_source import CameraFormat, CameraSource
@@ -48,8 +49,13 @@ TOPIC_PREFIX = "topic:"
 PREVIEW_JPEG_QUALITY = 70
 
 
-class TrackerNode(Node):
-    """Publishes the bending angle of every frame, a preview, and diagnostics; records video on request."""
+class TrackerNode(ManagedNode):
+    """Publishes the bending angle of every frame, a preview, and diagnostics; records video on request.
+
+    Inactive, the source is open and nothing is tracked; a file or folder is played from its beginning when active.
+    """
+
+    expected_errors = (TrackerError,)
 
     def __init__(self) -> None:
         super().__init__("hasel_tracker", namespace=NAMESPACE)
@@ -63,39 +69,63 @@ class TrackerNode(Node):
         self._topic: ImageTopic | None = None
         self._last_note = ""
         self._camera: PersistentCamera | None = None
-        self._live = self._open(self._value("source"))
+        self._live: LiveTracker | None = None
         self.add_on_set_parameters_callback(self._check_settings)
         self.add_post_set_parameters_callback(self._apply_settings)
         self.create_service(SetBool, "~/record_video", self._record_video)
         self.create_service(Trigger, "~/restart", self._restart)
         self.create_timer(1.0, self._report, clock=STEADY)
-        self._live.start()
 
-    def close(self) -> None:
-        """Stop the threads and finish a video being recorded."""
-        if self._camera is not None:
-            self._camera.close()
-        self._live.stop()
+    # Lifecycle
 
-    def _value(self, name: str) -> Any:
-        return self.get_parameter(name).value
-
-    def _open(self, source: str) -> LiveTracker:
-        read = None
-        if source.startswith(TOPIC_PREFIX):
-            self._topic = ImageTopic(self, source.removeprefix(TOPIC_PREFIX), lambda: self._live)
-        elif source.isdigit() or source.startswith("/dev/"):
+    def configure(self) -> None:
+        """Open the source."""
+        source, read = self._value("source"), None
+        if source.isdigit() or source.startswith("/dev/"):
             self._camera = PersistentCamera(self._open_camera)
             read = self._camera.read
-        else:
+        elif not source.startswith(TOPIC_PREFIX):
             read = Playback(open_recorded(source, self._value("frame_rate"))).read
-        return LiveTracker(
+        self._live = LiveTracker(
             self._new_tracker({}),
             self._publish,
             self._value("queue_size"),
             self._value("decode_threads"),
             read,
         )
+
+    def activate(self) -> None:
+        """Capture and track."""
+        if self._live is None:
+            self.configure()
+        source = self._value("source")
+        if source.startswith(TOPIC_PREFIX):
+            self._topic = ImageTopic(self, source.removeprefix(TOPIC_PREFIX), self._tracking)
+        self._reported_drops = 0
+        self._tracking().start()
+
+    def deactivate(self) -> None:
+        """Stop the threads and finish a video being recorded."""
+        if self._topic is not None:
+            self._topic.close()
+        if self._camera is not None:
+            self._camera.close()
+        if self._live is not None:
+            self._live.stop()
+        if self._camera is not None:
+            self._camera.release()
+        self._topic = self._camera = self._live = None
+
+    cleanup = deactivate
+    close = deactivate
+
+    def _tracking(self) -> LiveTracker:
+        if self._live is None:
+            raise TrackerError("Nothing is tracked: activate the node (lifecycle) first.")
+        return self._live
+
+    def _value(self, name: str) -> Any:
+        return self.get_parameter(name).value
 
     def _open_camera(self) -> CameraSource:
         source, exposure = self._value("source"), self._value("exposure")
@@ -123,8 +153,9 @@ class TrackerNode(Node):
     def _publish(self, frame: Frame, tracked: TrackedFrame) -> None:
         frame_id = frame_of(self, self._value("frame_id"))
         self._angles.publish(angle_message(tracked, frame.stamp_ns, frame_id))
-        if self._live.tracker.note != self._last_note:
-            self._last_note = self._live.tracker.note
+        live = self._live
+        if live is not None and live.tracker.note != self._last_note:
+            self._last_note = live.tracker.note
             self.get_logger().info(f"Markers: {self._last_note}.")
         rate = self._value("preview_rate")
         if rate > 0.0 and time.monotonic() >= self._next_preview_s:
@@ -134,13 +165,22 @@ class TrackerNode(Node):
             self._previews.publish(compressed_image(jpeg.tobytes(), frame.stamp_ns, frame_id))
 
     def _report(self) -> None:
-        health = self._live.statistics.take()
-        dropped = self._live.queue.dropped + (0 if self._topic is None else self._topic.lost)
+        name = self.get_fully_qualified_name().lstrip("/")
+        message = DiagnosticArray()
+        message.header.stamp = self.get_clock().now().to_msg()
+        message.status.append(
+            self._health(name, self._live) if self.active and self._live is not None else resting_status(name)
+        )
+        self._diagnostics.publish(message)
+
+    def _health(self, name: str, live: LiveTracker) -> DiagnosticStatus:
+        health = live.statistics.take()
+        dropped = live.queue.dropped + (0 if self._topic is None else self._topic.lost)
         camera = None if self._camera is None else self._camera.camera
-        fault = self._live.fault or ("" if self._camera is None else self._camera.fault)
-        self._live.fault = ""
-        if not self._live.running:
-            fault = "The source has ended; start the node again to play it again."
+        fault = live.fault or ("" if self._camera is None else self._camera.fault)
+        live.fault = ""
+        if not live.running:
+            fault = "The source has ended; deactivate and activate the node to play it again."
         report = judge(
             health,
             None if camera is None else camera.asked.frame_rate_hz,
@@ -149,32 +189,29 @@ class TrackerNode(Node):
             fault,
         )
         self._reported_drops = dropped
-        name = self.get_fully_qualified_name().lstrip("/")
-        message = DiagnosticArray()
-        message.header.stamp = self.get_clock().now().to_msg()
-        details: dict[str, Any] = {"dropped frames": dropped, "broken frames": self._live.broken_frames}
+        details: dict[str, Any] = {"dropped frames": dropped, "broken frames": live.broken_frames}
         if camera is not None:
             details["camera"] = camera.given
-        if self._live.recording is not None:
-            details["recording"] = self._live.recording.path
-        message.status.append(diagnostic_status(name, report, health, details))
-        self._diagnostics.publish(message)
+        if live.recording is not None:
+            details["recording"] = live.recording.path
+        return diagnostic_status(name, report, health, details)
 
     def _record_video(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         try:
             if request.data:
                 path = Path(self._value("video_folder")) / f"swimmer_{datetime.now():%Y%m%d_%H%M%S_%f}.mp4"
-                self._live.record(VideoRecorder(path, self._value("frame_rate")))
+                self._tracking().record(VideoRecorder(path, self._value("frame_rate")))
                 response.message = str(path)
             else:
-                response.message = self._live.record_until_now()
+                response.message = self._tracking().record_until_now()
             response.success = True
         except TrackerError as error:
             response.success, response.message = False, str(error)
         return response
 
     def _restart(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        self._live.tracker = self._new_tracker({})
+        if self._live is not None:
+            self._live.tracker = self._new_tracker({})
         response.success, response.message = True, "The markers are searched anew."
         return response
 
@@ -187,7 +224,7 @@ class TrackerNode(Node):
         return SetParametersResult(successful=True)
 
     def _apply_settings(self, parameters: list[Parameter]) -> None:
-        if any(each.name in SEARCH_NAMES for each in parameters):
+        if self._live is not None and any(each.name in SEARCH_NAMES for each in parameters):
             self._live.tracker = self._new_tracker({})
 
 
@@ -217,7 +254,7 @@ def main() -> int:
     node = None
     try:
         node = TrackerNode()
-        rclpy.spin(node)
+        start_and_spin(node)
     except TrackerError as error:
         print(f"error: {error}", file=sys.stderr)
         return 1

@@ -18,6 +18,8 @@ from hasel_tracker.node_parameters import PARAMETERS, SEARCH_NAMES
 from hasel_tracker.sources.video_source import VideoSource
 from hasel_tracker.tracking.bending_tracker import BendingTracker
 from hasel_tracker.video.video_writer import JpegWriter
+from lifecycle_msgs.msg import Transition
+from lifecycle_msgs.srv import ChangeState
 from rcl_interfaces.srv import DescribeParameters, SetParameters
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -138,6 +140,32 @@ def test_video_becomes_angles_preview_and_diagnostics(observer, start, long_vide
     assert picture.shape == (180, 320, 3)
     keys = {value.key for value in observer.reports[0].status[0].values}
     assert {"frame rate [1/s]", "mean latency [ms]", "dropped frames", "quality of head"} <= keys
+
+
+def test_the_lifecycle_stops_and_starts_the_tracking(observer, start, long_video):
+    """Nothing is tracked before it is active nor after; a file is played again from its beginning."""
+
+    def change(transition: int) -> bool:
+        request = ChangeState.Request(transition=Transition(id=transition))
+        return observer.call(ChangeState, "/hasel/hasel_tracker/change_state", request).success
+
+    process = start(f"source:={long_video}", "autostart:=false")
+    record = SetBool.Request(data=True)
+    refused = observer.call(SetBool, "/hasel/hasel_tracker/record_video", record)
+    assert (refused.success, "activate the node" in refused.message) == (False, True)
+    assert change(Transition.TRANSITION_CONFIGURE)
+    assert observer.angles == []
+    for _ in range(2):
+        before = len(observer.angles)
+        assert change(Transition.TRANSITION_ACTIVATE)
+        observer.wait(lambda before=before: len(observer.angles) > before + 20)
+        assert change(Transition.TRANSITION_DEACTIVATE)
+        observer.wait(lambda: "Not active" in observer.reports[-1].status[0].message)
+        resting, reported = len(observer.angles), len(observer.reports)
+        observer.wait(lambda reported=reported: len(observer.reports) > reported + 1)
+        assert len(observer.angles) == resting
+    assert "Traceback" not in stopped(process)
+    assert process.returncode == 0
 
 
 def test_image_topic_services_and_parameters(observer, start, frames, tmp_path):

@@ -2,8 +2,8 @@
 
 import threading
 import time
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from functools import partial
 from typing import Any
 
@@ -12,6 +12,8 @@ from hasel_interfaces.action import RunExperiment
 from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
 from hasel_recording.endpoints import Role, subscription
 from hasel_recording.topics import ERROR, MEASURED, NAMESPACE, SIMULATED, STATE, relative
+from lifecycle_msgs.msg import Transition
+from lifecycle_msgs.srv import ChangeState
 from rcl_interfaces.srv import SetParameters
 from rclpy._rclpy_pybind11 import InvalidHandle
 from rclpy.action import ActionClient
@@ -25,6 +27,16 @@ from hasel_bringup.errors import BringupError
 
 _START_S = 120.0
 _ANSWER_S = 60.0
+_TO_REST = {
+    "hasel_driver": (Transition.TRANSITION_DEACTIVATE, Transition.TRANSITION_CLEANUP),
+    "hasel_simulator": (Transition.TRANSITION_DEACTIVATE,),
+    "hasel_tracker": (Transition.TRANSITION_DEACTIVATE,),
+}
+_TO_WORK = {
+    "hasel_tracker": (Transition.TRANSITION_ACTIVATE,),
+    "hasel_simulator": (Transition.TRANSITION_ACTIVATE,),
+    "hasel_driver": (Transition.TRANSITION_CONFIGURE, Transition.TRANSITION_ACTIVATE),
+}
 _CONNECTED = ("hasel_simulator", "hasel_sysid", "hasel_recorder", "hasel_virtual_camera")
 
 
@@ -109,6 +121,21 @@ class Rig:
         for name, result in zip(values, answer.results, strict=True):
             if not result.successful:
                 raise BringupError(f"{node} refuses {name} = {values[name]}: {result.reason}")
+
+    @contextmanager
+    def resting(self) -> Iterator[None]:
+        """Meanwhile the supply's port is closed and nothing is simulated or tracked: the machine is free."""
+        for node, transitions in _TO_REST.items():
+            self._change(node, transitions)
+        yield
+        for node, transitions in _TO_WORK.items():
+            self._change(node, transitions)
+
+    def _change(self, node: str, transitions: Sequence[int]) -> None:
+        for transition in transitions:
+            request = {"transition": Transition(id=transition)}
+            if not self.call(ChangeState, f"{node}/change_state", **request).success:
+                raise BringupError(f"{node} refuses the lifecycle's transition {transition}; see its output")
 
     def arm(self) -> str:
         """Arm, and return what fault had to be cleared before, if any; waits where the driver does.

@@ -56,9 +56,13 @@ class Session:
     def _learn(self, recordings: Sequence[Path]) -> None:
         fitted = [path for path in recordings if path.name.startswith("fit_")]
         unseen = [path for path in recordings if path.name.startswith("val_")]
-        self._step("Learn what is missing (improve)", lambda: self._improve(fitted, unseen))
+        with self._rig.resting():
+            self._step("Learn what is missing (improve)", lambda: self._improve(fitted, unseen))
+            self._step("Which run would tell more (suggest)", lambda: self._suggest(fitted))
+        self._rig.await_nodes()
         self._step("Watch the error live, before and after", self._watch)
-        self._step("One more run (suggest)", lambda: self._one_more(fitted))
+        if self._goal_file.is_file():
+            self._step("One more run", self._one_more)
 
     def _get_ready(self) -> None:
         self._rig.await_nodes()
@@ -140,7 +144,11 @@ class Session:
         self._measure("live_after", _goal(_WATCHED, periods=4))
         self._say(f"The live error went from {before:.4f} to {rig.error.mean_absolute_error:.4f}.")
 
-    def _one_more(self, fitted: Sequence[Path]) -> None:
+    @property
+    def _goal_file(self) -> Path:
+        return self._folder / "suggested_run.yaml"
+
+    def _suggest(self, fitted: Sequence[Path]) -> None:
         ranking = [entry["effect"] for entry in self._found()["ranking"]]
         rivals = list(dict.fromkeys([*self._found()["stages"][-1]["effects"], *ranking]))[:_RIVALS]
         if len(rivals) < 2:
@@ -149,14 +157,18 @@ class Session:
         self._commands.run(
             "suggest", *map(str, fitted), "--effects", ",".join(rivals), "--output", str(self._folder)
         )
-        file = self._folder / "suggested_run.yaml"
-        goal = YAML(typ="safe").load(file.read_text(encoding="utf-8"))
+        goal = self._goal()
         self._say(
             f"To tell {', '.join(rivals)} apart: {goal['waveform']} of {goal['voltage']:g} V at "
             f"{goal['frequency']:g} Hz, {goal['periods']} periods, muscles {goal['muscles']}"
         )
-        goal["voltage"], goal["frequency"] = float(goal["voltage"]), float(goal["frequency"])
-        self._measure("suggested", goal)
+
+    def _goal(self) -> dict[str, Any]:
+        goal = YAML(typ="safe").load(self._goal_file.read_text(encoding="utf-8"))
+        return {**goal, "voltage": float(goal["voltage"]), "frequency": float(goal["frequency"])}
+
+    def _one_more(self) -> None:
+        self._measure("suggested", self._goal())
 
     def _open(self) -> None:
         hidden = self._rig.trigger("camera/reveal")

@@ -12,6 +12,8 @@ from hasel_recording.endpoints import Role
 from hasel_sim.live.live_simulator import LiveSimulator
 from hasel_sim.simulator_messages import to_nanoseconds, to_time
 from hasel_sim.simulator_node import SimulatorNode
+from lifecycle_msgs.msg import Transition
+from lifecycle_msgs.srv import ChangeState
 from rcl_interfaces.srv import SetParameters
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
@@ -25,6 +27,7 @@ class Rig:
 
     def __init__(self) -> None:
         self.node, self.user = SimulatorNode(), rclpy.create_node("user")
+        self.node.begin()
         self.executor = SingleThreadedExecutor()
         self.executor.add_node(self.node)
         self.executor.add_node(self.user)
@@ -71,6 +74,11 @@ class Rig:
             SetParameters, "/hasel/hasel_simulator/set_parameters", parameters=[parameter]
         ).results[0]
 
+    def change(self, transition: int) -> bool:
+        """Ask for a transition of the lifecycle; whether it succeeded."""
+        request = {"transition": Transition(id=transition)}
+        return self.call(ChangeState, "/hasel/hasel_simulator/change_state", **request).success
+
     def close(self) -> None:
         """Destroy both nodes."""
         self.executor.shutdown()
@@ -105,6 +113,33 @@ def test_angles_come_at_the_stamps_of_the_states(rig):
         "skin",
         "markers",
     }
+
+
+def test_an_inactive_node_hears_no_state_and_starts_from_rest_afterwards(rig):
+    """It costs nothing meanwhile, and the model can be changed."""
+    rig.say(0, [5000.0, 0.0])
+    rig.until(lambda: len(rig.angles) == 1)
+    assert rig.change(Transition.TRANSITION_DEACTIVATE)
+    rig.until(lambda: rig.states.get_subscription_count() == 0)
+    assert rig.call(AddEffect, "/hasel/add_effect", effect="quadratic_drag").success
+    assert rig.change(Transition.TRANSITION_ACTIVATE)
+    rig.until(lambda: rig.states.get_subscription_count() == 1)
+    for n in (1000, 1001):
+        rig.say(_FRAME * n, [5000.0, 0.0])
+    rig.until(lambda: len(rig.angles) == 3)
+    assert [to_nanoseconds(angle.header.stamp) for angle in rig.angles[1:]] == [_FRAME * 1000, _FRAME * 1001]
+    assert rig.angles[1].sin_theta == rig.angles[0].sin_theta
+
+
+def test_an_unconfigured_node_says_what_to_do(rig):
+    """Its model's parameters are gone, and come back when it is configured again."""
+    assert rig.change(Transition.TRANSITION_DEACTIVATE)
+    assert rig.change(Transition.TRANSITION_CLEANUP)
+    assert not any(name.startswith("parameters.") for name in rig.node._parameters)
+    answer = rig.call(AddEffect, "/hasel/add_effect", effect="quadratic_drag")
+    assert (answer.success, "configure the node" in answer.message) == (False, True)
+    assert rig.change(Transition.TRANSITION_CONFIGURE)
+    assert any(name.startswith("parameters.") for name in rig.node._parameters)
 
 
 def test_a_late_message_is_held_and_said(rig):

@@ -54,7 +54,8 @@ class LiveTracker:
         if self._capture is not None:
             self._capture.stop()
         self.queue.close()
-        self._thread.join(timeout=5.0)
+        if self._thread.is_alive():
+            self._thread.join(timeout=5.0)
         if self.recording is not None:
             self.record_until_now()
 

@@ -34,6 +34,13 @@ class PersistentCamera:
         """Stop waiting for frames."""
         self._closing.set()
 
+    def release(self) -> None:
+        """Leave the camera to others, once nobody reads any more."""
+        self.close()
+        if self.camera is not None:
+            self.camera.close()
+            self.camera = None
+
     def _reopen(self) -> None:
         if self.camera is not None:
             self.camera.close()

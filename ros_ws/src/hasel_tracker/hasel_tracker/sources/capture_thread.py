@@ -24,7 +24,8 @@ class CaptureThread:
     def stop(self) -> None:
         """Stop after the frame being read, and wait for it."""
         self._stopping.set()
-        self._thread.join(timeout=2.0)
+        if self._thread.is_alive():
+            self._thread.join(timeout=2.0)
 
     def _run(self) -> None:
         try:
