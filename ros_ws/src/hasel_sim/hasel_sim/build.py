@@ -28,7 +28,15 @@ from hasel_sim.mesh.body_mesh import StripShape, strip_mesh
 from hasel_sim.mesh.mesh import Mesh, Region
 from hasel_sim.mesh.outline import outline_fault
 from hasel_sim.mesh.serendipity import reference_gradients
-from hasel_sim.mesh.sites import Sites, body_sites, point_sites, skin_sites, with_point_mass
+from hasel_sim.mesh.sites import (
+    Sites,
+    body_sites,
+    flux_sites,
+    line_sites,
+    point_sites,
+    skin_sites,
+    with_point_mass,
+)
 from hasel_sim.model import Model
 from hasel_sim.model.body import Body
 from hasel_sim.model.constants import REST_CONTRACTION, constants
@@ -131,7 +139,7 @@ class Builder:
     def system(self) -> System:
         """The mechanical system at the model's values."""
         gravity = np.array(self.model.description.material.gravity_m_per_s2)
-        forces = [self._force_law(e, self._values[e.id]) for e in self._of(ForceEffect)]
+        forces = [law for e in self._of(ForceEffect) for law in self._force_laws(e, self._values[e.id])]
         stresses = [self._stress_law(e, self._values[e.id]) for e in self._of(MaterialEffect) if e.regions]
         return System(self.mesh, self.nodes, self._solid(self._values), self.mass, gravity, forces, stresses)
 
@@ -157,11 +165,18 @@ class Builder:
             return body if plate is None else with_point_mass(body, self.mesh, plate.mass_kg_per_m)
         if effect.sites == "skin":
             return skin_sites(self.mesh)
+        if effect.sites == "line":
+            return line_sites(self.mesh)
         return point_sites(self.mesh, effect.points(marker_points(self.model)[:3], p))
 
-    def _force_law(self, effect: ForceEffect, p: SimpleNamespace) -> ForceLaw:
+    def _force_laws(self, effect: ForceEffect, p: SimpleNamespace) -> list[ForceLaw]:
+        """What acts of one effect: its force, and its flux where it has one."""
         gravity = self.model.description.material.gravity_m_per_s2
-        return ForceLaw(effect, p, self._sites(effect, p), self.nodes, gravity)
+        around = self._described.surroundings
+        laws = [ForceLaw(effect, p, self._sites(effect, p), self.nodes, gravity, around)]
+        if effect.has_flux:
+            laws.append(ForceLaw(effect, p, flux_sites(self.mesh), self.nodes, gravity, around, flux=True))
+        return laws
 
     def _stress_law(self, effect: MaterialEffect, p: SimpleNamespace) -> StressLaw:
         fibres = np.array([0.0, *(muscle.fibre_stiffness_pa for muscle in self._described.muscles)])
@@ -181,7 +196,7 @@ class Builder:
             SimpleNamespace(**{**vars(self._values[identity]), own: value}) for value in (more, less)
         )
         if isinstance(effect, ForceEffect):
-            return ForceSlope(self._force_law(effect, above), self._force_law(effect, below), width)
+            return ForceSlope(self._force_laws(effect, above), self._force_laws(effect, below), width)
         if effect.regions:
             return StressSlope(self._stress_law(effect, above), self._stress_law(effect, below), width)
         more_solid, less_solid = (

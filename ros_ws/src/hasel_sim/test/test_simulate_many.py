@@ -85,7 +85,8 @@ def test_values_of_an_effect_side_by_side_give_what_they_give_alone(identity, sw
     """Every effect at three sizes, two of them alike, with the derivative by each of its parameters."""
     effect = catalogue()[identity]
     names = [f"{identity}.{p.name}" for p in effect.parameters]
-    coarse, run = swimmer.with_numerics(mesh_density=0.5).with_effects(identity), boxes(duration=0.1)
+    wet = swimmer.with_numerics(mesh_density=0.5).in_medium("canola_oil", 0.05)
+    coarse, run = wet.with_effects(identity), boxes(duration=0.1)
     models = [
         coarse.with_values(
             {n: p.null + f * (p.typical - p.null) for n, p in zip(names, effect.parameters, strict=True)}

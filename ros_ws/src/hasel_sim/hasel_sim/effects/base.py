@@ -12,6 +12,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from hasel_sim.errors import ModelError
 from hasel_sim.mesh.mesh import Region
 
 
@@ -57,6 +58,8 @@ class Effect:
     needs_spine: ClassVar[bool] = False
     needs_antagonists: ClassVar[bool] = False
     """Whether it compares two muscles, and so needs a body with exactly two."""
+    needs_medium: ClassVar[bool] = False
+    """Whether it is a force of the fluid around the body, and so needs a model that says which fluid that is."""
     quantity: ClassVar[str] = ""
     """The quantity that must drive the body, such as "voltage"; any where empty."""
     exclusive: ClassVar[str] = ""
@@ -116,19 +119,39 @@ class DriveEffect(Effect):
 
 
 @dataclass(frozen=True)
+class Surroundings:
+    """The fluid around a body and what of the body it meets.
+
+    density [kg/m^3]; viscosity: dynamic [Pa s]; depth: of the body, out of the plane [m]; length: nose to tail [m].
+    """
+
+    density: float
+    viscosity: float
+    depth: float
+    length: float
+
+    @property
+    def kinematic_viscosity(self) -> float:
+        """Viscosity over density [m^2/s]."""
+        return self.viscosity / self.density
+
+
+@dataclass(frozen=True)
 class SiteState:
     """Motion and drive at n places; arrays are [n, 2] unless said.
 
-    position [m], velocity [m/s], acceleration [m/s^2], tangent: derivative of the position along the skin [1];
+    position [m], velocity [m/s], acceleration [m/s^2], tangent: derivative of the position along the skin, or along the
+    centre line towards the tail [1]; tangent_rate: the same of the velocity [1/s];
     reference: position at rest [m]; rest_normal: outward unit normal of the skin at rest; measure [n]: mass [kg per m
     depth], skin length [m] or 1; voltage (drive [V], [Pa] ...) and contraction [1]: of every muscle, [muscles];
-    time [s]; gravity [m/s^2], shape [2].
+    time [s]; gravity [m/s^2], shape [2]; surroundings: the fluid, None for a model without `medium`.
     """
 
     position: np.ndarray
     velocity: np.ndarray
     acceleration: np.ndarray
     tangent: np.ndarray
+    tangent_rate: np.ndarray
     reference: np.ndarray
     rest_normal: np.ndarray
     measure: np.ndarray
@@ -136,15 +159,29 @@ class SiteState:
     contraction: np.ndarray
     time: float
     gravity: np.ndarray
+    surroundings: Surroundings | None = None
 
     @property
     def normal(self) -> np.ndarray:
-        """Outward unit normal of the skin as it is now, [n, 2]; a force that uses it depends on the tangent."""
+        """Unit normal as it is now, outward from the skin or to the right of the centre line, [n, 2].
+
+        A force that uses it depends on the tangent.
+        """
         return normal(self.tangent)
+
+    @property
+    def fluid(self) -> Surroundings:
+        """The fluid around the body, for an effect that needs a medium. Raises ModelError where there is none."""
+        if self.surroundings is None:
+            raise ModelError(
+                "the model says nothing of the fluid around the body; expected a section medium: add one, and set "
+                "needs_medium = True in the effect"
+            )
+        return self.surroundings
 
 
 def normal(tangent: np.ndarray) -> np.ndarray:
-    """Outward unit normal [n, 2] of a skin with these tangents [n, 2]."""
+    """Unit normal [n, 2] to the right of these tangents [n, 2], which is outward from the skin."""
     length = np.hypot(tangent[:, 0], tangent[:, 1])
     out = np.empty_like(tangent)
     out[:, 0], out[:, 1] = tangent[:, 1] / length, -tangent[:, 0] / length
@@ -154,8 +191,10 @@ def normal(tangent: np.ndarray) -> np.ndarray:
 class ForceEffect(Effect):
     """A force on the body, per unit of what a site stands for and per unit depth.
 
-    sites: "body" (per mass [N/kg]), "skin" (per skin length [N/m^2]) or "points" (force itself [N/m]).
-    depends_on: which of position, velocity, acceleration, tangent, contraction the force depends on.
+    sites: "body" (per mass [N/kg]), "skin" (per skin length [N/m^2]), "line" (per length of the centre line at rest
+    [N/m^2]) or "points" (force itself [N/m]).
+    depends_on: which of position, velocity, acceleration, tangent, tangent_rate, contraction the force depends on.
+    An effect at the line may have a `flux` besides.
     """
 
     place = "force"
@@ -169,6 +208,19 @@ class ForceEffect(Effect):
     def force(self, at: SiteState, p: SimpleNamespace) -> np.ndarray:
         """Force at each site, [n, 2]."""
         raise NotImplementedError
+
+    def flux(self, at: SiteState, p: SimpleNamespace) -> np.ndarray:
+        """What is handed on along the centre line towards the nose [N/m], [n, 2].
+
+        Its derivative along the line acts on the body besides the force, and at the tail it enters from behind: the sum
+        of what it does to the body is its value at the tail.
+        """
+        raise NotImplementedError
+
+    @property
+    def has_flux(self) -> bool:
+        """Whether the effect has a flux."""
+        return type(self).flux is not ForceEffect.flux
 
 
 @dataclass

@@ -47,7 +47,7 @@ def _parameter_line(p: EffectParameter) -> str:
 
 def overview(effects: Iterable[Effect]) -> str:
     """One line per effect: id, place and physics."""
-    return "\n".join(f"{effect.id:20s}{effect.place:13s}{effect.physics}" for effect in effects)
+    return "\n".join(f"{effect.id:24s}{effect.place:13s}{effect.physics}" for effect in effects)
 
 
 def document(effects: Iterable[Effect]) -> str:

@@ -5,11 +5,11 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from hasel_sim.effects.base import ForceEffect, SiteState
+from hasel_sim.effects.base import ForceEffect, SiteState, Surroundings
 from hasel_sim.effects.check_tools import called, expect, same
 
-_SITES = ("body", "skin", "points")
-_QUANTITIES = ("position", "velocity", "acceleration", "tangent")
+_SITES = ("body", "skin", "line", "points")
+_QUANTITIES = ("position", "velocity", "acceleration", "tangent", "tangent_rate")
 
 
 def check_force(effect: ForceEffect, null: SimpleNamespace, typical: SimpleNamespace) -> None:
@@ -25,23 +25,46 @@ def check_force(effect: ForceEffect, null: SimpleNamespace, typical: SimpleNames
         markers = np.array([[0.005, 0.0], [0.094, 0.0], [0.19, 0.0]])
         count = len(np.atleast_2d(np.asarray(effect.points(markers, typical), dtype=float)))
         called(effect, "points", (count, 2), markers, typical)
+    expect(
+        effect.sites == "line" or not effect.has_flux,
+        effect,
+        f"has a flux at sites '{effect.sites}'",
+        'use sites = "line", along which a flux can be handed on',
+    )
+    for method in ("force", "flux") if effect.has_flux else ("force",):
+        _check_response(effect, method, at, null, typical, known)
+
+
+def _check_response(
+    effect: ForceEffect,
+    method: str,
+    at: SiteState,
+    null: SimpleNamespace,
+    typical: SimpleNamespace,
+    known: tuple[str, ...],
+) -> None:
+    """Refuse a force, or flux, that is not null at null, does nothing, or depends on what it does not say."""
     shape = at.position.shape
-    off, on = called(effect, "force", shape, at, null), called(effect, "force", shape, at, typical)
-    expect(not np.any(off), effect, "exerts a force at its null values", "make force return zeros there")
-    expect(np.any(on), effect, "exerts no force at its typical values", "make force use its parameters")
-    few = called(effect, "force", (2, 2), _rows(at, 2), typical)
+    off, on = called(effect, method, shape, at, null), called(effect, method, shape, at, typical)
+    expect(
+        not np.any(off), effect, f"exerts a {method} at its null values", f"make {method} return zeros there"
+    )
+    expect(
+        np.any(on), effect, f"exerts no {method} at its typical values", f"make {method} use its parameters"
+    )
+    few = called(effect, method, (2, 2), _rows(at, 2), typical)
     expect(
         same(few, on[:2]),
         effect,
-        "exerts a force at one place that depends on others",
-        "compute every row of the force from the same row of positions, velocities and so on only",
+        f"exerts a {method} at one place that depends on others",
+        f"compute every row of the {method} from the same row of positions, velocities and so on only",
     )
     rng = np.random.default_rng(2)
     for name in set(known) - set(effect.depends_on):
         value = getattr(at, name)
         moved = replace(at, **{name: value + 0.1 * rng.standard_normal(value.shape)})
         expect(
-            same(called(effect, "force", shape, moved, typical), on),
+            same(called(effect, method, shape, moved, typical), on),
             effect,
             f"uses the {name} without saying so",
             f'add "{name}" to depends_on',
@@ -51,12 +74,13 @@ def check_force(effect: ForceEffect, null: SimpleNamespace, typical: SimpleNames
 def _example(effect: ForceEffect) -> SiteState:
     rng, n = np.random.default_rng(1), 7
     reference = np.stack([np.linspace(0.01, 0.18, n), 0.005 * (-1.0) ** np.arange(n)], axis=1)
-    along = np.stack([np.ones(n), np.zeros(n)], axis=1) * (effect.sites == "skin")
+    along = np.stack([np.ones(n), np.zeros(n)], axis=1) * (effect.sites in ("skin", "line"))
     return SiteState(
         position=reference + 0.01 * rng.standard_normal((n, 2)),
         velocity=0.2 * rng.standard_normal((n, 2)),
         acceleration=2.0 * rng.standard_normal((n, 2)),
         tangent=along + 0.1 * rng.standard_normal((n, 2)),
+        tangent_rate=3.0 * rng.standard_normal((n, 2)),
         reference=reference,
         rest_normal=along @ np.array([[0.0, -1.0], [1.0, 0.0]]),
         measure=np.full(n, 0.01),
@@ -64,6 +88,7 @@ def _example(effect: ForceEffect) -> SiteState:
         contraction=np.array([0.05, 0.02]),
         time=0.3,
         gravity=np.array([0.0, -9.81]),
+        surroundings=Surroundings(920.0, 0.07, 0.05, 0.19) if effect.needs_medium else None,
     )
 
 

@@ -355,7 +355,7 @@ def mass_product(masses, elements, columns, out, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def scatter_sites(direct, along, nodes, shape, slope, measure, band, diagonal, lane):
+def scatter_sites(direct, along, nodes, shape, slope, weights, band, diagonal, lane):
     """Add site matrices [n, 2, 2, lanes], for values (direct) and tangents (along) of the field, to a band matrix."""
     lanes, width = len(lane), band.shape[1]
     for s in range(nodes.shape[0]):
@@ -364,7 +364,7 @@ def scatter_sites(direct, along, nodes, shape, slope, measure, band, diagonal, l
             d0, d1 = load(direct, at, lane), load(direct, at + lanes, lane)
             t0, t1 = load(along, at, lane), load(along, at + lanes, lane)
             for a in range(nodes.shape[1]):
-                weight = measure[s] * shape[s, a]
+                weight = weights[s, a]
                 row = 2 * nodes[s, a] + i
                 for b in range(nodes.shape[1]):
                     by_value, by_slope = weight * shape[s, b], weight * slope[s, b]

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from hasel_sim.effects.base import ForceEffect, SiteState, normal
+from hasel_sim.effects.base import ForceEffect, SiteState, Surroundings, normal
 from hasel_sim.mechanics.compiled import scatter_sites
 from hasel_sim.mechanics.laws import by_group, grouped, one_by_one, watched
 from hasel_sim.mechanics.motion import DriveState, Motion
@@ -14,13 +14,20 @@ from hasel_sim.mechanics.simd import lane_tuple
 from hasel_sim.mesh.sites import Sites
 
 _CONTRACTION_DIFFERENCE = 1e-6
-_DIFFERENCE = {"position": 1e-7, "velocity": 1e-7, "acceleration": 1e-4, "tangent": 1e-6}
+_DIFFERENCE = {
+    "position": 1e-7,
+    "velocity": 1e-7,
+    "acceleration": 1e-4,
+    "tangent": 1e-6,
+    "tangent_rate": 1e-6,
+}
 _WatchedState = watched(SiteState)
 
 
 class ForceLaw:
     """One force effect at its sites, of one lane; more by `beside`.
 
+    flux: whether it is the effect's flux that acts (at `mesh.sites.flux_sites`) instead of its force.
     `linearise` differentiates the effect at every site by central differences in the two components of each quantity it
     depends on, all in one call, so that an effect never writes a derivative.
     """
@@ -32,8 +39,11 @@ class ForceLaw:
         sites: Sites,
         reference: np.ndarray,
         gravity: tuple[float, float] = (0.0, 0.0),
+        surroundings: Surroundings | None = None,
+        flux: bool = False,
     ) -> None:
         self.effect, self.sites = effect, sites
+        self._respond = effect.flux if flux else effect.force
         self._gravity = np.array(gravity)
         self._reference = sites.value(reference[..., None])[..., 0]
         on_skin = effect.sites == "skin"
@@ -42,7 +52,8 @@ class ForceLaw:
         )
         self._unmoved: dict[int, dict[str, np.ndarray]] = {}
         self._moved_by = tuple(name for name in effect.depends_on if name != "contraction")
-        self._use_lanes([values])
+        self._has_tangent = effect.sites in ("skin", "line")
+        self._use_lanes([SimpleNamespace(own=values, surroundings=surroundings)])
 
     def _use_lanes(self, values: list[SimpleNamespace | None]) -> None:
         self.values, self._groups = values, grouped(values)
@@ -66,14 +77,16 @@ class ForceLaw:
     def _moved(self, motion: Motion) -> dict[str, np.ndarray]:
         """Motion at the sites [n, 2, lanes]; kept for the last motion, which is asked for several times."""
         if self._last is None or self._last[0] is not motion:
-            depends, skin = self.effect.depends_on, self.effect.sites == "skin"
+            depends = self.effect.depends_on
             fields = {"position": self.sites.value(motion.position)}
             nothing = np.zeros_like(fields["position"])
             fields["velocity"] = self.sites.value(motion.velocity) if "velocity" in depends else nothing
             fields["acceleration"] = (
                 self.sites.value(motion.acceleration) if "acceleration" in depends else nothing
             )
-            fields["tangent"] = self.sites.tangent(motion.position) if skin else nothing
+            fields["tangent"] = self.sites.tangent(motion.position) if self._has_tangent else nothing
+            turning = "tangent_rate" in depends
+            fields["tangent_rate"] = self.sites.tangent(motion.velocity) if turning else nothing
             self._last = motion, fields
         return self._last[1]
 
@@ -99,9 +112,9 @@ class ForceLaw:
             }
         unmoved = self._unmoved[times]
         state = (SiteState if len(lanes) == 1 else _WatchedState)(
-            **rows, **unmoved, **drive.of_lane(int(lanes[0]))
+            **rows, **unmoved, **drive.of_lane(int(lanes[0])), surroundings=values.surroundings
         )
-        force = np.asarray(self.effect.force(state, values))
+        force = np.asarray(self._respond(state, values.own))
         if len(lanes) == 1 or not state.looked:
             return force
         self._groups = one_by_one(self._groups)
@@ -188,12 +201,12 @@ class ForceLaw:
         force = self._force(fields, drive)
         self.sites.scatter(-force[0], out)
         by_value[:], by_tangent[:] = 0.0, 0.0
-        rows = {"position": 0, "velocity": 1, "acceleration": 2, "tangent": 0}
+        rows = {"position": 0, "velocity": 1, "acceleration": 2, "tangent": 0, "tangent_rate": 1}
         for index, name in enumerate(names):
             change = (force[1 + 2 * index : 3 + 2 * index] - force[0]) * (
                 -weights[rows[name]] / _DIFFERENCE[name]
             )
-            table = by_tangent if name == "tangent" else by_value
+            table = by_tangent if name.startswith("tangent") else by_value
             table += change.transpose(1, 2, 0, 3)
 
     def weighted(self, position, velocity, acceleration) -> tuple[np.ndarray, np.ndarray]:
@@ -201,7 +214,8 @@ class ForceLaw:
         shares = {"position": position, "velocity": velocity, "acceleration": acceleration}
         nothing = np.zeros((len(self._reference), 2, 2, len(self.values)))
         direct = nothing - sum(shares[name] * slope for name, slope in self._slopes.items() if name in shares)
-        along = -position * self._slopes["tangent"] if "tangent" in self._slopes else nothing
+        shares = {"tangent": position, "tangent_rate": velocity}
+        along = nothing - sum(shares[name] * slope for name, slope in self._slopes.items() if name in shares)
         return direct, along
 
     def add_matrix(self, position, velocity, acceleration, band: np.ndarray, diagonal: int) -> None:
@@ -210,7 +224,7 @@ class ForceLaw:
             return
         direct, along = self.weighted(position, velocity, acceleration)
         s = self.sites
-        places = s.nodes, s.shape, s.slope, s.measure
+        places = s.nodes, s.shape, s.slope, s.weight
         scatter_sites(direct, along, *places, band, diagonal, lane_tuple(band.shape[-1]))
 
     def add_directions(
@@ -225,6 +239,7 @@ class ForceLaw:
             "velocity": lambda: self.sites.value(rate),
             "acceleration": lambda: self.sites.value(acceleration),
             "tangent": lambda: self.sites.tangent(shift),
+            "tangent_rate": lambda: self.sites.tangent(rate),
         }
         for name in self._moved_by:
             if shift is None and name in ("position", "tangent"):
@@ -240,12 +255,13 @@ class ForceLaw:
         The first axis of out: by position, velocity and acceleration.
         """
         s = self.sites
-        here = s.measure[:, None, None] * s.value(weights)
+        here = s.gathered(weights)
         places = {
             "position": (0, s.shape),
             "velocity": (1, s.shape),
             "acceleration": (2, s.shape),
             "tangent": (0, s.slope),
+            "tangent_rate": (1, s.slope),
         }
         for name in self._moved_by:
             row, interpolation = places[name]

@@ -10,7 +10,7 @@ class LawTable:
     """Forces and additional stresses of every effect, called at one motion, with their derivatives where wanted.
 
     terms: nodal forces out of balance [nodes, 2, lanes]; the sites of all force effects (where each begins in the list
-    of nodes, nodes, shape, slope, measure, derivatives by the value and by the tangent of the end-of-step acceleration
+    of nodes, nodes, shape, slope, weight, derivatives by the value and by the tangent of the end-of-step acceleration
     [sites, 2, 2, lanes]); the place of every element among those with further stress or -1, and their stress
     [n, points, 4, lanes] and its derivative [n, points, 4, 4, lanes]. Empty where there are no effects; an effect at
     its null value contributes zeros. by_rate: derivative of the further stress by the rate of the deformation
@@ -22,11 +22,11 @@ class LawTable:
         sites = [law.sites for law in system.forces]
         counts = np.concatenate([[0], *(np.full(len(s.nodes), s.nodes.shape[1]) for s in sites)])
         start = np.cumsum(counts).astype(np.intp)
-        nodes, shape, slope, measure = (
+        nodes, shape, slope, weight = (
             np.concatenate([np.zeros(0), *(getattr(s, name).ravel() for s in sites)])
-            for name in ("nodes", "shape", "slope", "measure")
+            for name in ("nodes", "shape", "slope", "weight")
         )
-        slopes = np.zeros((2, len(measure), 2, 2, lanes))
+        slopes = np.zeros((2, len(start) - 1, 2, 2, lanes))
         concerned = [law.elements for law in system.stresses]
         elements = np.unique(np.concatenate([np.zeros(0, dtype=np.intp), *concerned]))
         further = np.full(len(solid.elements), -1)
@@ -37,7 +37,7 @@ class LawTable:
         )
         self.terms = (
             np.zeros((*system.nodes.shape, lanes)),
-            (start, nodes.astype(np.intp), shape, slope, measure, slopes[0], slopes[1]),
+            (start, nodes.astype(np.intp), shape, slope, weight, slopes[0], slopes[1]),
             (further, stress, matrix),
         )
 

@@ -11,7 +11,7 @@ from hasel_sim.mechanics.simd import add, load
 @njit(cache=True, fastmath=True, error_model="numpy")
 def add_site_matrix(sites, band, diagonal, lane):
     """Add the site matrices [sites, 2, 2, lanes], by value and by tangent, to a band matrix."""
-    start, nodes, shape, slope, measure, by_value, by_tangent = sites
+    start, nodes, shape, slope, weights, by_value, by_tangent = sites
     lanes, width = len(lane), band.shape[1]
     for s in range(len(start) - 1):
         for i in range(2):
@@ -19,7 +19,7 @@ def add_site_matrix(sites, band, diagonal, lane):
             d0, d1 = load(by_value, at, lane), load(by_value, at + lanes, lane)
             t0, t1 = load(by_tangent, at, lane), load(by_tangent, at + lanes, lane)
             for a in range(start[s], start[s + 1]):
-                weight, row = measure[s] * shape[a], 2 * nodes[a] + i
+                weight, row = weights[a], 2 * nodes[a] + i
                 for b in range(start[s], start[s + 1]):
                     value, tangent = weight * shape[b], weight * slope[b]
                     at = (row * (width - 1) + diagonal + 2 * nodes[b]) * lanes

@@ -65,30 +65,37 @@ class ContractionSlope:
 
 
 class ForceSlope:
-    """A parameter of one force effect."""
+    """A parameter of one force effect: its laws for a little more and a little less, and the width between."""
 
-    def __init__(self, more: ForceLaw, less: ForceLaw, width: float) -> None:
-        self._use([more], [less], np.array([width]))
+    def __init__(self, more: list[ForceLaw], less: list[ForceLaw], width: float) -> None:
+        self._use(more, less, np.array([width]), len(more))
 
-    def _use(self, more: list[ForceLaw], less: list[ForceLaw], width: np.ndarray) -> None:
-        self._more, self._less, self.width = more, less, width
-        self._same_sites = len(more) == len(less) == 1 and more[0].sites.same_as(less[0].sites)
+    def _use(self, more: list[ForceLaw], less: list[ForceLaw], width: np.ndarray, parts: int) -> None:
+        self._more, self._less, self.width, self._parts = more, less, width, parts
+        pairs = zip(more, less, strict=False)
+        self._same_sites = len(more) == len(less) == parts and all(a.sites.same_as(b.sites) for a, b in pairs)
 
     @staticmethod
     def beside(each: Sequence["ForceSlope"]) -> "ForceSlope":
         """Those of several bodies, one lane after the other."""
         out = ForceSlope.__new__(ForceSlope)
         more, less = (
-            ForceLaw.beside([getattr(slope, name)[0] for slope in each]) for name in ("_more", "_less")
+            [
+                law
+                for laws in zip(*(getattr(slope, name) for slope in each), strict=True)
+                for law in ForceLaw.beside(laws)
+            ]
+            for name in ("_more", "_less")
         )
-        out._use(more, less, np.concatenate([slope.width for slope in each]))
+        out._use(more, less, np.concatenate([slope.width for slope in each]), each[0]._parts)
         return out
 
     def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
         """Subtract the derivative of the force, which stands on the right-hand side."""
         factor = -load_factor / self.width
         if self._same_sites:
-            self._more[0].add_excess(self._less[0], motion, drive, out, factor)
+            for more, less in zip(self._more, self._less, strict=True):
+                more.add_excess(less, motion, drive, out, factor)
             return
         for laws, sign in ((self._more, 1.0), (self._less, -1.0)):
             for law in laws:

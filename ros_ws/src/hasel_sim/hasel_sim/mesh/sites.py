@@ -1,4 +1,4 @@
-"""Places where forces act: the body, the skin, points of the centre line; each interpolates a few nodes."""
+"""Places where forces act: the body, the skin, the centre line, points of it; each interpolates a few nodes."""
 
 from dataclasses import dataclass
 
@@ -13,14 +13,21 @@ from hasel_sim.mesh.serendipity import edge_functions, reference_gradients
 class Sites:
     """Interpolation at n sites from k nodes each.
 
-    nodes [n, k]; shape [n, k] gives values; slope [n, k] gives the tangent along the skin per unit reference length
-    (zero where there is none); measure [n]: what one site stands for (reference length [m], mass [kg/m] or 1).
+    nodes [n, k]; shape [n, k] gives values; slope [n, k] gives the tangent along the skin or the centre line per unit
+    reference length (zero where there is none); measure [n]: what one site stands for (reference length [m],
+    mass [kg/m] or 1); weight [n, k]: what of a force at a site acts on each node, mostly shape times measure.
     """
 
     nodes: np.ndarray
     shape: np.ndarray
     slope: np.ndarray
     measure: np.ndarray
+    weight: np.ndarray
+
+    @staticmethod
+    def of(nodes: np.ndarray, shape: np.ndarray, slope: np.ndarray, measure: np.ndarray) -> "Sites":
+        """Sites whose forces act where they are."""
+        return Sites(nodes, shape, slope, measure, shape * measure[:, None])
 
     def same_as(self, other: "Sites") -> bool:
         """Whether another object describes the same sites."""
@@ -32,7 +39,7 @@ class Sites:
         return self._interpolated(self.shape, field)
 
     def tangent(self, position: np.ndarray) -> np.ndarray:
-        """Derivative of a nodal field along the skin, [..., n, 2, lanes]."""
+        """Derivative of a nodal field along the skin or the centre line, [..., n, 2, lanes]."""
         return self._interpolated(self.slope, position)
 
     def _interpolated(self, weights: np.ndarray, field: np.ndarray) -> np.ndarray:
@@ -43,12 +50,16 @@ class Sites:
         return out.reshape(*field.shape[:-3], len(self.nodes), *field.shape[-2:])
 
     def scatter(self, force: np.ndarray, out: np.ndarray) -> None:
-        """Add forces at the sites [..., n, 2, lanes], times the measure, to out [..., nodes, 2, lanes] (contiguous)."""
+        """Add forces at the sites [..., n, 2, lanes], times the weight, to out [..., nodes, 2, lanes] (contiguous)."""
         width = 2 * out.shape[-1]
         columns = out.view()
         columns.shape = (-1, out.shape[-3], width)
         force = np.ascontiguousarray(force, dtype=float).reshape(-1, len(self.nodes), width)
-        _spread(force, self.nodes, self.shape * self.measure[:, None], columns)
+        _spread(force, self.nodes, self.weight, columns)
+
+    def gathered(self, weights: np.ndarray) -> np.ndarray:
+        """What weights of the nodes [nodes, 2, lanes] mean for the forces at the sites, [n, 2, lanes]."""
+        return self._interpolated(self.weight, weights)
 
 
 @njit(cache=True)
@@ -77,7 +88,7 @@ def body_sites(mesh: Mesh, nodes: np.ndarray, density: np.ndarray) -> Sites:
     """
     values, _, areas = reference_gradients(nodes[mesh.elements], 3)
     points = areas.shape[1]
-    return Sites(
+    return Sites.of(
         np.repeat(mesh.elements, points, axis=0),
         np.tile(values, (len(mesh.elements), 1)),
         np.zeros((areas.size, values.shape[1])),
@@ -90,9 +101,9 @@ def with_point_mass(body: Sites, mesh: Mesh, mass: float) -> Sites:
     tip = mesh.nodes[mesh.tip]
     point = point_sites(mesh, np.array([[tip[0, 0], 0.5 * (tip[0, 1] + tip[-1, 1])]]))
     joined = (np.concatenate(pair) for pair in zip(*(vars(s).values() for s in (body, point)), strict=True))
-    nodes, shape, slope, measure = joined
+    nodes, shape, slope, measure, _ = joined
     measure[-1] = mass
-    return Sites(nodes, shape, slope, measure)
+    return Sites.of(nodes, shape, slope, measure)
 
 
 def skin_sites(mesh: Mesh) -> Sites:
@@ -107,13 +118,49 @@ def skin_sites(mesh: Mesh) -> Sites:
             shape.append(value)
             slope.append(derivative / length)
             measure.append(weight * length)
-    return Sites(np.array(nodes), np.array(shape), np.array(slope), np.array(measure))
+    return Sites.of(np.array(nodes), np.array(shape), np.array(slope), np.array(measure))
+
+
+def line_sites(mesh: Mesh) -> Sites:
+    """Two Gauss points in every element along the centre line, from the nose to the tail's end [m]."""
+    points, weights = np.polynomial.legendre.leggauss(2)
+    every = mesh.nodes[mesh.elements]
+    crossed = (every[..., 1].min(axis=1) <= 0.0) & (every[..., 1].max(axis=1) >= 0.0)
+    ends = np.unique(np.round(every[crossed][:, :4, 0], 12))
+    middle, half = 0.5 * (ends[1:] + ends[:-1]), 0.5 * np.diff(ends)
+    places = (middle[:, None] + half[:, None] * points).ravel()
+    nodes, shape, slope = _on_the_centre_line(mesh, places)
+    return Sites.of(nodes, shape, slope, (half[:, None] * weights).ravel())
+
+
+def flux_sites(mesh: Mesh) -> Sites:
+    """The same places and the tail's end, for a flux along the centre line instead of a force.
+
+    A flux G [N/m] acts by its divergence, less what leaves at the tail: on a field phi of displacements it does the
+    work G(L) phi(L) - integral of G dphi/ds, so that the sum of its forces is G at the tail.
+    """
+    line = line_sites(mesh)
+    end = float(mesh.nodes[mesh.tip, 0].mean())
+    nodes, shape, slope = _on_the_centre_line(mesh, np.array([end]))
+    return Sites(
+        np.concatenate([line.nodes, nodes]),
+        np.concatenate([line.shape, shape]),
+        np.concatenate([line.slope, slope]),
+        np.append(line.measure, 1.0),
+        np.concatenate([-line.slope * line.measure[:, None], shape]),
+    )
+
+
+def _on_the_centre_line(mesh: Mesh, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    found = [mesh.point((float(x), 0.0)) for x in places]
+    nodes, shape, gradient = (np.array(part) for part in zip(*found, strict=True))
+    return nodes, shape, gradient[..., 0]
 
 
 def point_sites(mesh: Mesh, positions: np.ndarray) -> Sites:
     """Material points at the given reference positions [m] [n, 2], each standing for 1."""
     found = [mesh.point(tuple(position)) for position in positions]
-    return Sites(
+    return Sites.of(
         np.array([nodes for nodes, _, _ in found]),
         np.array([shape for _, shape, _ in found]),
         np.zeros((len(found), 8)),

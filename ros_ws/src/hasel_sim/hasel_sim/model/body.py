@@ -69,6 +69,8 @@ class Body(Section):
     """A planar strip from x = 0 to its length, y upwards from the centre line, of one height or with an outline."""
 
     length_m: Positive
+    depth_m: Positive | None = None
+    """Out of the plane; needed in a fluid, which flows around the edges."""
     height_m: Positive | None = None
     outline: Outline | None = None
     spine: Spine | None = None

@@ -19,7 +19,7 @@ _SLACK = 1e-9
 
 def first_fault(description: Description) -> str | None:
     """A sentence about the first thing that does not fit; None where all does."""
-    checks = (_spine, _places, _channels, _markers)
+    checks = (_spine, _medium, _places, _channels, _markers)
     return next((fault for check in checks for fault in check(description)), None)
 
 
@@ -28,6 +28,14 @@ def _spine(d: Description) -> Iterator[str]:
         yield "body.spine has no material; expected material.spine: add that section"
     if d.material.spine and d.body.spine is None:
         yield "material.spine belongs to no spine; expected body.spine with thickness_m: add it or remove the material"
+
+
+def _medium(d: Description) -> Iterator[str]:
+    if d.medium and d.body.depth_m is None:
+        yield (
+            "medium is given for a body without depth; expected body.depth_m, how far it reaches out of the plane: add "
+            "it"
+        )
 
 
 def _places(d: Description) -> Iterator[str]:

@@ -13,20 +13,26 @@ _UNITS = {
     "_kg_per_m3": "kg/m^3",
     "_kg_per_m": "kg/m",
     "_kg_m": "kg m",
+    "_pa_s": "Pa s",
     "_pa": "Pa",
     "_s": "s",
+    "_m": "m",
 }
 REST_CONTRACTION = "rest_contraction"
 
 
 def constants(description: Description) -> dict[str, float]:
-    """Every number that may be freed, by its path: of materials, regions, muscles and the tip plate."""
+    """Every number that may be freed, by its path: of materials, regions, muscles, the tip plate and the medium."""
     found: dict[str, float] = {}
     for name in ("soft", "spine"):
         _collect(getattr(description.material, name), f"material.{name}", found)
     for region in description.body.regions:
         _collect(region.material, f"body.regions.{region.name}.material", found)
     _collect(description.body.tip_plate, "body.tip_plate", found)
+    if description.medium is not None:
+        for key in ("density_kg_per_m3", "viscosity_pa_s"):
+            found[f"medium.{key}"] = getattr(description.medium, key)
+        found["body.depth_m"] = float(description.body.depth_m or 0.0)
     for muscle in description.muscles:
         for key in ("fibre_stiffness_pa", REST_CONTRACTION):
             found[f"muscles.{muscle.name}.{key}"] = getattr(muscle, key)

@@ -4,9 +4,11 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from hasel_sim.effects.base import Surroundings
 from hasel_sim.model.actuation import Channel, Muscle
 from hasel_sim.model.body import Body, Material
 from hasel_sim.model.consistency import first_fault
+from hasel_sim.model.medium import Medium
 from hasel_sim.model.section import Finite, Name, NotNegative, Positive, Section
 
 ANGLE_MARKERS = ("head", "middle", "tail")
@@ -62,6 +64,7 @@ class Description(Section):
     name: str
     body: Body
     material: Materials
+    medium: Medium | None = None
     channels: tuple[Channel, ...] = ()
     muscles: tuple[Muscle, ...] = ()
     muscle_response: Literal["sloped_box", "first_order"] = "sloped_box"
@@ -78,6 +81,18 @@ class Description(Section):
         if fault:
             raise ValueError(fault)
         return self
+
+    @property
+    def surroundings(self) -> Surroundings | None:
+        """What the effects of a fluid need to know; None for a body without medium."""
+        if self.medium is None or self.body.depth_m is None:
+            return None
+        return Surroundings(
+            self.medium.density_kg_per_m3,
+            self.medium.viscosity_pa_s,
+            self.body.depth_m,
+            self.body.whole_length_m,
+        )
 
     def marker_names(self) -> tuple[str, ...]:
         """Head, middle and tail, then the others in the file's order."""

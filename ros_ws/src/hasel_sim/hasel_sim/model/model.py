@@ -15,6 +15,7 @@ from hasel_sim.errors import ModelError, nearest_name
 from hasel_sim.model.constants import constants, with_constants
 from hasel_sim.model.description import Description, Numerics
 from hasel_sim.model.parameter import Parameter
+from hasel_sim.model.validation import sentence_for
 
 _AMPLITUDE_START = 0.04
 """Contraction at which the highest level of a drive is first tried."""
@@ -181,6 +182,20 @@ class Model:
         parameters = {name: p for name, p in self.parameters.items() if not name.startswith(gone)}
         return replace(self, effects=effects, parameters=parameters)
 
+    def in_medium(self, fluid: str | Mapping[str, float], depth_m: float) -> "Model":
+        """A copy of so deep a body in a fluid: a name, or the keys of the file's section medium.
+
+        The fluid does nothing until there are effects of it. Raises ModelError for an unknown fluid or a bad value.
+        """
+        content = self.description.model_dump()
+        content["medium"] = fluid if isinstance(fluid, str) else dict(fluid)
+        content["body"]["depth_m"] = depth_m
+        try:
+            changed = Description.model_validate(content)
+        except ValidationError as error:
+            raise ModelError(sentence_for(error)) from None
+        return replace(self, description=changed)
+
     def with_numerics(self, **changes: float) -> "Model":
         """A copy with other numerics, such as mesh_density=2 or steps_per_second=960.
 
@@ -222,6 +237,11 @@ def check_together(effects: tuple[Effect, ...], model: Model) -> None:
             raise ModelError(
                 f"effect '{effect.id}' compares two muscles, and model '{model.name}' has {count}; remove it or use a "
                 "model with two"
+            )
+        if effect.needs_medium and model.description.medium is None:
+            raise ModelError(
+                f"effect '{effect.id}' is a force of the fluid around the body, and model '{model.name}' names none; "
+                "remove it or add a section medium"
             )
         quantities = sorted({channel.quantity for channel in model.description.channels})
         if effect.quantity and effect.quantity not in quantities:

@@ -7,6 +7,8 @@ from typing import Any
 _RANGES: dict[str, tuple[float, float, str]] = {
     "_m": (1e-6, 10.0, "m"),
     "_pa": (1.0, 1e12, "Pa"),
+    "_pa_s": (1e-6, 1e3, "Pa s"),
+    "medium.density_kg_per_m3": (0.01, 3e4, "kg/m^3"),
     "_kg_per_m3": (10.0, 3e4, "kg/m^3"),
     "_kg_per_m": (1e-9, 1e4, "kg/m"),
     "_time_s": (1e-9, 1e4, "s"),

@@ -67,7 +67,7 @@ def _parse(text: str, source: str, folder: Path) -> Model:
         raise ModelError(f"{source}: {error}") from None
     except ValidationError as error:
         raise ModelError(f"{source}: {sentence_for(error)}") from None
-    sections = ("body", "material", "muscles", "markers")
+    sections = ("body", "material", "medium", "muscles", "markers")
     for fault in implausible({name: content[name] for name in sections if name in content}):
         raise ModelError(f"{source}: {fault}")
     bare = Model(description.model_copy(update={"effects": (), "parameters": {}}))

@@ -3,7 +3,7 @@
 from pydantic import BaseModel, ValidationError
 
 from hasel_sim.errors import nearest_name
-from hasel_sim.model import actuation, body, description
+from hasel_sim.model import actuation, body, description, medium
 
 _SECTIONS: dict[str, type[BaseModel]] = {
     "": description.Description,
@@ -13,6 +13,7 @@ _SECTIONS: dict[str, type[BaseModel]] = {
     "tip_plate": body.TipPlate,
     "material": description.Materials,
     "soft": body.Material,
+    "medium": medium.Medium,
     "channels": actuation.Channel,
     "muscles": actuation.Muscle,
     "numerics": description.Numerics,

@@ -17,6 +17,7 @@ from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 from scipy.optimize import least_squares
 
+FLUID, DEPTH = "canola_oil", 0.05
 LEVELS = {3500.0: 0.0268, 4500.0: 0.0440, 5500.0: 0.0624}
 SLOPE = 0.264
 
@@ -25,7 +26,7 @@ SLOPE = 0.264
 def coarse_swimmer() -> Model:
     """The swimmer with three amplitudes on a coarse mesh, solved far more tightly than finite differences need."""
     amplitudes = {f"amplitude_{level:g}": value for level, value in LEVELS.items()}
-    model = load_model("swimmer").with_levels(np.array(list(LEVELS)))
+    model = load_model("swimmer").with_levels(np.array(list(LEVELS))).in_medium(FLUID, DEPTH)
     return model.with_values({**amplitudes, "slope": SLOPE}).with_numerics(
         mesh_density=0.5, tolerance_m=1e-11, steps_per_second=120
     )
@@ -148,7 +149,7 @@ class Cantilever:
         **values,
     ) -> Model:
         """The beam, with one effect or none."""
-        return self._rectangle(
+        beam = self._rectangle(
             length=self.length,
             height=self.height,
             effects=find_effects((identity,)) if identity else (),
@@ -157,6 +158,7 @@ class Cantilever:
             values={f"{identity}.{name}": value for name, value in values.items()},
             mesh_density=mesh_density,
         )
+        return beam.in_medium(FLUID, DEPTH)
 
     def bent(self, tip: float) -> np.ndarray:
         """Nodal positions [m] under forces that bend the beam into its first mode; tip: its deflection [m]."""

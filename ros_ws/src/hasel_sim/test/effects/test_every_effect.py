@@ -116,7 +116,7 @@ def test_travels_to_another_process(identity):
 
 def test_all_effects_act_together(coarse_swimmer, short_boxes, sin_theta_of):
     """All effects that may stand side by side run in one model, and its sensitivities are right."""
-    together = [name for name in ALL if name != "camera_latency"]
+    together = [name for name in ALL if name not in ("camera_latency", "finite_depth_added_mass")]
     model = coarse_swimmer.with_effects(*together)
     tenth = {}
     for name, p in itertools.chain.from_iterable(
@@ -154,6 +154,7 @@ def test_the_order_in_the_model_file_does_not_matter(tmp_path, coarse_swimmer, s
         ("swimmer", ["transport_delay", "camera_latency"], "does the same as 'transport_delay'"),
         ("beam", ["force_length"], "acts on the muscles, and model 'beam' has none"),
         ("beam", ["charging_lag"], "acts on the muscles, and model 'beam' has none"),
+        ("beam", ["normal_drag"], "a force of the fluid around the body, and model 'beam' names none"),
         ("beam", ["spine_stiffening"], "acts on the spine, and model 'beam' has none"),
         ("swimmer", ["quadratic_drga"], "nearest known one is 'quadratic_drag'"),
     ],

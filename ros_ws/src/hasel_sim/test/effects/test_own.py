@@ -189,7 +189,7 @@ _CHANGES = {
     "without unit": ('"kg/m^3"', '""'),
     "outside 1 to 5000": ("0.0, 0.0, 5000.0", "0.0, 1.0, 5000.0"),
     "typically off its null": ("5000.0, 115.0", "5000.0, 0.0"),
-    "use one of body, skin, points": ('"skin"', '"everywhere"'),
+    "use one of body, skin, line, points": ('"skin"', '"everywhere"'),
     "in depends_on": ('("velocity", "tangent")', '("speed", "tangent")'),
     "uses the velocity without saying so": ('("velocity", "tangent")', '("tangent",)'),
     "exerts a force at its null values": ("-p.c", "1 - p.c"),

@@ -46,7 +46,7 @@ def refusal(tmp_path):
 
 def test_the_models_that_come_with_the_package_can_be_read():
     """By their names."""
-    assert model_names() == ["arm", "beam", "swimmer"]
+    assert model_names() == ["arm", "beam", "swimmer", "swimmer_in_oil"]
     for name in model_names():
         assert load_model(name).name == name
 
@@ -211,3 +211,45 @@ def test_an_effect_of_ones_own_is_found_beside_the_model_file(tmp_path):
     assert "gain.factor" in model.parameters
     save_model(model, tmp_path / "elsewhere" / "model.yaml")
     assert "gain.factor" in load_model(tmp_path / "elsewhere" / "model.yaml").parameters
+
+
+@pytest.mark.parametrize(
+    ("medium", "density", "viscosity"),
+    [
+        ("water", 998.0, 1e-3),
+        ({"fluid": "canola_oil", "viscosity_pa_s": 0.06}, 920.0, 0.06),
+        ({"density_kg_per_m3": 1200.0, "viscosity_pa_s": 0.01}, 1200.0, 0.01),
+    ],
+)
+def test_a_medium_is_named_or_described(tmp_path, content, medium, density, viscosity):
+    """A fluid by name, by name with another viscosity, or by its constants, which may be freed; also read back."""
+    content["medium"], content["body"]["depth_m"] = medium, 0.04
+    content["parameters"]["medium.viscosity_pa_s"] = {"lower": 1e-4, "upper": 1.0}
+    content["effects"] = ["normal_drag"]
+    YAML(typ="safe").dump(content, tmp_path / "model.yaml")
+    save_model(load_model(tmp_path / "model.yaml"), tmp_path / "again.yaml")
+    model = load_model(tmp_path / "again.yaml")
+    around = model.described.surroundings
+    assert (around.density, around.viscosity) == (density, viscosity)
+    assert (around.depth, around.length) == (0.04, pytest.approx(0.19))
+    thicker = model.with_values({"medium.viscosity_pa_s": 0.5})
+    assert thicker.described.surroundings.viscosity == 0.5
+    assert model.parameters["medium.viscosity_pa_s"].unit == "Pa s"
+
+
+@pytest.mark.parametrize(
+    ("medium", "depth", "said"),
+    [
+        ("canola", 0.05, "the fluid 'canola' is not known; the nearest known one is 'canola_oil'"),
+        ("water", None, "medium is given for a body without depth; expected body.depth_m"),
+        ({"fluid": "water", "viscosity_mpa_s": 1.0}, 0.05, "unknown key 'medium.viscosity_mpa_s'"),
+        ({"density_kg_per_m3": 900.0}, 0.05, "medium.viscosity_pa_s' is missing"),
+        ("water", 50.0, "body.depth_m is 50 m; expected 1e-06 to 10 m"),
+    ],
+)
+def test_a_wrong_medium_is_refused(refusal, content, medium, depth, said):
+    """An unknown fluid, a body without depth, an unknown or a missing key, a depth in millimetres."""
+    content["medium"] = medium
+    if depth is not None:
+        content["body"]["depth_m"] = depth
+    assert said in refusal(content)

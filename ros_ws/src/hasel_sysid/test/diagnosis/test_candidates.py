@@ -60,3 +60,14 @@ def test_a_plus_adds_to_the_catalogue_and_without_one_nothing_else_is_considered
     assert [effect.id for effect in candidate_effects(model, (f"+{own}:Mine",))] == [*every, "Mine"]
     assert [effect.id for effect in candidate_effects(model, (f"{own}:Mine", "tether"))] == ["Mine", "tether"]
     assert [effect.id for effect in candidate_effects(model, ("+tether",))] == every
+
+
+def test_forces_of_a_fluid_are_suspects_only_where_there_is_one():
+    """The search considers them for a model with a medium, and spends nothing on them for one without."""
+    dry = {effect.id for effect in candidate_effects(load_model("swimmer"))}
+    swimmer = load_model("swimmer_in_oil")
+    wet = {
+        effect.id for effect in candidate_effects(swimmer.without_effects(*(e.id for e in swimmer.effects)))
+    }
+    of_fluids = {"viscous_drag", "normal_drag", "skin_friction", "reactive_force", "finite_depth_added_mass"}
+    assert wet - dry == of_fluids and dry < wet
