@@ -43,7 +43,9 @@ class ViscousDrag(ForceEffect):
         "Damping in proportion to velocity, whatever the amplitude; a wave swims at a share of its own speed."
     )
     confused_with = ("linear_drag", "normal_drag", "skin_friction", "material_damping")
-    separated_by = "Ring-down in the fluid at small and large amplitude: the decrement of this drag stays; warm oil weakens it."
+    separated_by = (
+        "Ring-down in the fluid at small and large amplitude: its decrement stays; warm oil weakens it."
+    )
     citation = "Gray and Hancock, Journal of Experimental Biology 32 (1955) 802"
     needs_medium = True
     sites = "line"
