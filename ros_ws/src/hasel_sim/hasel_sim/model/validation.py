@@ -3,10 +3,9 @@
 from pydantic import BaseModel, ValidationError
 
 from hasel_sim.errors import nearest_name
-from hasel_sim.model import actuation, body, description, medium
+from hasel_sim.model import actuation, body, description, medium, pouch_section
 
 _SECTIONS: dict[str, type[BaseModel]] = {
-    "": description.Description,
     "body": body.Body,
     "outline": body.Outline,
     "regions": body.BodyRegion,
@@ -17,6 +16,7 @@ _SECTIONS: dict[str, type[BaseModel]] = {
     "channels": actuation.Channel,
     "muscles": actuation.Muscle,
     "numerics": description.Numerics,
+    "pouch": pouch_section.PouchSection,
 }
 """Sections by their key; `body.spine` and `material.spine`, and `material` within a region, are told apart below."""
 
@@ -28,7 +28,7 @@ _SCALES: tuple[dict[str, float], ...] = (
 """Units in which a key may have been meant, by their size in the SI unit."""
 
 
-def _section(parents: list[str]) -> type[BaseModel]:
+def _section(parents: list[str], root: type[BaseModel]) -> type[BaseModel]:
     if parents[:1] == ["parameters"]:
         return description.ParameterEntry
     if parents[:1] == ["markers"]:
@@ -39,18 +39,23 @@ def _section(parents: list[str]) -> type[BaseModel]:
         parents[:2] == ["body", "regions"] and parents[-1] == "material"
     ):
         return body.Material
-    return _SECTIONS.get(parents[-1] if parents else "", description.Description)
+    return _SECTIONS.get(parents[-1], root) if parents else root
 
 
-def sentence_for(error: ValidationError) -> str:
-    """The first problem of a validation error, as a sentence; a misspelt key goes before a missing one."""
+def sentence_for(error: ValidationError, root: type[BaseModel] = description.Description) -> str:
+    """The first problem of a validation error, as a sentence; a misspelt key goes before a missing one.
+
+    root: what the whole file is.
+    """
     problems = error.errors()
     strange = [each for each in problems if each["type"] == "extra_forbidden"]
     problem = strange[0] if problems[0]["type"] == "missing" and strange else problems[0]
     where = ".".join(str(part) for part in problem["loc"]) or "the file"
     if problem["type"] == "extra_forbidden":
         names = [part for part in problem["loc"] if isinstance(part, str)]
-        return _strange_key(where, names[-1], list(_section(names[:-1]).model_fields), problem.get("input"))
+        return _strange_key(
+            where, names[-1], list(_section(names[:-1], root).model_fields), problem.get("input")
+        )
     if problem["type"] == "missing":
         return f"the key '{where}' is missing: add it"
     if problem["type"] == "value_error":
@@ -59,7 +64,7 @@ def sentence_for(error: ValidationError) -> str:
     found = problem.get("input")
     if problem["type"] == "model_type":
         names = [part for part in problem["loc"] if isinstance(part, str)]
-        keys = ", ".join(_section(names).model_fields)
+        keys = ", ".join(_section(names, root).model_fields)
         return f"{where} is {found!r}; expected a section with keys of {keys}: write them below it"
     return f"{where} is {found!r}; {problem['msg'].replace('Input should be', 'expected')}: correct it"
 

@@ -1,0 +1,1 @@
+"""The Peano-HASEL muscle without a body: the zipping pouch, what its analytic model lacks, and its file."""

@@ -1,0 +1,58 @@
+"""What an effect of the muscle on its bench states, and the places where one can act."""
+
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import ClassVar
+
+import numpy as np
+
+from hasel_sim.effects.base import EffectParameter
+from hasel_sim.muscle.pouch import Pouch
+
+
+@dataclass(frozen=True)
+class Held:
+    """A pouch in balance at n instants: half angle [rad], force along the muscle [N] and at rest [N], all [n]."""
+
+    pouch: Pouch
+    angle: np.ndarray
+    force: np.ndarray
+    rest_force: np.ndarray
+
+
+class MuscleEffect:
+    """Base of all effects of the bench. It holds no state; its values come as `p`, one attribute per parameter.
+
+    At the parameters' null values every method below returns what it is given, or zero.
+    """
+
+    id: ClassVar[str]
+    physics: ClassVar[str]
+    equation: ClassVar[str]
+    parameters: ClassVar[tuple[EffectParameter, ...]]
+    signature: ClassVar[str] = ""
+    citation: ClassVar[str] = ""
+
+    def pouches(self, pouch: Pouch, p: SimpleNamespace) -> list[tuple[float, Pouch]]:
+        """What the muscle's pouches are like: shares [1] that add up to 1, each with its pouch."""
+        return [(1.0, pouch)]
+
+    def electrodes(self, time: np.ndarray, voltage: np.ndarray, p: SimpleNamespace) -> np.ndarray:
+        """Voltage [V] [n] that pulls, from the one applied at times [s] [n]."""
+        return voltage
+
+    def opposing(self, strain: np.ndarray, p: SimpleNamespace) -> np.ndarray:
+        """Force [N] with which the muscle itself resists a contraction by its rest length [1]; never falling."""
+        return np.zeros_like(strain)
+
+    def give(self, held: Held, p: SimpleNamespace) -> np.ndarray:
+        """By how much more than at rest something stretches, per pouch [m] [n]."""
+        return np.zeros_like(held.angle)
+
+    def follow(self, time: np.ndarray, contraction: np.ndarray, p: SimpleNamespace) -> np.ndarray:
+        """Contraction [m] [n] that follows in time from the one in balance."""
+        return contraction
+
+    def before(self, time: np.ndarray, contraction: np.ndarray, p: SimpleNamespace) -> np.ndarray:
+        """The inverse of `follow`: what is in balance when the contraction [m] [n] is held by the bench."""
+        return contraction

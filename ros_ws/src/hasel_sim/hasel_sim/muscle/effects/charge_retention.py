@@ -1,0 +1,23 @@
+"""Charge retention: charge creeps into the film and shields part of the field."""
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from hasel_sim.effects.drive.charge_retention import ChargeRetention as OfTheDrive
+from hasel_sim.muscle.effect import MuscleEffect
+
+
+class ChargeRetention(MuscleEffect):
+    """The drive's effect of this name, on the bench."""
+
+    id = OfTheDrive.id
+    physics = OfTheDrive.physics
+    equation = OfTheDrive.equation
+    parameters = OfTheDrive.parameters
+    signature = "Contraction fades while one polarity is held, and not when it alternates; some is left after release."
+    citation = OfTheDrive.citation
+
+    def electrodes(self, time: np.ndarray, voltage: np.ndarray, p: SimpleNamespace) -> np.ndarray:
+        """Effective voltage [V]."""
+        return OfTheDrive().respond(time, voltage[:, None], p)[:, 0]

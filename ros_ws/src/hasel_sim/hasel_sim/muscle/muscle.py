@@ -1,0 +1,170 @@
+"""A Peano-HASEL muscle: pouches in series, what acts on them, and its numbers; changed only by copying."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
+
+import numpy as np
+
+from hasel_sim.errors import ModelError, nearest_name
+from hasel_sim.model.parameter import Parameter
+from hasel_sim.muscle.catalogue import find_muscle_effects
+from hasel_sim.muscle.effect import Held, MuscleEffect
+from hasel_sim.muscle.pouch import Pouch, bisect
+
+POUCH = "pouch."
+"""How the names of the pouch's constants begin that are free, such as `pouch.fill`."""
+
+
+@dataclass(frozen=True)
+class Muscle:
+    """count: pouches in series; mass [kg]: of the muscle, half of which hangs from its middle beside the load.
+
+    parameters: what may be fitted, `pouch.<constant>` and `<effect>.<parameter>`.
+    """
+
+    name: str
+    pouch: Pouch
+    count: int
+    mass: float = 0.0
+    effects: tuple[MuscleEffect, ...] = ()
+    parameters: dict[str, Parameter] = field(default_factory=dict)
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Value of every parameter."""
+        return {name: parameter.value for name, parameter in self.parameters.items()}
+
+    @property
+    def free(self) -> tuple[str, ...]:
+        """Names of the parameters that a fit may change."""
+        return tuple(name for name, parameter in self.parameters.items() if parameter.free)
+
+    def with_values(
+        self, values: Mapping[str, float], standard_errors: Mapping[str, float | None] | None = None
+    ) -> "Muscle":
+        """A copy with other values. Raises ModelError for an unknown name."""
+        parameters = dict(self.parameters)
+        for name, value in values.items():
+            if name not in parameters:
+                raise ModelError(
+                    f"'{name}' is no parameter of muscle '{self.name}'; {nearest_name(name, parameters)}"
+                )
+            error = (standard_errors or {}).get(name, parameters[name].standard_error)
+            parameters[name] = replace(parameters[name], value=float(value), standard_error=error)
+        return replace(self, parameters=parameters)
+
+    def with_effects(self, *names: str) -> "Muscle":
+        """A copy with further effects, at their null values. Raises ModelError for one unknown or already there."""
+        parameters = dict(self.parameters)
+        present = {effect.id for effect in self.effects}
+        effects = find_muscle_effects(names)
+        for effect in effects:
+            if effect.id in present:
+                raise ModelError(
+                    f"effect '{effect.id}' is in muscle '{self.name}' already: remove one of the two"
+                )
+            for p in effect.parameters:
+                name = f"{effect.id}.{p.name}"
+                start = p.scan[len(p.scan) // 2] if p.scan else p.null
+                parameters[name] = Parameter(name, start, p.unit, p.lower, p.upper)
+        return replace(self, effects=(*self.effects, *effects), parameters=parameters)
+
+    def contraction(
+        self, time: np.ndarray, voltage: np.ndarray, load: np.ndarray, rest_load: float | None = None
+    ) -> np.ndarray:
+        """Contraction [m] [n] under hanging loads [N] [n] at voltages [V] [n], each held from its time [s] to the next.
+
+        rest_load: load [N] at which the contraction was called 0 (default: the first).
+        """
+        rest = np.full(np.shape(load), load[0] if rest_load is None else rest_load)
+        x = self._balanced(self._pulling(time, voltage), load, rest)
+        for effect, p in self._acting():
+            x = effect.follow(time, x, p)
+        return x
+
+    def force(
+        self, time: np.ndarray, voltage: np.ndarray, contraction: np.ndarray, rest_load: float = 0.0
+    ) -> np.ndarray:
+        """Force [N] [n] of the muscle held at contractions [m] [n]; 0 where it hangs slack."""
+        for effect, p in reversed(self._acting()):
+            contraction = effect.before(time, contraction, p)
+        pulling = self._pulling(time, voltage)
+        rest = np.full(np.shape(contraction), rest_load)
+        rows, back = np.unique(np.stack([np.abs(pulling), contraction], axis=1), axis=0, return_inverse=True)
+        volts, aim = rows.T
+        rest = np.full(len(rows), rest_load)
+        high = np.maximum(self._strongest(volts), 1e-12)
+        found = bisect(lambda load: aim - self._balanced(volts, load, rest), np.zeros(len(rows)), high)
+        return found[back.ravel()]
+
+    def _acting(self) -> list[tuple[MuscleEffect, SimpleNamespace]]:
+        values = self.values
+        return [
+            (effect, SimpleNamespace(**{p.name: values[f"{effect.id}.{p.name}"] for p in effect.parameters}))
+            for effect in self.effects
+        ]
+
+    def _pulling(self, time: np.ndarray, voltage: np.ndarray) -> np.ndarray:
+        for effect, p in self._acting():
+            voltage = effect.electrodes(time, voltage, p)
+        return voltage
+
+    def populations(self) -> list[tuple[float, Pouch]]:
+        """Shares [1] of the pouches, and what these are like with the values of the parameters."""
+        freed = {
+            name.removeprefix(POUCH): p.value for name, p in self.parameters.items() if name.startswith(POUCH)
+        }
+        found = [(1.0, replace(self.pouch, **freed))]
+        for effect, p in self._acting():
+            found = [
+                (share * part, kind) for share, pouch in found for part, kind in effect.pouches(pouch, p)
+            ]
+        return found
+
+    def _balanced(self, voltage: np.ndarray, load: np.ndarray, rest_load: np.ndarray) -> np.ndarray:
+        """Contraction [m] in balance; each pouch has its share of what opposes."""
+        table = np.stack([np.abs(voltage), load, rest_load], axis=1)
+        rows, back = np.unique(table, axis=0, return_inverse=True)
+        volts, force, rest = rows.T
+        weight = 0.5 * self.mass * 9.81
+        x = np.zeros(len(rows))
+        acting = self._acting()
+        for share, pouch in self.populations():
+            angle = _angle(pouch, volts, force + weight, acting)
+            held = Held(pouch, angle, force + weight, rest + weight)
+            one = pouch.contraction(angle)
+            for effect, p in acting:
+                one = one - effect.give(held, p)
+            x += share * one
+        return self.count * x[back.ravel()]
+
+    def _strongest(self, voltage: np.ndarray) -> np.ndarray:
+        """No pouch holds more [N] than the strongest one at rest."""
+        return np.max(
+            [
+                pouch.force(voltage, np.full_like(voltage, pouch.relaxed_angle))
+                for _, pouch in self.populations()
+            ],
+            axis=0,
+        )
+
+    @property
+    def rest_length(self) -> float:
+        """Length between the outer seals [m] without voltage."""
+        return self.count * self.populations()[0][1].relaxed_length
+
+
+def _angle(pouch: Pouch, voltage: np.ndarray, load: np.ndarray, acting: list) -> np.ndarray:
+    def opposing(angle: np.ndarray) -> np.ndarray:
+        strain = pouch.contraction(angle) / pouch.relaxed_length
+        return sum((effect.opposing(strain, p) for effect, p in acting), np.zeros_like(strain))
+
+    free = pouch.angle_under_load(voltage, load)
+    if not np.any(opposing(free)):
+        return free
+
+    def surplus(angle: np.ndarray) -> np.ndarray:
+        return load + opposing(angle) - pouch.force(voltage, angle)
+
+    return bisect(surplus, np.full(np.shape(load), pouch.relaxed_angle), free)
