@@ -20,10 +20,11 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 
 from hasel_driver.client_watch import ClientWatch
-from hasel_driver.errors import DriverError, RefusedError
+from hasel_driver.errors import DriverError, LimitError, RefusedError
 from hasel_driver.experiment import Experiment, ExperimentPlan
 from hasel_driver.experiment_recording import ExperimentRecording
 from hasel_driver.node_parameters import values
+from hasel_driver.presets import preset
 from hasel_driver.recording_path import chosen_path, reserve, reserve_unique
 from hasel_driver.supply_thread import SupplyThread
 from hasel_driver.waveform import Waveform
@@ -97,7 +98,7 @@ class ExperimentServer:
         result = RunExperiment.Result()
         try:
             with self._alone():
-                plan = _plan(goal_handle.request)
+                plan = plan_of(goal_handle.request)
                 problems = self._run(plan, goal_handle, result)
         except (DriverError, RecordingError, OSError) as error:
             problems = [str(error)]
@@ -167,7 +168,7 @@ class ExperimentServer:
         if goal.output:
             return reserve(chosen_path(goal.output))
         folder = Path(self._node.get_parameter("recording_directory").value).expanduser()
-        rate = "file" if goal.waveform_file else f"{goal.frequency:g}Hz"
+        rate = "file" if goal.waveform_file else goal.preset or f"{goal.frequency:g}Hz"
         return reserve_unique(folder, f"{plan.waveform.voltage_v:.0f}V_{rate}")
 
 
@@ -185,9 +186,18 @@ def _conclude(goal_handle, success: bool) -> None:
         goal_handle.abort()
 
 
-def _plan(goal: RunExperiment.Goal) -> ExperimentPlan:
+def plan_of(goal: RunExperiment.Goal) -> ExperimentPlan:
+    """What a goal asks for. Raises LimitError or RecordingError."""
+    if goal.preset and goal.waveform_file:
+        raise LimitError(
+            f"The goal names the preset {goal.preset!r} and the file {goal.waveform_file!r}: give one of the two."
+        )
     if goal.waveform_file:
         return ExperimentPlan(read_waveform(Path(goal.waveform_file).expanduser()), goal.rest_time)
+    if goal.preset:
+        chosen = preset(goal.preset)
+        muscle = "upper" if goal.muscles == RunExperiment.Goal.BOTH else goal.muscles
+        return ExperimentPlan(chosen.waveform(goal.voltage, muscle), goal.rest_time or chosen.rest_s)
     waveform = Waveform(
         shape=goal.waveform,
         voltage_v=goal.voltage,

@@ -2,6 +2,7 @@ import numpy as np
 from hasel_driver.faults import FaultCode
 from hasel_driver.messages import to_supply_state
 from hasel_driver.mode import Mode
+from hasel_driver.presets import PRESETS
 from hasel_driver.status import Status
 from hasel_driver.waveform import MUSCLES, POLARITIES, SHAPES
 from hasel_interfaces.action import RunExperiment
@@ -21,9 +22,9 @@ def test_constants_are_those_of_the_driver():
 
 
 def test_words_of_an_experiment_are_those_that_it_takes():
-    """Every constant of the goal is a word of waveform, polarity or muscles, and the other way round."""
+    """Every constant of the goal is a word of waveform, polarity, muscles or preset, and the other way round."""
     words = list(constants(RunExperiment.Goal).values())
-    assert sorted(words) == sorted([*SHAPES, *POLARITIES, *MUSCLES])
+    assert sorted(words) == sorted([*SHAPES, *POLARITIES, *MUSCLES, *PRESETS])
 
 
 def test_state_names_muscles_and_frame():

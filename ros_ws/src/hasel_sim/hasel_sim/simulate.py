@@ -22,7 +22,8 @@ def simulate(model: Model, run: Run, slopes_by: Sequence[str] = (), keep_shapes:
     slopes_by: names of parameters by which sin theta is differentiated, exactly to the tolerance of the steps.
     Raises SimulationError when the motion cannot be followed, ModelError for an unknown parameter.
     """
-    if model.has_muscles and not len(model.levels) and run.schedule is not None and run.schedule.signal.any():
+    aimless = model.has_muscles and model.description.muscle is None and not len(model.levels)
+    if aimless and run.schedule is not None and run.schedule.signal.any():
         warnings.warn(
             f"model '{model.name}' has no amplitudes, so nothing that drives run '{run.name}' contracts its muscles: "
             "give it some with model.with_levels([…]), or fit it",

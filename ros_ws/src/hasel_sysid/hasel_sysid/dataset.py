@@ -136,5 +136,6 @@ def prepared(model: Model, experiments: Sequence[Experiment]) -> Model:
                 "choose the model with --model (swimmer is the default)"
             )
         return model
-    levels = {table.channels[0]: drive_levels(experiments, table.channels) for table in model.tables}
+    alike = [*(table.channels for table in model.tables), tuple(filter(model.follows_law, model.channels))]
+    levels = {channels[0]: drive_levels(experiments, channels) for channels in alike if channels}
     return model.with_levels(levels) if any(len(own) for own in levels.values()) else model

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from hasel_sim.drive.peano_hasel import PeanoHaselDrive
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.drive.sloped_box import limit_rate, target_contraction
 from hasel_sim.effects.base import DriveEffect, DriveStage
@@ -21,6 +22,9 @@ class DriveChain:
         self._of_muscle = model.muscle_channels
         self._rest = np.array([muscle.rest_contraction for muscle in model.described.muscles])
         self._response = model.description.muscle_response
+        law = model.description.muscle
+        self._law = PeanoHaselDrive(law) if law else None
+        self._by_law = [column for column, name in enumerate(self.channels) if model.follows_law(name)]
         self._tables = []
         for table in model.tables:
             columns = [self.channels.index(name) for name in table.channels]
@@ -70,6 +74,8 @@ class DriveChain:
     def _target(self, signal: np.ndarray, values: dict[str, float]) -> np.ndarray:
         """Contraction aimed at [n, muscles] for a drive [n, channels]."""
         aimed = np.zeros_like(signal, dtype=float)
+        if self._law is not None:
+            aimed[:, self._by_law] = self._law.contraction(signal[:, self._by_law], values)
         for columns, levels, names in self._tables:
             amplitudes = np.array([values[name] for name in names])
             aimed[:, columns] = target_contraction(signal[:, columns], levels, amplitudes)

@@ -17,7 +17,7 @@ def live_model(name: str, effects: tuple[str, ...] = ()) -> tuple[Model, str]:
     """
     model, warning = load_model(name), ""
     rig_columns(model)
-    if model.has_muscles and len(model.levels) == 0:
+    if model.has_muscles and len(model.levels) == 0 and model.description.muscle is None:
         model = model.with_levels(np.array([_LEVEL_WITHOUT_FIT]))
         start = model.parameters[f"amplitude_{_LEVEL_WITHOUT_FIT:g}"].value
         warning = (

@@ -19,7 +19,7 @@ _SLACK = 1e-9
 
 def first_fault(description: Description) -> str | None:
     """A sentence about the first thing that does not fit; None where all does."""
-    checks = (_spine, _medium, _places, _channels, _markers)
+    checks = (_spine, _medium, _places, _channels, _law, _markers)
     return next((fault for check in checks for fault in check(description)), None)
 
 
@@ -86,6 +86,14 @@ def _channels(d: Description) -> Iterator[str]:
     for name in names:
         if name not in used:
             yield f"channel '{name}' contracts no muscle; expected one that names it: add it or remove the channel"
+
+
+def _law(d: Description) -> Iterator[str]:
+    if d.muscle and all(channel.quantity != "voltage" for channel in d.channels):
+        yield (
+            f"muscle.law is '{d.muscle.law}', and no channel is a voltage; expected one: remove the section, or "
+            "correct the channel's quantity"
+        )
 
 
 def _markers(d: Description) -> Iterator[str]:

@@ -9,6 +9,7 @@ from hasel_sim.model.actuation import Channel, Muscle
 from hasel_sim.model.body import Body, Material
 from hasel_sim.model.consistency import first_fault
 from hasel_sim.model.medium import Medium
+from hasel_sim.model.muscle_law import MuscleLaw
 from hasel_sim.model.section import Finite, Name, NotNegative, Positive, Section
 
 ANGLE_MARKERS = ("head", "middle", "tail")
@@ -70,6 +71,8 @@ class Description(Section):
     muscle_response: Literal["sloped_box", "first_order"] = "sloped_box"
     """How muscles follow what is commanded: the contraction at a limited rate (`slope`), or the drive itself through a
     first-order lag (`rise_time`, `fall_time`), as the pressure in a chamber does."""
+    muscle: MuscleLaw | None = None
+    """The law that muscles driven by a voltage follow, in place of an amplitude per voltage."""
     markers: dict[Name, Marker]
     numerics: Numerics = Numerics()
     effects: tuple[str, ...] = ()

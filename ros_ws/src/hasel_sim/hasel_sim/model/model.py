@@ -14,6 +14,7 @@ from hasel_sim.effects.registry import find_effects
 from hasel_sim.errors import ModelError, nearest_name
 from hasel_sim.model.constants import constants, with_constants
 from hasel_sim.model.description import Description, Numerics
+from hasel_sim.model.muscle_law import law_parameters
 from hasel_sim.model.parameter import Parameter
 from hasel_sim.model.validation import sentence_for
 
@@ -28,10 +29,11 @@ _RESPONSES = {
 
 
 def response_parameters(description: Description) -> dict[str, Parameter]:
-    """What a body with muscles always has besides its amplitudes: how fast the contraction follows."""
+    """What a body with muscles always has besides its amplitudes: how fast the contraction follows, and its law's."""
     if not description.muscles:
         return {}
-    return {row[0]: Parameter(*row) for row in _RESPONSES[description.muscle_response]}
+    response = {row[0]: Parameter(*row) for row in _RESPONSES[description.muscle_response]}
+    return {**law_parameters(), **response} if description.muscle else response
 
 
 @dataclass(frozen=True)
@@ -40,12 +42,14 @@ class Model:
 
     Baseline parameters are `slope` [1/s] (or `rise_time` and `fall_time` [s]) and one `amplitude_<level>` [1] per level
     of the drive; an effect's are `<id>.<name>`; a constant of the file that is freed is called by its path, such as
-    `material.soft.youngs_modulus_pa`.
+    `material.soft.youngs_modulus_pa`. Where muscles follow a law it has `muscle.<name>` in place of amplitudes, and
+    law_levels are the voltages [V] it was last used at.
     """
 
     description: Description
     effects: tuple[Effect, ...] = ()
     parameters: dict[str, Parameter] = field(default_factory=dict)
+    law_levels: tuple[float, ...] = ()
 
     @property
     def name(self) -> str:
@@ -75,17 +79,22 @@ class Model:
     @cached_property
     def tables(self) -> tuple[AmplitudeTable, ...]:
         """Which channels contract alike, and how their amplitudes are called."""
-        return amplitude_tables(self.description.channels)
+        return amplitude_tables(tuple(c for c in self.description.channels if not self.follows_law(c.name)))
 
-    def table_of(self, channel: str) -> AmplitudeTable:
-        """The table that a channel's amplitudes are in."""
-        return next(table for table in self.tables if channel in table.channels)
+    def follows_law(self, channel: str) -> bool:
+        """Whether a law says what this channel contracts, and not a table."""
+        quantity = self.description.channels[self.channels.index(channel)].quantity
+        return self.description.muscle is not None and quantity == "voltage"
+
+    def table_of(self, channel: str) -> AmplitudeTable | None:
+        """The table that a channel's amplitudes are in; None where it follows a law."""
+        return next((table for table in self.tables if channel in table.channels), None)
 
     @property
     def levels(self) -> np.ndarray:
-        """Levels of all drives with an amplitude of their own, ascending, each in the unit of its channel."""
-        found = [table.levels(self.parameters) for table in self.tables]
-        return np.sort(np.concatenate(found)) if found else np.zeros(0)
+        """Levels of all drives with an amplitude of their own, or used with a law, ascending, each in its own unit."""
+        found = [np.array(self.law_levels), *(table.levels(self.parameters) for table in self.tables)]
+        return np.sort(np.concatenate(found))
 
     @cached_property
     def described(self) -> Description:
@@ -150,7 +159,13 @@ class Model:
                 start = Parameter(name, _AMPLITUDE_START * float(level) / highest, "1", 0.0, table.largest)
                 amplitudes[name] = self.parameters.get(name, start)
         kept = {name: p for name, p in self.parameters.items() if not self.is_amplitude(name)}
-        return replace(self, parameters={**amplitudes, **kept})
+        lawful = [
+            levels.get(name, []) if isinstance(levels, Mapping) else levels
+            for name in self.channels
+            if self.follows_law(name)
+        ]
+        seen = tuple(float(level) for level in np.unique(np.concatenate([[], *lawful])))
+        return replace(self, parameters={**amplitudes, **kept}, law_levels=seen)
 
     def is_amplitude(self, name: str) -> bool:
         """Whether a parameter's name is that of an amplitude of this body."""

@@ -17,6 +17,7 @@ from hasel_sim.model.constants import constants, unit_of
 from hasel_sim.model.description import Description, ParameterEntry
 from hasel_sim.model.former import is_former, translated
 from hasel_sim.model.model import Model, response_parameters
+from hasel_sim.model.muscle_law import MuscleLaw
 from hasel_sim.model.parameter import Parameter
 from hasel_sim.model.plausible import implausible
 from hasel_sim.model.validation import sentence_for
@@ -67,6 +68,7 @@ def _parse(text: str, source: str, folder: Path) -> Model:
         raise ModelError(f"{source}: {error}") from None
     except ValidationError as error:
         raise ModelError(f"{source}: {sentence_for(error)}") from None
+    description = _with_muscle_file(description, folder, source)
     sections = ("body", "material", "medium", "muscles", "markers")
     for fault in implausible({name: content[name] for name in sections if name in content}):
         raise ModelError(f"{source}: {fault}")
@@ -85,6 +87,20 @@ def _parse(text: str, source: str, folder: Path) -> Model:
             raise ModelError(f"{source}: unknown parameter '{name}'; {_nearest(name, model, freed)}")
         given[name] = _parameter(known, entry, freed.get(name), source)
     return replace(model, parameters={**model.parameters, **given})
+
+
+def _with_muscle_file(description: Description, folder: Path, source: str) -> Description:
+    """The description with what the muscle file says that it names; effects in time have no place in the law."""
+    law = description.muscle
+    if law is None or law.file is None:
+        return description
+    from hasel_sim.muscle.muscle_file import law_content, load_muscle
+
+    try:
+        muscle = load_muscle(folder / law.file if (folder / law.file).is_file() else law.file)
+    except ModelError as error:
+        raise ModelError(f"{source}: muscle.file: {error}") from None
+    return description.model_copy(update={"muscle": MuscleLaw.model_validate(law_content(muscle))})
 
 
 def _nearest(name: str, model: Model, freed: Iterable[str]) -> str:

@@ -3,7 +3,7 @@
 from pydantic import BaseModel, ValidationError
 
 from hasel_sim.errors import nearest_name
-from hasel_sim.model import actuation, body, description, medium, pouch_section
+from hasel_sim.model import actuation, body, description, medium, muscle_law, pouch_section
 
 _SECTIONS: dict[str, type[BaseModel]] = {
     "body": body.Body,
@@ -16,6 +16,7 @@ _SECTIONS: dict[str, type[BaseModel]] = {
     "channels": actuation.Channel,
     "muscles": actuation.Muscle,
     "numerics": description.Numerics,
+    "muscle": muscle_law.MuscleLaw,
     "pouch": pouch_section.PouchSection,
 }
 """Sections by their key; `body.spine` and `material.spine`, and `material` within a region, are told apart below."""

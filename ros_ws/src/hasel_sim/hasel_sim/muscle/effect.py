@@ -32,6 +32,8 @@ class MuscleEffect:
     parameters: ClassVar[tuple[EffectParameter, ...]]
     signature: ClassVar[str] = ""
     citation: ClassVar[str] = ""
+    in_time: ClassVar[bool] = False
+    """Whether it needs the history of the voltage, and so has no place in a law that knows the present one only."""
 
     def pouches(self, pouch: Pouch, p: SimpleNamespace) -> list[tuple[float, Pouch]]:
         """What the muscle's pouches are like: shares [1] that add up to 1, each with its pouch."""

@@ -78,7 +78,7 @@ class Muscle:
         rest_load: load [N] at which the contraction was called 0 (default: the first).
         """
         rest = np.full(np.shape(load), load[0] if rest_load is None else rest_load)
-        x = self._balanced(self._pulling(time, voltage), load, rest)
+        x = self.balanced(self._pulling(time, voltage), load, rest)
         for effect, p in self._acting():
             x = effect.follow(time, x, p)
         return x
@@ -95,7 +95,7 @@ class Muscle:
         volts, aim = rows.T
         rest = np.full(len(rows), rest_load)
         high = np.maximum(self._strongest(volts), 1e-12)
-        found = bisect(lambda load: aim - self._balanced(volts, load, rest), np.zeros(len(rows)), high)
+        found = bisect(lambda load: aim - self.balanced(volts, load, rest), np.zeros(len(rows)), high)
         return found[back.ravel()]
 
     def _acting(self) -> list[tuple[MuscleEffect, SimpleNamespace]]:
@@ -122,7 +122,7 @@ class Muscle:
             ]
         return found
 
-    def _balanced(self, voltage: np.ndarray, load: np.ndarray, rest_load: np.ndarray) -> np.ndarray:
+    def balanced(self, voltage: np.ndarray, load: np.ndarray, rest_load: np.ndarray) -> np.ndarray:
         """Contraction [m] in balance; each pouch has its share of what opposes."""
         table = np.stack([np.abs(voltage), load, rest_load], axis=1)
         rows, back = np.unique(table, axis=0, return_inverse=True)

@@ -114,18 +114,9 @@ def _given(entries: Mapping[str, ParameterEntry], known: Mapping[str, Parameter]
 
 def muscle_text(muscle: Muscle) -> str:
     """The muscle file that `load_muscle` reads back to the same muscle."""
-    pouch = muscle.pouch
     content = {
         "name": muscle.name,
-        "pouch": {
-            "count": muscle.count,
-            "film_length_m": pouch.film_length,
-            "electrode_length_m": pouch.electrode_length,
-            "width_m": pouch.width,
-            "film_thickness_m": pouch.film_thickness,
-            "relative_permittivity": pouch.relative_permittivity,
-            "fill": pouch.fill,
-        },
+        "pouch": _pouch(muscle),
         "mass_kg": muscle.mass,
         "effects": [effect.id for effect in muscle.effects],
         "parameters": {name: _entry(parameter) for name, parameter in muscle.parameters.items()},
@@ -136,6 +127,31 @@ def muscle_text(muscle: Muscle) -> str:
     out = StringIO()
     yaml.dump(content, out)
     return out.getvalue()
+
+
+def law_content(muscle: Muscle) -> dict:
+    """The muscle section of a model file whose muscles are like this one, with the fitted constants in its pouch."""
+    freed = {
+        name.removeprefix(POUCH): value for name, value in muscle.values.items() if name.startswith(POUCH)
+    }
+    effects: dict[str, dict[str, float]] = {}
+    for effect in muscle.effects:
+        if not effect.in_time:
+            effects[effect.id] = {p.name: muscle.values[f"{effect.id}.{p.name}"] for p in effect.parameters}
+    return {"law": "peano_hasel", "pouch": {**_pouch(muscle), **freed}, "effects": effects}
+
+
+def _pouch(muscle: Muscle) -> dict:
+    pouch = muscle.pouch
+    return {
+        "count": muscle.count,
+        "film_length_m": pouch.film_length,
+        "electrode_length_m": pouch.electrode_length,
+        "width_m": pouch.width,
+        "film_thickness_m": pouch.film_thickness,
+        "relative_permittivity": pouch.relative_permittivity,
+        "fill": pouch.fill,
+    }
 
 
 def _entry(p: Parameter) -> dict:

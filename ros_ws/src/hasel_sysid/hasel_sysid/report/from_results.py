@@ -67,7 +67,8 @@ def parameter_rows(model: Model, remarks: dict[str, str] | None = None) -> tuple
 
 def never_fitted(label: str, model: Model) -> str:
     """A sentence that must come first, of a model whose numbers are first guesses; empty for any other."""
-    fitted = len(model.levels) or any(p.standard_error is not None for p in model.parameters.values())
+    known = len(model.levels) and model.description.muscle is None
+    fitted = known or any(p.standard_error is not None for p in model.parameters.values())
     if fitted or not model.free:
         return ""
     return (

@@ -8,6 +8,9 @@ _BASELINE = {
     "slope": "fastest change of that share",
     "rise_time": "time constant with which the drive takes hold",
     "fall_time": "time constant with which it lets go",
+    "muscle.stiffness": "force with which the body resists a contraction of the muscle by its whole length",
+    "muscle.preload": "pull on the muscle at rest",
+    "muscle.gain": "contraction of the fibres by that of the muscle",
 }
 
 

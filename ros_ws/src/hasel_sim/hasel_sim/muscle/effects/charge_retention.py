@@ -17,6 +17,7 @@ class ChargeRetention(MuscleEffect):
     parameters = OfTheDrive.parameters
     signature = "Contraction fades while one polarity is held, and not when it alternates; some is left after release."
     citation = OfTheDrive.citation
+    in_time = True
 
     def electrodes(self, time: np.ndarray, voltage: np.ndarray, p: SimpleNamespace) -> np.ndarray:
         """Effective voltage [V]."""

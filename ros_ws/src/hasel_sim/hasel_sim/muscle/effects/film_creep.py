@@ -33,6 +33,7 @@ class FilmCreep(MuscleEffect):
     )
     signature = "Drifts on while the voltage is held; what is left after release fades as slowly."
     citation = "Ferry, Viscoelastic Properties of Polymers, 3rd ed. (1980), chapter 1"
+    in_time = True
 
     def follow(self, time: np.ndarray, contraction: np.ndarray, p: SimpleNamespace) -> np.ndarray:
         """Contraction [m] with what has crept."""

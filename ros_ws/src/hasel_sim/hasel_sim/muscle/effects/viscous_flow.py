@@ -22,6 +22,7 @@ class ViscousFlow(MuscleEffect):
     )
     signature = "Settles exponentially after every switch and ends where it would have been."
     citation = "Rothemund, Kirkman, Keplinger, PNAS 117 (2020) 16207 (viscous regime)"
+    in_time = True
 
     def follow(self, time: np.ndarray, contraction: np.ndarray, p: SimpleNamespace) -> np.ndarray:
         """Contraction [m], late."""

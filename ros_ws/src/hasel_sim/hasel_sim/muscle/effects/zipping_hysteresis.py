@@ -17,6 +17,7 @@ class ZippingHysteresis(MuscleEffect):
     parameters = DriveHysteresis.parameters
     signature = "Higher voltages are needed going up than coming down, however slowly."
     citation = DriveHysteresis.citation
+    in_time = True
 
     def electrodes(self, time: np.ndarray, voltage: np.ndarray, p: SimpleNamespace) -> np.ndarray:
         """Voltage [V] that the zipped state corresponds to."""
