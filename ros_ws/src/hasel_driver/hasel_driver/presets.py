@@ -33,7 +33,7 @@ PRESETS: Mapping[str, Preset] = MappingProxyType(
     {
         # Kellaris, Gopaluni Venkata, Rothemund, Keplinger, Extreme Mechanics Letters 29 (2019) 100449
         "three_lifts": Preset(
-            "a load lifted and let down three times: a box of 0.1 Hz, 5 s on and 5 s off, its polarity reversed every time",
+            "a load lifted three times: a box of 0.1 Hz, 5 s on and 5 s off, its polarity reversed every time",
             shape="box",
             frequency_hz=0.1,
             periods=3,

@@ -1,6 +1,8 @@
 """The muscle section of a model file: a law of how far a voltage contracts, in place of a table of amplitudes."""
 
-from typing import Literal
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field, model_validator
 
@@ -9,7 +11,9 @@ from hasel_sim.model.parameter import Parameter
 from hasel_sim.model.pouch_section import PouchSection
 from hasel_sim.model.section import Finite, Name, Section
 from hasel_sim.muscle.catalogue import find_muscle_effects
-from hasel_sim.muscle.muscle import Muscle
+
+if TYPE_CHECKING:
+    from hasel_sim.muscle.muscle import Muscle
 
 STIFFNESS, PRELOAD, GAIN = "muscle.stiffness", "muscle.preload", "muscle.gain"
 
@@ -27,9 +31,11 @@ class MuscleLaw(Section):
     file: str | None = None
 
     @model_validator(mode="after")
-    def _whole(self) -> "MuscleLaw":
+    def _whole(self) -> MuscleLaw:
         if (self.pouch is None) == (self.file is None):
             raise ValueError("expected either pouch or file, a muscle file: give one of the two")
+        if self.file is not None and self.effects:
+            raise ValueError("effects stand beside file; expected them in that muscle file: move them there")
         try:
             if self.pouch is not None:
                 self.muscle()
@@ -43,6 +49,10 @@ class MuscleLaw(Section):
             raise ModelError(
                 f"muscle.file is still '{self.file}'; expected its pouch: read the model with load_model"
             )
+        from hasel_sim.muscle.muscle import (
+            Muscle,
+        )  # which is a reader of parameters, and so comes after the model
+
         find_muscle_effects(tuple(self.effects))
         muscle = Muscle("muscle", self.pouch.pouch, self.pouch.count).with_effects(*self.effects)
         given = {f"{effect}.{key}": v for effect, values in self.effects.items() for key, v in values.items()}

@@ -71,27 +71,41 @@ class Muscle:
         return replace(self, effects=(*self.effects, *effects), parameters=parameters)
 
     def contraction(
-        self, time: np.ndarray, voltage: np.ndarray, load: np.ndarray, rest_load: float | None = None
+        self,
+        time: np.ndarray,
+        voltage: np.ndarray,
+        load: np.ndarray,
+        rest_load: float | None = None,
+        wanted: np.ndarray | None = None,
     ) -> np.ndarray:
-        """Contraction [m] [n] under hanging loads [N] [n] at voltages [V] [n], each held from its time [s] to the next.
+        """Contraction [m] under hanging loads [N] [n] at voltages [V] [n], each held from its time [s] to the next.
 
-        rest_load: load [N] at which the contraction was called 0 (default: the first).
+        rest_load: load [N] at which the contraction was called 0 (default: the first); wanted [n]: at which of the times
+        it is asked for (default: at all).
         """
         rest = np.full(np.shape(load), load[0] if rest_load is None else rest_load)
-        x = self.balanced(self._pulling(time, voltage), load, rest)
+        pulling = self._pulling(time, voltage)
+        here = np.ones(len(time), dtype=bool) if wanted is None else wanted
+        if not any(type(effect).follow is not MuscleEffect.follow for effect in self.effects):
+            return self.balanced(pulling[here], load[here], rest[here])
+        x = self.balanced(pulling, load, rest)
         for effect, p in self._acting():
             x = effect.follow(time, x, p)
-        return x
+        return x[here]
 
     def force(
-        self, time: np.ndarray, voltage: np.ndarray, contraction: np.ndarray, rest_load: float = 0.0
+        self,
+        time: np.ndarray,
+        voltage: np.ndarray,
+        contraction: np.ndarray,
+        rest_load: float = 0.0,
+        wanted: np.ndarray | None = None,
     ) -> np.ndarray:
-        """Force [N] [n] of the muscle held at contractions [m] [n]; 0 where it hangs slack."""
+        """Force [N] of the muscle held at contractions [m] [n], where it is wanted [n]; 0 where it hangs slack."""
         for effect, p in reversed(self._acting()):
             contraction = effect.before(time, contraction, p)
-        pulling = self._pulling(time, voltage)
-        rest = np.full(np.shape(contraction), rest_load)
-        rows, back = np.unique(np.stack([np.abs(pulling), contraction], axis=1), axis=0, return_inverse=True)
+        table = np.stack([np.abs(self._pulling(time, voltage)), contraction], axis=1)
+        rows, back = np.unique(table if wanted is None else table[wanted], axis=0, return_inverse=True)
         volts, aim = rows.T
         rest = np.full(len(rows), rest_load)
         high = np.maximum(self._strongest(volts), 1e-12)

@@ -1,0 +1,107 @@
+"""Read a bench's CSV file: time_s, voltage_v, contraction_mm, load_n, current_ma; each column says its unit."""
+
+from pathlib import Path
+
+import numpy as np
+from hasel_recording.csv_columns import TIME_UNITS, Column
+from hasel_recording.csv_numbers import CsvNumbers
+from hasel_recording.csv_text import CsvText, read_text
+from hasel_recording.drive_channel import UNITS
+from hasel_recording.errors import RecordingError, nearest
+
+from hasel_sysid.bench_muscle.recording import BenchRecording
+
+QUANTITIES = {
+    "time": TIME_UNITS,
+    "voltage": UNITS["voltage"],
+    "contraction": UNITS["travel"],
+    "load": {**UNITS["force"], "kg": 9.80665, "g": 9.80665e-3},
+    "current": {**UNITS["current"], "ua": 1e-6},
+}
+"""Columns of a bench and, per unit that each may end in, its size in the SI unit; a mass counts as its weight."""
+
+HELD = "held"
+"""Header line that says what the bench keeps: load (a hanging weight, unless said otherwise) or contraction."""
+
+
+def read_bench_csv(path: Path) -> BenchRecording:
+    """Read one recording; a load that never changes may stand in the header, as `#load_n: 0.59`.
+
+    Raises RecordingError that names the column or line of what is wrong.
+    """
+    text = read_text(path)
+    columns = _columns(text)
+    numbers = CsvNumbers(text)
+    for name in ("time", "voltage", "contraction"):
+        if name not in columns:
+            raise RecordingError(
+                f"{path} has no column {name}_<unit>, only {', '.join(text.names)}; expected {_example(name)}: rename a "
+                "column or add it."
+            )
+    held = text.metadata.get(HELD, "load")
+    if held not in ("load", "contraction"):
+        raise RecordingError(
+            f"{path}: #{HELD} is {held!r}, load or contraction was expected: correct that line."
+        )
+    time = numbers.times(columns["time"])
+    load = numbers.column(columns["load"], True) if "load" in columns else _constant_load(text, len(time))
+    return BenchRecording(
+        name=path.stem,
+        time=time - time[0],
+        voltage=numbers.column(columns["voltage"]),
+        contraction=numbers.column(columns["contraction"], may_be_missing=True),
+        load=load,
+        current=numbers.column(columns["current"], True) if "current" in columns else None,
+        held="load" if held == "load" else "contraction",
+        path=path,
+        metadata=text.metadata,
+        understood=tuple(f"{name} is column '{c.name}', times {c.factor:g}" for name, c in columns.items()),
+    )
+
+
+def _columns(text: CsvText) -> dict[str, Column]:
+    found: dict[str, Column] = {}
+    for name in text.names:
+        quantity, unit = _parsed(name)
+        near = nearest(quantity, QUANTITIES)
+        if quantity not in QUANTITIES:
+            if near:
+                raise RecordingError(
+                    f"{text.path}: column {name!r} is not known; did you mean {_example(near)}?"
+                )
+            continue
+        if unit not in QUANTITIES[quantity]:
+            units = ", ".join(QUANTITIES[quantity])
+            raise RecordingError(
+                f"{text.path}: column {name!r} has no unit that is known, expected {quantity}_ and one of {units}: "
+                "rename it."
+            )
+        if quantity in found:
+            raise RecordingError(f"{text.path} has two columns of {quantity}: keep one of them.")
+        found[quantity] = Column(name, QUANTITIES[quantity][unit])
+    return found
+
+
+def _parsed(name: str) -> tuple[str, str]:
+    quantity, _, unit = name.lower().rpartition("_")
+    return (quantity, unit) if quantity else (unit, "")
+
+
+def _example(quantity: str) -> str:
+    return f"{quantity}_{next(iter(QUANTITIES[quantity]))}"
+
+
+def _constant_load(text: CsvText, count: int) -> np.ndarray:
+    for key, value in text.metadata.items():
+        quantity, unit = _parsed(key)
+        if quantity == "load" and unit in QUANTITIES["load"]:
+            try:
+                return np.full(count, float(value) * QUANTITIES["load"][unit])
+            except ValueError:
+                raise RecordingError(
+                    f"{text.path}: #{key} is {value!r}; expected a number: correct that line."
+                ) from None
+    raise RecordingError(
+        f"{text.path} says no load, neither as a column load_n nor in its header as #load_n; expected one: add it "
+        "(0 for a muscle that hangs free)."
+    )
