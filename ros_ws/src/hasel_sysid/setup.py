@@ -13,6 +13,7 @@ setup(
     ],
     install_requires=[
         "setuptools",
+        "h5py",
         "jinja2",
         "matplotlib",
         "numpy>=1.26",

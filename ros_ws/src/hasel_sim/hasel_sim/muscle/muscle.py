@@ -80,8 +80,8 @@ class Muscle:
     ) -> np.ndarray:
         """Contraction [m] under hanging loads [N] [n] at voltages [V] [n], each held from its time [s] to the next.
 
-        rest_load: load [N] at which the contraction was called 0 (default: the first); wanted [n]: at which of the times
-        it is asked for (default: at all).
+        rest_load: load [N] at which the contraction was called 0 (default: the first); wanted [n]: at which of the
+        times it is asked for (default: at all).
         """
         rest = np.full(np.shape(load), load[0] if rest_load is None else rest_load)
         pulling = self._pulling(time, voltage)

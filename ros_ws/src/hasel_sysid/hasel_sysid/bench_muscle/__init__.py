@@ -1,1 +1,1 @@
-"""A single muscle on its bench: compare stroke and force with the law, see where it fails, learn what is missing, add it."""
+"""One muscle on its bench: compare stroke and force with the law, see where it fails, learn what is missing, add it."""

@@ -35,8 +35,8 @@ def read_bench_csv(path: Path) -> BenchRecording:
     for name in ("time", "voltage", "contraction"):
         if name not in columns:
             raise RecordingError(
-                f"{path} has no column {name}_<unit>, only {', '.join(text.names)}; expected {_example(name)}: rename a "
-                "column or add it."
+                f"{path} has no column {name}_<unit>, only {', '.join(text.names)}; expected {_example(name)}: rename "
+                "a column or add it."
             )
     held = text.metadata.get(HELD, "load")
     if held not in ("load", "contraction"):

@@ -1,8 +1,8 @@
 """Read recordings of the kind of the public repository MadhavL/PH-HASEL-Python: MATLAB 7.3 files of a muscle's bench.
 
 `data` has five columns: time [s]; commanded voltage, 2 kV per volt; position, 4 mm per volt, growing as the muscle
-contracts; measured voltage, 2 kV per volt; measured current, 2 mA per volt. The name begins with the mass that hangs from
-the muscle, as in `60g__step…`. Its `parameters.py` holds the muscle's dimensions as plain assignments.
+contracts; measured voltage, 2 kV per volt; measured current, 2 mA per volt. The name begins with the mass that hangs
+from the muscle, as in `60g__step…`. Its `parameters.py` holds the muscle's dimensions as plain assignments.
 """
 
 import ast
@@ -67,8 +67,8 @@ def _table(path: Path) -> np.ndarray:
     table = table.T if table.ndim == 2 and table.shape[0] == _COLUMNS else table
     if table.ndim != 2 or table.shape[1] != _COLUMNS or len(table) < 2:
         raise RecordingError(
-            f"{path} holds 'data' of the shape {table.shape}; expected {_COLUMNS} columns: time, commanded voltage, position, "
-            "measured voltage, current."
+            f"{path} holds 'data' of the shape {table.shape}; expected {_COLUMNS} columns: time, commanded voltage, "
+            "position, measured voltage, current."
         )
     if not np.isfinite(table[:, :2]).all() or np.any(np.diff(table[:, 0]) <= 0):
         raise RecordingError(

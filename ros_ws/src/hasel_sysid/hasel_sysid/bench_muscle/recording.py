@@ -11,7 +11,7 @@ Held = Literal["load", "contraction"]
 
 @dataclass(frozen=True)
 class BenchRecording:
-    """Samples at times [s] [n]: voltage [V], contraction [m], load [N] and, where it was measured, current [A], all [n].
+    """Samples at times [s] [n]: voltage [V], contraction [m], load [N] and, where measured, current [A], all [n].
 
     held: what the bench keeps, a hanging load or the contraction (a clamped length); the other one is the answer.
     contraction and load may be NaN where a sensor saw nothing.

@@ -19,10 +19,10 @@ _FEWEST_AT_REST = 5
 
 @dataclass(frozen=True)
 class SettledRun:
-    """Frames at times [s] [n] with voltage [V], contraction [m] and load [N], zero being the rest before the first lift.
+    """Frames at times [s] [n] with voltage [V], contraction [m] from the rest before the first lift, and load [N].
 
-    used [n]: which of them are settled and measured; hold [n]: number of the stretch of constant voltage; level [n]: its
-    magnitude [V], at rest that of the lift before. noise: standard deviation of a frame, in metres or newtons.
+    used [n]: which of them are settled and measured; hold [n]: number of the stretch of constant voltage; level [n]:
+    its magnitude [V], at rest that of the lift before. noise: standard deviation of a frame, in metres or newtons.
     """
 
     name: str
@@ -73,8 +73,8 @@ def settled(recording: BenchRecording, settling: float = SETTLING_S) -> SettledR
     used &= np.isfinite(answer) & np.isfinite(contraction) & np.isfinite(load)
     if not np.any(used & ~at_rest):
         raise SysidError(
-            f"{recording.name}: the voltage never stays for {settling:g} s and more, and the law is one of balance; expected "
-            "lifts that are held: record steps (the preset three_lifts), or lower --settling"
+            f"{recording.name}: the voltage never stays for {settling:g} s and more, and the law is one of balance; "
+            "expected lifts that are held: record steps (the preset three_lifts), or lower --settling"
         )
     resting = before & np.isfinite(contraction)
     zero = float(np.median(contraction[resting])) if resting.any() and recording.held == "load" else 0.0
@@ -102,7 +102,7 @@ def _filled(time: np.ndarray, series: np.ndarray) -> np.ndarray:
 
 
 def _frames(recording: BenchRecording) -> tuple[np.ndarray, ...]:
-    """Time, voltage, its spread, contraction and load of every frame; medians, which single wild samples do not move."""
+    """Time, voltage, its spread, contraction and load of every frame: medians, which no single wild sample moves."""
     step = float(np.median(np.diff(recording.time)))
     width = max(FRAME_S, step)
     number = np.floor(recording.time / width + 1e-9).astype(int)
