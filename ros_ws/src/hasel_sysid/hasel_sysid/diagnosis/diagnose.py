@@ -8,6 +8,7 @@ from hasel_sysid.diagnosis.candidates import candidate_effects
 from hasel_sysid.diagnosis.context import SIGNIFICANT, Context, expected_squares, lowest_squares
 from hasel_sysid.diagnosis.finals import allowed_noise, full_fits, noise_of
 from hasel_sysid.diagnosis.judgement import judged
+from hasel_sysid.diagnosis.reached import squares_reached
 from hasel_sysid.diagnosis.result import Diagnosis, Verdict
 from hasel_sysid.diagnosis.search import search, search_from_larger
 from hasel_sysid.diagnosis.signature import Signature, signature
@@ -46,8 +47,8 @@ def diagnose(
     by_noise = largest_drops_by_noise(
         base.jacobian, [s.columns for s in signatures.values()], noise, base.runs
     )
-    squares = {t.start.effect.id: min(t.predicted, t.sum_of_squares) for t in best}
-    squares.update({effect: final.evaluation.sum_of_squares for effect, final in finals.items()})
+    hurried = problem.time_limit.left_something_out
+    squares = squares_reached(best, finals, base.sum_of_squares, hurried)
     floor = expected_squares(base.jacobian, noise, base.runs)
     chance = p_value(base.sum_of_squares - lowest_squares(fit, finals), by_noise)
     changes = changes_by_refinement(problem, base) if chance < SIGNIFICANT else {}
