@@ -11,6 +11,7 @@ from hasel_sim.parallel import executor
 from hasel_sysid.dataset import prepared
 from hasel_sysid.improve import improve
 from hasel_sysid.problem import Problem
+from hasel_sysid.searches import SEARCHES
 
 from hasel_bringup.bench_far.constants_far_off import BODIES
 from hasel_bringup.bench_far.far_case import FarCase, baseline, far_cases, measure, value_of
@@ -53,13 +54,19 @@ class FarOutcome:
         )
 
 
-def run_case(case: FarCase, pool: Executor, only: Sequence[str] | None = None) -> FarOutcome:
+def run_case(
+    case: FarCase, pool: Executor, only: Sequence[str] | None = None, search: str = SEARCHES[0]
+) -> FarOutcome:
     """What `improve` says of one case. only: names of the candidate effects (default: all)."""
     value = value_of(case)
     fitted, unseen = measure(case, value, pool)
     started = time.monotonic()
     found = improve(
-        Problem(fitted, pool), prepared(baseline(case.body), fitted), Problem(unseen, pool), only
+        Problem(fitted, pool),
+        prepared(baseline(case.body), fitted),
+        Problem(unseen, pool),
+        only,
+        by=search,
     ).to_json()
     missing, groups = found["verdict"]["missing"], found["indistinguishable"]
     added = found["stages"][-1]["effects"]
@@ -87,7 +94,7 @@ def run(options: argparse.Namespace) -> int:
     outcomes = []
     with executor(options.jobs) as pool:
         for case in cases:
-            outcomes.append(run_case(case, pool, options.candidates))
+            outcomes.append(run_case(case, pool, options.candidates, options.search))
             print(outcomes[-1], flush=True)
     right, sure = sum(o.right for o in outcomes), sum(o.sure and not o.right for o in outcomes)
     print(

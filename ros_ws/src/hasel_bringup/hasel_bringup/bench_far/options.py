@@ -3,6 +3,8 @@
 import argparse
 from pathlib import Path
 
+from hasel_sysid.searches import SEARCHES
+
 from hasel_bringup.bench_far.constants_far_off import BODIES, SHIFTS, SIZES
 
 
@@ -21,6 +23,9 @@ def parser() -> argparse.ArgumentParser:
     )
     options.add_argument("--body", choices=BODIES, help="only this body")
     options.add_argument("--candidates", type=_list_of(str), metavar="A,B", help="try only these effects")
+    options.add_argument(
+        "--search", choices=SEARCHES, default=SEARCHES[0], help="how to search (default: %(default)s)"
+    )
     options.add_argument("--jobs", type=int, metavar="N", help="simulations at once (default: one per core)")
     options.add_argument("--json", type=Path, metavar="FILE", help="write the outcomes")
     return options

@@ -7,16 +7,23 @@ from hasel_sim.model import Model, load_model
 from hasel_sysid.dataset import Experiment, prepared
 from hasel_sysid.improve import improve
 from hasel_sysid.problem import Problem
+from hasel_sysid.searches import SEARCHES
 
 from hasel_bringup.bench_hidden.generate import Laboratory
 
 
-def explain(laboratory: Laboratory, pool: Executor) -> dict:
+def explain(laboratory: Laboratory, pool: Executor, search: str = SEARCHES[0]) -> dict:
     """The content of `improve --json` for these measurements, starting from the default swimmer."""
-    return answer(load_model("swimmer"), laboratory.fitted, laboratory.unseen, pool)
+    return answer(load_model("swimmer"), laboratory.fitted, laboratory.unseen, pool, search)
 
 
-def answer(model: Model, fitted: Sequence[Experiment], unseen: Sequence[Experiment], pool: Executor) -> dict:
+def answer(
+    model: Model,
+    fitted: Sequence[Experiment],
+    unseen: Sequence[Experiment],
+    pool: Executor,
+    search: str = SEARCHES[0],
+) -> dict:
     """The content of `improve --json` for these experiments, starting from a model."""
-    found = improve(Problem(fitted, pool), prepared(model, fitted), Problem(unseen, pool))
+    found = improve(Problem(fitted, pool), prepared(model, fitted), Problem(unseen, pool), by=search)
     return found.to_json()

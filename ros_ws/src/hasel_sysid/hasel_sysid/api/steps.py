@@ -14,6 +14,7 @@ from hasel_sysid.diagnosis import diagnose as diagnosis_of
 from hasel_sysid.fit import fit_from_afar, identify
 from hasel_sysid.improve import improve as improvement_of
 from hasel_sysid.problem import Problem
+from hasel_sysid.searches import SEARCHES
 
 
 def load(
@@ -102,16 +103,17 @@ def improve(
     unseen: Sequence[Experiment] = (),
     effects: Sequence[str] | None = None,
     jobs: int = 1,
+    search: str = SEARCHES[0],
 ) -> Improved:
     """Fit, diagnose, add, refit, until what is left is noise or nothing known explains it.
 
-    unseen: recordings that are never fitted or chosen by; effects: as of `diagnose`.
+    unseen: recordings that are never fitted or chosen by; effects: as of `diagnose`; search: greedy, or sets.
     Raises SysidError, SimulationError, ModelError.
     """
     start, fitted = _prepared(model, recordings)
     with executor(jobs) as pool:
         validation = Problem(for_model(model, unseen), pool) if unseen else None
-        return Improved(improvement_of(Problem(fitted, pool), start, validation, effects))
+        return Improved(improvement_of(Problem(fitted, pool), start, validation, effects, by=search))
 
 
 def _prepared(model: Model, recordings: Sequence[Experiment]) -> tuple[Model, list[Experiment]]:

@@ -10,9 +10,9 @@ from hasel_sysid.diagnosis import Diagnosis, Verdict, diagnose
 from hasel_sysid.fit import FitResult, fit_least_squares
 from hasel_sysid.fit.opening import in_step, openings
 from hasel_sysid.improve.decision import LEAST_GAIN
+from hasel_sysid.improve.neighbours import best_neighbour
 from hasel_sysid.improve.prune import pruned
 from hasel_sysid.problem import Problem
-from hasel_sysid.selection import best_neighbour
 
 Progress = Callable[[str, float], None]
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+from hasel_sim.errors import nearest_name
 from hasel_sim.model import Model
 
 from hasel_sysid.data_gate import Finding as SetUpFault
@@ -10,8 +11,10 @@ from hasel_sysid.diagnosis import diagnose
 from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.diagnosis.explained import Status
 from hasel_sysid.diagnosis.search import WORTH_A_STEP
+from hasel_sysid.errors import SysidError
 from hasel_sysid.fit import FitResult, fit_from_afar, in_step
 from hasel_sysid.fit.refinement import changes_by_refinement, with_numerical_error
+from hasel_sysid.improve.by_sets import improve_by_sets
 from hasel_sysid.improve.coarse_to_fine import far_start
 from hasel_sysid.improve.conclusion import (
     conclude,
@@ -23,12 +26,13 @@ from hasel_sysid.improve.conclusion import (
 from hasel_sysid.improve.decision import Decision, decide
 from hasel_sysid.improve.hindsight import with_hindsight
 from hasel_sysid.improve.lawful import without_contradictions
+from hasel_sysid.improve.neighbours import best_neighbour
 from hasel_sysid.improve.promise import most_promised
 from hasel_sysid.improve.prune import pruned
 from hasel_sysid.improve.result import Improvement, Stage
 from hasel_sysid.improve.set_up import opposed_runs
 from hasel_sysid.problem import Problem
-from hasel_sysid.selection import best_neighbour
+from hasel_sysid.searches import SEARCHES
 from hasel_sysid.time_limit import TimeLimit
 
 _ENOUGH = 0.03
@@ -46,12 +50,19 @@ def improve(
     most_effects: int = 3,
     progress: Progress | None = None,
     on_stage: OnStage | None = None,
+    by: str = "greedy",
 ) -> Improvement:
     """Improve a model until what it leaves is noise or no known effect explains it, or the problem's time is over.
 
     validation: runs that are only ever compared with, never fitted or chosen by. only: names of the candidate effects
     (default: the whole catalogue). on_stage: called with every stage as soon as it is known, to write its model file.
+    by: how to search, one of SEARCHES: one effect after the other, or among sets of effects.
+    Raises SysidError for another search.
     """
+    if by not in SEARCHES:
+        raise SysidError(f"unknown search '{by}'; {nearest_name(by, SEARCHES)}")
+    if by == "sets":
+        return improve_by_sets(problem, model, validation, only, most_effects, progress, on_stage)
     report = _Reporter(progress)
     opposed = opposed_runs(problem, model)
     fit = fit_from_afar(problem, model, report.part("fit", 0.0, 0.15))

@@ -1,6 +1,23 @@
-"""Choosing among sets of effects: what may be added, dropped or exchanged, by one score."""
+"""Which effects a model lacks: a choice among sets of effects, by one currency.
 
-from hasel_sysid.selection.moves import Move, moves
-from hasel_sysid.selection.neighbours import best_neighbour
+Read in this order: `policy` (every number there is), `sets` (what is chosen among), `likelihood` (the currency),
+`missing` (is anything missing?), `search` (add, drop, swap), `worth` (what runs left out say of a set), `choice` (where
+to stop, and what cannot be told apart). None of these knows a simulator; `simulated_sets` joins them to one.
+"""
 
-__all__ = ["Move", "best_neighbour", "moves"]
+from hasel_sysid.selection.choice import Choice, choose
+from hasel_sysid.selection.policy import POLICY, Policy
+from hasel_sysid.selection.search import Searched, search
+from hasel_sysid.selection.sets import FittedSet, Prospect, Sets
+
+__all__ = [
+    "POLICY",
+    "Choice",
+    "FittedSet",
+    "Policy",
+    "Prospect",
+    "Searched",
+    "Sets",
+    "choose",
+    "search",
+]

@@ -3,7 +3,7 @@
 import pytest
 from hasel_sysid.diagnosis import diagnose
 from hasel_sysid.fit import fit_least_squares
-from hasel_sysid.selection import moves
+from hasel_sysid.improve.moves import moves
 from hasel_sysid.testing.made_up_world import MadeUpWorld
 
 HIDDEN = ("quadratic_drag", "pre_bend")

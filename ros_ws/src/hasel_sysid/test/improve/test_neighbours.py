@@ -2,7 +2,7 @@
 
 from hasel_sysid.diagnosis import diagnose
 from hasel_sysid.fit import fit_least_squares
-from hasel_sysid.selection import best_neighbour
+from hasel_sysid.improve.neighbours import best_neighbour
 from hasel_sysid.testing.made_up_world import MadeUpWorld
 
 

@@ -11,8 +11,8 @@ from hasel_sysid.diagnosis.explained import EXPLAINED, share_left
 from hasel_sysid.diagnosis.left_out import foretells_better
 from hasel_sysid.diagnosis.trial import limited
 from hasel_sysid.fit import FitResult, fit_least_squares
+from hasel_sysid.improve.moves import Move, moves
 from hasel_sysid.problem import Problem
-from hasel_sysid.selection.moves import Move, moves
 
 _FITTED = 3
 """How many sets are fitted in full."""

@@ -1,0 +1,164 @@
+"""Improve by a search among sets of effects: fit, search, choose, and say what it comes to."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from hasel_sim.model import Model
+
+from hasel_sysid.diagnosis.adequacy import adequacy
+from hasel_sysid.diagnosis.candidates import candidate_effects
+from hasel_sysid.diagnosis.explained import Status
+from hasel_sysid.fit import FitResult, fit_from_afar, fit_least_squares, in_step
+from hasel_sysid.fit.opening import openings
+from hasel_sysid.fit.refinement import changes_by_refinement, with_numerical_error
+from hasel_sysid.improve.conclusion import conclude, last_diagnosis, near_noise
+from hasel_sysid.improve.lawful import without_contradictions
+from hasel_sysid.improve.result import Improvement, Stage
+from hasel_sysid.improve.set_up import opposed_runs
+from hasel_sysid.problem import Problem
+from hasel_sysid.selection import POLICY, Choice, FittedSet, Policy, Searched, choose, search
+from hasel_sysid.selection.sets import NOTHING, EffectSet, name_of
+from hasel_sysid.selection.simulated_sets import SimulatedSets
+from hasel_sysid.selection.verdicts import diagnosis
+
+Progress = Callable[[str, float], None]
+OnStage = Callable[[Stage], None]
+
+
+def improve_by_sets(
+    problem: Problem,
+    model: Model,
+    validation: Problem | None = None,
+    only: Sequence[str] | None = None,
+    most_effects: int = POLICY.most_effects,
+    progress: Progress | None = None,
+    on_stage: OnStage | None = None,
+) -> Improvement:
+    """As `improve`, whose arguments these are."""
+    policy = replace(POLICY, most_effects=most_effects)
+    opposed = opposed_runs(problem, model)
+    fit = fit_from_afar(problem, model, _part(progress, "fit", 0.0, 0.15))
+    changes = changes_by_refinement(problem, fit.evaluation)
+    near = in_step(fit.evaluation)
+    effects = candidate_effects(fit.model, tuple(only) if only else None)
+    begun = () if near or opposed else _from_afar(problem, fit, effects, policy, progress)
+    numerics = np.column_stack(list(changes.values())) if near and changes else None
+    sets = SimulatedSets(problem, fit, effects, numerics)
+    found = search(sets, policy, _part(progress, "search", 0.25, 0.95), begun)
+    choice = choose(found, policy)
+    said = diagnosis(sets, found, choice, changes)
+    stages = [_stage(fit, (), validation, said, changes)]
+    if on_stage:
+        on_stage(stages[0])
+    for effects_so_far in () if opposed else choice.path[1:]:
+        reached = sets.finished(found.known[effects_so_far]).fit
+        order = _in_order(choice, effects_so_far)
+        stages.append(
+            _stage(reached, order, validation, None, changes_by_refinement(problem, reached.evaluation))
+        )
+        if on_stage:
+            on_stage(stages[-1])
+    if opposed:
+        reason, done = (
+            f"A fault of the set-up comes before any effect: {'; '.join(map(str, opposed))}",
+            False,
+        )
+    else:
+        reason, done = _why_here(found, choice, policy, stages[0])
+    if problem.time_limit.left_something_out:
+        untried = said.not_tried
+        what = f"not tried: {', '.join(untried)}" if untried else "not every set of effects was tried"
+        reason = f"{reason} The search ended at {problem.time_limit}; {what}."
+    return _concluded(stages, reason, done, bool(opposed))
+
+
+def _from_afar(
+    problem: Problem, fit: FitResult, effects: Sequence, policy: Policy, progress: Progress | None
+) -> tuple[FittedSet, ...]:
+    """Sets of effects that bring the model into step with all frames, found in openings that grow."""
+    chosen: EffectSet = NOTHING
+    model = fit.model
+    every = openings(problem)
+    for number, opening in enumerate(every[:-1]):
+        if problem.time_limit.is_over():
+            break
+        here = fit_least_squares(opening, model, most_evaluations=12, drafts=False)
+        if in_step(here.evaluation) or len(chosen) >= policy.most_effects:
+            model = here.model
+            continue
+        base = fit_least_squares(opening, fit.model, most_evaluations=12, drafts=False)
+        sets = SimulatedSets(opening, base, effects, decades=True)
+        begun = (sets.known_as(here),) if chosen else ()
+        report = _part(progress, f"opening {number + 1} of {len(every)}", 0.15, 0.25)
+        found = search(sets, policy, report, begun)
+        chosen = choose(found, policy).chosen
+        model = found.known[chosen].fit.model
+    if not chosen:
+        return ()
+    whole = SimulatedSets(problem, fit, effects)
+    reached = whole.known_as(fit_least_squares(problem, model, drafts=False))
+    return (reached,)
+
+
+def _why_here(found: Searched, choice: Choice, policy: Policy, first: Stage) -> tuple[str, bool]:
+    """Why the chosen set is the last, in a sentence, and whether nothing else is missing."""
+    chance = found.tested(choice.chosen).chance
+    nothing_else = chance >= policy.level
+    if not choice.chosen:
+        if nothing_else and near_noise(first.fit, first.diagnosis):
+            return f"Nothing is missing: noise alone looks like this in {chance:.0%} of cases.", True
+        if nothing_else:
+            return "None of the listed effects stands out from what is left.", False
+        trifle = near_noise(first.fit, first.diagnosis)
+        what = "Nothing that matters is missing: no" if trifle else "Something is missing, but no"
+        return (
+            f"{what} listed effect foretells runs that are left out of the fit better than none does.",
+            trifle,
+        )
+    added = " and ".join(_in_order(choice, choice.chosen))
+    if nothing_else:
+        return f"What is left after adding {added} looks like no other effect.", True
+    if len(choice.chosen) >= policy.most_effects:
+        return f"Effect {policy.most_effects} was the last: more effects could imitate anything.", False
+    return (
+        f"After adding {added} something is still missing, but no further effect foretells runs that are left out "
+        f"of the fit better; nearest was {name_of(found.best)}.",
+        False,
+    )
+
+
+def _in_order(choice: Choice, effects: EffectSet) -> tuple[str, ...]:
+    """Effects of a set in the order in which the path to the chosen one takes them in."""
+    order: list[str] = []
+    for step in choice.path:
+        order += sorted(step - set(order))
+    return tuple(effect for effect in order if effect in effects)
+
+
+def _stage(fit: FitResult, effects: Sequence[str], validation: Problem | None, said, changes) -> Stage:
+    error = None if validation is None else validation.evaluate(fit.model).mean_absolute_error
+    return Stage(tuple(effects), with_numerical_error(fit, changes), error, said)
+
+
+def _concluded(stages: list[Stage], reason: str, nothing_else: bool, opposed: bool) -> Improvement:
+    """The verdict: is what was added a law, and does the model describe its runs?"""
+    kept, refused, contradictions = without_contradictions(stages)
+    if refused:
+        reason = f"{' and '.join(refused)} would lower the error, but by no law: not added."
+        nothing_else = False
+    described = adequacy(kept[-1].fit.evaluation, last_diagnosis(kept).noise)
+    concluded = conclude(kept, reason, nothing_else, contradictions, described.misfits)
+    first = kept[0].diagnosis
+    seen = replace(first.seen_beside(described.adequate, concluded.missing), adequacy=described)
+    kept[0] = replace(kept[0], diagnosis=seen)
+    status = Status.UNEXPLAINED if opposed else concluded.status
+    return replace(
+        concluded, stages=kept, status=status, adequacy=described, refused=refused, opposed=opposed
+    )
+
+
+def _part(progress: Progress | None, name: str, begin: float, end: float) -> Progress | None:
+    if progress is None:
+        return None
+    return lambda text, done: progress(f"{name}: {text}", begin + (end - begin) * min(done, 1.0))

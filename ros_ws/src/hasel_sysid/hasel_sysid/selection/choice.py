@@ -1,0 +1,92 @@
+"""Where to stop, what cannot be told from it, and how probable every set is."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hasel_sysid.selection.policy import Policy
+from hasel_sysid.selection.search import Searched, plausible
+from hasel_sysid.selection.sets import NOTHING, EffectSet
+
+_RESAMPLED = 2000
+_NO_ODDS = float(np.log(20.0))
+"""Sets whose odds are below 20 to 1 are not told apart, however alike they are."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """chosen: the set to take; alike: sets of the same size that cannot be told from it, itself among them; weights: of
+    every set that was fitted, together one; path: from no effect to the chosen set, one more at a time.
+    """
+
+    chosen: EffectSet
+    alike: tuple[EffectSet, ...]
+    weights: dict[EffectSet, float]
+    path: tuple[EffectSet, ...]
+
+    def weight_of(self, effect: str) -> float:
+        """Of all sets with an effect."""
+        return sum(weight for effects, weight in self.weights.items() if effect in effects)
+
+    @property
+    def groups(self) -> list[tuple[str, ...]]:
+        """For every chosen effect those that may stand in its place, itself among them."""
+        found = []
+        for effect in sorted(self.chosen):
+            rest = self.chosen - {effect}
+            group = {other for one in self.alike if rest <= one for other in one - rest}
+            if len(group) > 1:
+                found.append(tuple(sorted(group)))
+        return found
+
+
+def choose(found: Searched, policy: Policy) -> Choice:
+    """The smallest set that is worth as much as the best one, to within its standard error.
+
+    No set is chosen where nothing is missing.
+    """
+    chosen = NOTHING if found.first.chance >= policy.level else _smallest(found, policy)
+    alike = [s for s in plausible(found.known) if len(s) == len(chosen) and _alike(found, chosen, s, policy)]
+    return Choice(chosen, tuple(alike), weights(found), _path(found, chosen))
+
+
+def _smallest(found: Searched, policy: Policy) -> EffectSet:
+    best = found.worths[found.best]
+    enough = [s for s in plausible(found.known) if _worth_as_much(found, s, best, policy)]
+    return min(enough, key=lambda s: (len(s), -found.worths[s].total))
+
+
+def _worth_as_much(found: Searched, effects: EffectSet, best, policy: Policy) -> bool:
+    more = best.over(found.worths[effects])
+    return more.total <= policy.standard_errors * more.standard_error
+
+
+def _alike(found: Searched, chosen: EffectSet, other: EffectSet, policy: Policy) -> bool:
+    """Whether a set may stand in the chosen one's place: the confidence set of models.
+
+    By noise alone: how much runs of unequal strength scatter says how unequally they speak, and is no doubt.
+    """
+    more = found.worths[chosen].over(found.worths[other])
+    return more.total <= max(policy.doubt * more.by_noise, _NO_ODDS)
+
+
+def weights(found: Searched) -> dict[EffectSet, float]:
+    """Of every plausible set: exp(worth), averaged over resampled runs (pseudo-BMA+; Yao et al. 2018)."""
+    every = plausible(found.known)
+    densities = np.array([found.worths[s].densities for s in every])
+    count = densities.shape[1]
+    share = np.random.default_rng(3).dirichlet(np.ones(count), _RESAMPLED)
+    scores = count * densities @ share.T
+    scores -= scores.max(axis=0)
+    weight = np.exp(scores)
+    return dict(zip(every, map(float, (weight / weight.sum(axis=0)).mean(axis=1)), strict=True))
+
+
+def _path(found: Searched, chosen: EffectSet) -> tuple[EffectSet, ...]:
+    """Down from the chosen set, each time without the effect that is missed least, by way of sets that were fitted."""
+    path = [chosen]
+    while path[0]:
+        smaller = [path[0] - {effect} for effect in path[0]]
+        fitted = [s for s in smaller if s in found.known]
+        path.insert(0, max(fitted, key=lambda s: found.worths[s].total) if fitted else NOTHING)
+    return tuple(path)

@@ -1,0 +1,221 @@
+"""The search over sets of effects: add, exchange, drop; what promises most is fitted in full."""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import combinations
+
+from hasel_sysid.selection.likelihood import Likelihood, Whitened
+from hasel_sysid.selection.missing import Missing, missing
+from hasel_sysid.selection.policy import Policy
+from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect, Sets, name_of, together
+from hasel_sysid.selection.worth import Worth, worth
+
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True)
+class Searched:
+    """known: every set that was fitted; likelihood: by which all are judged; worths, whitened: of every known set;
+    first: the test of the baseline; last: of the best set; prospects: of every single effect beside the baseline;
+    level: of the tests; tested: the test of any known set.
+    """
+
+    known: dict[EffectSet, FittedSet]
+    likelihood: Likelihood
+    whitened: dict[EffectSet, Whitened]
+    worths: dict[EffectSet, Worth]
+    first: Missing
+    last: Missing
+    prospects: dict[str, Prospect]
+    level: float
+    tested: Callable[[EffectSet], Missing]
+
+    @property
+    def best(self) -> EffectSet:
+        """The set that is worth most, of those with plausible values."""
+        return max(plausible(self.known), key=lambda effects: self.worths[effects].total)
+
+
+def plausible(known: dict[EffectSet, FittedSet]) -> list[EffectSet]:
+    """The sets, the empty one among them, whose values lie inside their ranges."""
+    return [effects for effects, fitted in known.items() if fitted.plausible]
+
+
+def search(
+    sets: Sets, policy: Policy, progress: Progress | None = None, begun: tuple[FittedSet, ...] = ()
+) -> Searched:
+    """Extend the best sets as long as anything is missing from the best one and something promises to supply it.
+
+    begun: further sets that are fitted already.
+    """
+    state = _Search(sets, policy, progress, {f.effects: f for f in (sets.baseline(), *begun)})
+    state.look_beyond(NOTHING, None)
+    state.fit(sorted(state.additions([NOTHING]), key=lambda p: -p.promised), 1, even_late=True)
+    while (found := state.judged()).last.chance < policy.level:
+        if state.fit(state.better(state.additions([NOTHING])), policy.fits):
+            continue
+        beam = sorted(plausible(state.known), key=state.value)[-policy.width :]
+        for one in beam:
+            state.look_beyond_if_anything_is_missing(one)
+        around = [*state.additions(beam), *state.exchanges(beam), *state.pairs()]
+        if not state.fit(state.better(around), policy.fits):
+            break
+    state.fit(state.smaller(found.best), policy.most_effects)
+    state.fit(state.rivals(found), policy.fits)
+    return state.judged()
+
+
+@dataclass
+class _Search:
+    sets: Sets
+    policy: Policy
+    progress: Progress | None
+    known: dict[EffectSet, FittedSet]
+    prospects: dict[EffectSet, dict[str, Prospect]] = field(default_factory=dict)
+    tried: set[EffectSet] = field(default_factory=set)
+    threshold: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.tried |= set(self.known)
+        self.use_noise()
+
+    def use_noise(self) -> None:
+        """Judge by what the best fits so far tell of the noise."""
+        noise = self.sets.noise(list(self.known.values()))
+        discrepancy = self.policy.discrepancy * self.sets.swing
+        self.likelihood = Likelihood(noise, self.sets.runs, discrepancy, self.sets.numerics)
+        self.whitened = {effects: self.likelihood.whitened(f) for effects, f in self.known.items()}
+
+    def say(self, text: str, done: float) -> None:
+        if self.progress:
+            self.progress(text, done)
+
+    def judged(self) -> Searched:
+        """All known sets by the noise as it is known now."""
+        self.use_noise()
+        worths = {s: worth(w, self.policy.prior_runs) for s, w in self.whitened.items()}
+        best = max(plausible(self.known), key=lambda s: worths[s].total)
+        first = self.tested(NOTHING)
+        last = self.tested(best) if best else first
+        self.threshold = last.threshold
+        base = dict(self.prospects[NOTHING])
+        return Searched(
+            dict(self.known),
+            self.likelihood,
+            dict(self.whitened),
+            worths,
+            first,
+            last,
+            base,
+            self.policy.level,
+            self.tested,
+        )
+
+    def tested(self, effects: EffectSet) -> Missing:
+        """Whether anything is missing from a known set."""
+        return missing(self.whitened[effects], self.looks(effects), self.likelihood, self.policy.level)
+
+    def looks(self, beside: EffectSet) -> dict:
+        """What the effects that are not in a set look like: there, or at least beside the baseline."""
+        seen = {**self.prospects[NOTHING], **self.prospects.get(beside, {})}
+        return {
+            effect: prospect.looks
+            for effect, prospect in seen.items()
+            if effect not in beside and self.sets.compatible(beside | {effect})
+        }
+
+    def value(self, effects: EffectSet) -> float:
+        """Of a known set: likelier by what noise alone may gain, for every effect more."""
+        return self.whitened[effects].logarithm - self.threshold * len(effects)
+
+    def look_beyond(self, effects: EffectSet, wanted: list[str] | None) -> None:
+        """Learn what one more effect could do to a set."""
+        self.say(f"looking beyond {name_of(effects)}", 0.1 * min(len(self.known), 5))
+        self.prospects[effects] = self.sets.prospects(
+            self.known[effects], wanted, self.likelihood.promised, self.policy.trials
+        )
+
+    def look_beyond_if_anything_is_missing(self, effects: EffectSet) -> None:
+        """The same for the effects whose score is more than noise alone makes of it."""
+        if effects in self.prospects or len(effects) >= self.policy.most_effects or self.sets.out_of_time():
+            return
+        test = self.tested(effects)
+        promising = sorted(test.gains, key=lambda effect: -test.gains[effect])[: 2 * self.policy.trials]
+        self.look_beyond(effects, [effect for effect in promising if test.gains[effect] > test.threshold])
+
+    def additions(self, beam: Sequence[EffectSet]) -> Iterator["_Proposal"]:
+        """Sets with one effect more than those of a beam."""
+        for one in beam:
+            for prospect in self.prospects.get(one, {}).values():
+                yield from self._proposal(one, (prospect,), ())
+
+    def exchanges(self, beam: Sequence[EffectSet]) -> Iterator["_Proposal"]:
+        """Sets with one effect in the place of another."""
+        for one in beam:
+            for prospect in self.prospects.get(one, {}).values():
+                for gone in one:
+                    yield from self._proposal(one, (prospect,), (gone,))
+
+    def pairs(self) -> Iterator["_Proposal"]:
+        """Two effects at once, which may hide each other, as seen from the baseline."""
+        base = self.prospects[NOTHING]
+        hopeful = sorted(base.values(), key=lambda p: -self.likelihood.promised(p))[: self.policy.trials]
+        for pair in combinations(hopeful, 2):
+            yield from self._proposal(NOTHING, pair, ())
+
+    def smaller(self, best: EffectSet) -> Iterator["_Proposal"]:
+        """The best set without one of its effects."""
+        for gone in best if len(best) > 1 else ():
+            yield from self._proposal(best, (), (gone,))
+
+    def rivals(self, found: Searched) -> list["_Proposal"]:
+        """Sets of the best one's size that come so near to it that they may not be told apart."""
+        # at d standard errors the error itself is at most 2 d, and the ratio 2 d^2: half its square is what it costs
+        reach = found.whitened[found.best].logarithm - 2 * self.policy.doubt**2
+        smaller = [rest for gone in found.best if (rest := found.best - {gone}) in self.known]
+        near = [p for p in self.additions(smaller) if p.promised > reach]
+        return sorted(near, key=lambda p: -p.promised)
+
+    def better(self, proposals: Iterable["_Proposal"]) -> list["_Proposal"]:
+        """Those that promise more than the best known set, most promising first."""
+        best = max(map(self.value, plausible(self.known)))
+        valued = [(p.promised - self.threshold * len(p.effects), p) for p in proposals]
+        return [p for value, p in sorted(valued, key=lambda pair: -pair[0]) if value > best]
+
+    def _proposal(
+        self, of: EffectSet, added: tuple[Prospect, ...], dropped: tuple[str, ...]
+    ) -> Iterator["_Proposal"]:
+        effects = (of - set(dropped)) | {p.effect for p in added}
+        if effects in self.tried or len(effects) > self.policy.most_effects:
+            return
+        if self.sets.compatible(effects):
+            alone = len(added) == 1 and not dropped
+            whole = added[0] if alone else together(self.known[of], added, dropped)
+            yield _Proposal(effects, self.known[of], added, self.likelihood.promised(whole))
+
+    def fit(self, proposals: Iterable["_Proposal"], most: int, even_late: bool = False) -> int:
+        """Fit the first of these in full; how many were."""
+        count = 0
+        for proposal in proposals:
+            if count >= most or (self.sets.out_of_time() and not even_late):
+                break
+            if proposal.effects in self.tried:
+                continue
+            self.tried.add(proposal.effects)
+            self.say(f"fitting {name_of(proposal.effects)}", min(0.9, 0.1 * len(self.tried)))
+            fitted = self.sets.fit(proposal.effects, proposal.of, proposal.added)
+            count += 1
+            if fitted is not None:
+                self.known[proposal.effects] = fitted
+                self.whitened[proposal.effects] = self.likelihood.whitened(fitted)
+        return count
+
+
+@dataclass(frozen=True)
+class _Proposal:
+    """A set to be fitted, from where; promised: the logarithm of its likelihood, to first order."""
+
+    effects: EffectSet
+    of: FittedSet
+    added: tuple[Prospect, ...]
+    promised: float

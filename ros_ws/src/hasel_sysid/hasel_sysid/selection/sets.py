@@ -1,0 +1,107 @@
+"""What is chosen among: sets of effects, and the problem that can fit them."""
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from hasel_sysid.noise import NoiseModel
+
+EffectSet = frozenset[str]
+NOTHING: EffectSet = frozenset()
+
+
+@dataclass(frozen=True, eq=False)
+class FittedSet:
+    """A model with a set of effects, fitted to all runs.
+
+    residual [frames]; jacobian [frames, parameters] of the predicted series, by every parameter that may still move;
+    lower, upper [parameters]: by how much each may change; owners [parameters]: the effect of each, empty for the
+    model's own; without: by effect, the change of the residual [frames] if it were taken out, to first order;
+    plausible: whether the effects' values lie inside their ranges; fit: what the problem knows it by.
+    """
+
+    effects: EffectSet
+    residual: np.ndarray
+    jacobian: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    owners: tuple[str, ...]
+    without: Mapping[str, np.ndarray]
+    plausible: bool = True
+    fit: Any = None
+
+    def __str__(self) -> str:
+        return name_of(self.effects)
+
+
+@dataclass(frozen=True, eq=False)
+class Prospect:
+    """What one more effect could do to a fitted set, linearised where its derivatives are known.
+
+    residual [frames]: with the effect at some size; jacobian [frames, parameters]: there, the set's own parameters and
+    then the effect's, of which there are `own`; lower, upper [parameters]: by how much they may change; looks
+    [frames, n]: what the effect can look like, its size and sign left open; start: what the problem knows the place by.
+    """
+
+    effect: str
+    residual: np.ndarray
+    jacobian: np.ndarray
+    own: int
+    lower: np.ndarray
+    upper: np.ndarray
+    looks: np.ndarray
+    start: Any = None
+
+
+def together(of: FittedSet, added: Sequence[Prospect], dropped: Collection[str]) -> Prospect:
+    """Several prospects of a set at once, and some of its effects taken out, to first order."""
+    stays = np.array([owner not in dropped for owner in of.owners], dtype=bool)
+    residual = of.residual + sum((of.without[effect] for effect in dropped), start=np.zeros_like(of.residual))
+    residual = residual + sum((p.residual - of.residual for p in added), start=np.zeros_like(residual))
+    return Prospect(
+        name_of(frozenset(p.effect for p in added)),
+        residual,
+        np.column_stack([of.jacobian[:, stays], *(p.jacobian[:, -p.own :] for p in added)]),
+        sum(p.own for p in added),
+        np.concatenate([of.lower[stays], *(p.lower[-p.own :] for p in added)]),
+        np.concatenate([of.upper[stays], *(p.upper[-p.own :] for p in added)]),
+        np.zeros((len(residual), 0)),
+    )
+
+
+class Sets(Protocol):
+    """Sets of effects that can be looked at and fitted."""
+
+    runs: np.ndarray
+    """Number of the run of every frame, [frames]."""
+    numerics: np.ndarray
+    """What finer numerics change, [frames, n]: errors that every set is known to make, each run in its own amount."""
+    swing: float
+    """The largest that was measured, from the mean of its run; what no model has is in proportion to it."""
+
+    def baseline(self) -> FittedSet:
+        """The model without any effect."""
+
+    def noise(self, known: Collection[FittedSet]) -> NoiseModel:
+        """Of what was measured, as far as the recordings and these fits tell."""
+
+    def prospects(
+        self, of: FittedSet, wanted: Collection[str] | None, rank: Callable[[Prospect], float], most: int
+    ) -> dict[str, Prospect]:
+        """What every other effect (or the wanted ones) could do; `most` of them, by rank, looked at more closely."""
+
+    def compatible(self, effects: EffectSet) -> bool:
+        """Whether these effects can be in one model."""
+
+    def fit(self, effects: EffectSet, near: FittedSet, added: Collection[Prospect]) -> FittedSet | None:
+        """Fitted in full, from where the prospects of what is new point to; None where that cannot be simulated."""
+
+    def out_of_time(self) -> bool:
+        """Whether what has not been begun is to be left out."""
+
+
+def name_of(effects: EffectSet) -> str:
+    """Such as `payload + material_damping`."""
+    return " + ".join(sorted(effects)) or "nothing"

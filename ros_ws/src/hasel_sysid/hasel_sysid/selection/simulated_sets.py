@@ -1,0 +1,240 @@
+"""Sets of effects of the simulator: drafts for a first look, full fits for what is compared."""
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
+
+import numpy as np
+from hasel_sim.effects.base import Effect
+from hasel_sim.errors import HaselSimError, ModelError
+from hasel_sim.model import Model
+
+from hasel_sysid.diagnosis.candidates import Start, decade_starts, resized, starts
+from hasel_sysid.diagnosis.context import on_own_bound
+from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
+from hasel_sysid.diagnosis.trial import MOST_CHANGE, Trial, Trials, limited
+from hasel_sysid.fit import FitResult, fit_least_squares
+from hasel_sysid.noise import NoiseModel, estimate_noise
+from hasel_sysid.noise_sources.above_the_band import noise_above_the_band
+from hasel_sysid.noise_sources.between_periods import noise_between_periods
+from hasel_sysid.problem import Problem
+from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect
+
+_BATCH = 8
+_HALVINGS = 2
+"""How often what cannot be simulated, or is far worse, is tried again from half of its size."""
+_FAR = 2.0
+_BRIEF = 10
+"""Evaluations that a full fit is given."""
+
+Rank = Callable[[Prospect], float]
+
+
+class SimulatedSets:
+    """Sets of candidate effects beside the effects that a fitted model has already."""
+
+    def __init__(
+        self,
+        problem: Problem,
+        fit: FitResult,
+        effects: Sequence[Effect],
+        numerics: np.ndarray | None = None,
+        decades: bool = False,
+    ) -> None:
+        """numerics [frames, n]: what finer numerics change; decades: look at every effect at sizes over the decades of
+        its range, where the model may be far off.
+        """
+        self.problem, self.fitted, self.decades = problem, fit, decades
+        self.effects = {effect.id: effect for effect in effects}
+        self.runs = fit.evaluation.runs
+        self.numerics = np.zeros((len(self.runs), 0)) if numerics is None else numerics
+        self.swing = problem.largest_swing
+        self.tried: set[str] = set()
+        self.first: list[Trial] = []
+        self.trials: Trials | None = None
+
+    def baseline(self) -> FittedSet:
+        """The model as it was fitted."""
+        return self.known_as(self.fitted)
+
+    def known_as(self, fit: FitResult) -> FittedSet:
+        """A fit as the search sees it."""
+        evaluation, model = fit.evaluation, fit.model
+        owner = {
+            f"{e.id}.{p.name}": e.id for e in model.effects if e.id in self.effects for p in e.parameters
+        }
+        moving = [name for name in evaluation.names if name not in fit.at_bound]
+        inside = evaluation.by(moving)
+        own = frozenset(owner.values())
+        without = {effect: np.zeros(len(self.runs)) for effect in own}
+        for effect in own:
+            for p in self.effects[effect].parameters:
+                name = f"{effect}.{p.name}"
+                if name in evaluation.names and not p.scan:
+                    slope = evaluation.jacobian[:, evaluation.names.index(name)]
+                    without[effect] += slope * (model.values[name] - p.null)
+        return FittedSet(
+            own,
+            evaluation.residual,
+            inside.jacobian,
+            *_room(model, moving),
+            tuple(owner.get(name, "") for name in moving),
+            without,
+            not any(on_own_bound(effect, fit) for effect in own),
+            fit,
+        )
+
+    def compatible(self, effects: EffectSet) -> bool:
+        """Whether no two of them exclude each other."""
+        kinds = [self.effects[effect].exclusive for effect in effects]
+        named = [kind for kind in kinds if kind]
+        return len(named) == len(set(named))
+
+    def noise(self, known: Collection[FittedSet]) -> NoiseModel:
+        """As measured; else as slow as it looks beside the best of these fits, and no louder than any bound."""
+        if self.problem.measured_noise is not None:
+            return self.problem.measured_noise
+        best = min((fitted.fit.evaluation for fitted in known), key=lambda e: e.sum_of_squares)
+        columns = np.column_stack([best.jacobian, regressors(best)])
+        looks = estimate_noise(
+            unexplained_by(columns, best.residual), best.runs, columns, "what the best set leaves"
+        )
+        others = [noise_between_periods(best), noise_above_the_band(best)]
+        bounds = [b.standard_deviation for b in others if b] + [looks.standard_deviation]
+        share = (min(bounds) / looks.standard_deviation) ** 2
+        return replace(looks, white=share * looks.white, coloured=share * looks.coloured, upper_bound=True)
+
+    def out_of_time(self) -> bool:
+        """Whether the problem's time is over."""
+        return self.problem.time_limit.is_over()
+
+    def prospects(
+        self, of: FittedSet, wanted: Collection[str] | None, rank: Rank, most: int
+    ) -> dict[str, Prospect]:
+        """First trials of every effect on a draft; further steps with the `most` best, and with half as many."""
+        names = [e for e in (self.effects if wanted is None else wanted) if e not in of.effects]
+        names = [e for e in names if self.compatible(of.effects | {e})]
+        if not names:
+            return {}
+        trials = Trials(self.problem, of.fit.evaluation)
+        first = self._first(trials, [self.effects[name] for name in names], always=of.effects == NOTHING)
+        if of.effects == NOTHING:
+            self.trials, self.first = trials, first
+            self.tried |= trials.tried
+        looks = {t.start.effect.id: _looks(t, trials) for t in reversed(first)}
+        best = _best_of_each([_prospect(t, looks) for t in first], rank)
+        for keep in (most, most // 2):
+            if not keep or self.out_of_time():
+                break
+            going_on = best[:keep]
+            moved = [_prospect(t, looks) for t in trials.further([p.start for p in going_on])]
+            best = _best_of_each([*moved, *best[keep:]], rank)
+        return {prospect.effect: prospect for prospect in best}
+
+    def _first(self, trials: Trials, effects: Sequence[Effect], always: bool) -> list[Trial]:
+        every = [start for effect in effects for start in starts(effect)]
+        if self.decades:
+            every += [start for effect in effects for start in decade_starts(effect)]
+        every.sort(key=lambda start: not start.changes_nothing)
+        found: list[Trial] = []
+        for begin in range(0, len(every), _BATCH):
+            if self.out_of_time() and (begin > 0 or not always):
+                break
+            found += trials.first(every[begin : begin + _BATCH])
+        return found if self.decades else found + self._nearer(trials, every, found)
+
+    def _nearer(self, trials: Trials, begun: Sequence[Start], found: Sequence[Trial]) -> list[Trial]:
+        """From half the size, or a quarter, of what could not be simulated or is far worse than without the effect."""
+        squares = trials.fitted.sum_of_squares
+        nearer: list[Trial] = []
+        begun = [start for start in begun if start.effect.id in trials.tried]
+        for _ in range(_HALVINGS):
+            done = {id(trial.start) for trial in found if trial.sum_of_squares <= _FAR * squares}
+            halved = [(start, resized(start, 0.5)) for start in begun if id(start) not in done]
+            begun = [half for start, half in halved if half.values != start.values]
+            if not begun or self.out_of_time():
+                break
+            found = trials.first(begun)
+            nearer += found
+        return nearer
+
+    def fit(self, effects: EffectSet, near: FittedSet, added: Collection[Prospect]) -> FittedSet | None:
+        """Least squares of the model itself, from where the drafts have led."""
+        base: FitResult = near.fit
+        values = dict(base.model.values)
+        for prospect in added:
+            trial: Trial = prospect.start
+            for name, value in trial.step.items():
+                change = value - base.model.values[name] if name in base.model.values else 0.0
+                values[name] = values[name] + change if name in values else value
+        try:
+            model = self._model(base.model, effects, near.effects).with_values({})
+            values = {name: _inside(model, name, values[name]) for name in model.free if name in values}
+            found = fit_least_squares(
+                self.problem,
+                model.with_values(values),
+                tolerance=1e-3,
+                most_evaluations=_BRIEF,
+                drafts=False,
+            )
+        except (HaselSimError, ModelError):
+            return None
+        return self.known_as(found)
+
+    def _model(self, model: Model, effects: EffectSet, before: EffectSet) -> Model:
+        gone, new = sorted(before - effects), sorted(effects - before)
+        model = model.without_effects(*gone) if gone else model
+        return model.with_effects(*(self.effects[e].source or e for e in new)) if new else model
+
+    def finished(self, fitted: FittedSet) -> FittedSet:
+        """The same, where its fit was broken off before it had converged."""
+        if fitted.fit.iterations < _BRIEF or self.out_of_time():
+            return fitted
+        fit = fit_least_squares(self.problem, fitted.fit.model, tolerance=1e-3, drafts=False)
+        return replace(self.known_as(fit), effects=fitted.effects)
+
+
+def _room(model: Model, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """By how much parameters may change: within their ranges, and the model's own by a share of their value."""
+    parameters = [model.parameters[name] for name in names]
+    value = np.array([p.value for p in parameters])
+    reach = np.where(limited(model, names), MOST_CHANGE * np.abs(value), np.inf)
+    lower = np.array([p.lower for p in parameters]) - value
+    upper = np.array([p.upper for p in parameters]) - value
+    return np.maximum(lower, -reach), np.minimum(upper, reach)
+
+
+def _inside(model: Model, name: str, value: float) -> float:
+    p = model.parameters[name]
+    return float(np.clip(value, p.lower, p.upper))
+
+
+def _best_of_each(prospects: Sequence[Prospect], rank: Rank) -> list[Prospect]:
+    """The best prospect of every effect, best first."""
+    ranked = sorted(((rank(p), n) for n, p in enumerate(prospects)), key=lambda pair: -pair[0])
+    best: dict[str, Prospect] = {}
+    for _, number in ranked:
+        best.setdefault(prospects[number].effect, prospects[number])
+    return list(best.values())
+
+
+def _looks(trial: Trial, trials: Trials) -> np.ndarray:
+    """What an effect does to the series at its first trial, and its derivatives there."""
+    own = [index for index, name in enumerate(trial.names) if name in trial.start.values]
+    return np.column_stack([trials.fitted.residual - trial.residual, trial.jacobian[:, own]])
+
+
+def _prospect(trial: Trial, looks: dict[str, np.ndarray]) -> Prospect:
+    effect = trial.start.effect.id
+    own = [name in trial.start.values for name in trial.names]
+    order = np.argsort(own, kind="stable")
+    lower, upper = _room(trial.model, trial.names)
+    return Prospect(
+        effect,
+        trial.residual,
+        trial.jacobian[:, order],
+        sum(own),
+        lower[order],
+        upper[order],
+        looks[effect],
+        trial,
+    )

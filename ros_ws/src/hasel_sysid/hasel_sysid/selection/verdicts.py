@@ -1,0 +1,122 @@
+"""What a search among sets says of every effect, in the terms that report, node and commands know."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict
+from hasel_sysid.diagnosis.context import Context, expected_squares
+from hasel_sysid.diagnosis.explained import share_left
+from hasel_sysid.diagnosis.finals import allowed_noise
+from hasel_sysid.diagnosis.judgement import finding
+from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
+from hasel_sysid.diagnosis.signature import signature
+from hasel_sysid.diagnosis.suspects import numerical_suspects
+from hasel_sysid.noise import NoiseModel
+from hasel_sysid.selection.choice import Choice
+from hasel_sysid.selection.search import Searched
+from hasel_sysid.selection.sets import NOTHING
+from hasel_sysid.selection.simulated_sets import SimulatedSets
+
+_RULED_OUT = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
+
+
+@dataclass(frozen=True)
+class ChosenContext(Context):
+    """A context whose first effect was chosen by a search among sets; named: that effect, or None."""
+
+    named: str | None = None
+
+    @cached_property
+    def winner(self) -> str | None:
+        """The first effect of the chosen set."""
+        return self.named
+
+
+def diagnosis(
+    sets: SimulatedSets, found: Searched, choice: Choice, changes: Mapping[str, np.ndarray]
+) -> Diagnosis:
+    """Of the baseline: every effect by the weight of the sets that hold it; changes: by finer numerics [frames]."""
+    context = _context(sets, found, choice, changes)
+    base = context.fit.evaluation
+    left = _left(found, choice, context.noise)
+    none = left if found.first.chance < found.level else 1.0
+    groups = choice.groups
+    findings = [
+        replace(finding(context, effect), probability=(1.0 - none) * choice.weight_of(effect.id))
+        for effect in context.effects
+    ]
+    findings = [_one_answer(one, choice, groups) for one in findings]
+    findings.sort(key=lambda one: (-_order(one, choice), context.squares.get(one.effect, np.inf)))
+    learned = unexplained_by(np.column_stack([base.jacobian, regressors(base)]), base.residual)
+    best = context.named or min(context.finals, key=context.squares.__getitem__, default=None)
+    return Diagnosis(
+        findings,
+        groups,
+        context.noise,
+        context.chance,
+        0.0 if best is None else context.error_removed(best),
+        float(np.clip((context.base - learned @ learned) / context.excess, 0, 1)),
+        none,
+        numerical_suspects(context.fit, context.changes, context.excess),
+        context,
+    )
+
+
+def _context(
+    sets: SimulatedSets, found: Searched, choice: Choice, changes: Mapping[str, np.ndarray]
+) -> ChosenContext:
+    fit = sets.fitted
+    finals = {next(iter(s)): f.fit for s, f in found.known.items() if len(s) == 1}
+    squares = {
+        effect: min(p.start.predicted, p.start.sum_of_squares) for effect, p in found.prospects.items()
+    }
+    squares.update({effect: final.evaluation.sum_of_squares for effect, final in finals.items()})
+    signatures = {
+        t.start.effect.id: signature(t, fit.evaluation.residual, sets.trials.base.jacobian, t.start.typical)
+        for t in reversed(sets.first)
+    }
+    measured = found.likelihood.noise
+    noise = allowed_noise(sets.problem, measured)
+    named = next((next(iter(s)) for s in choice.path if len(s) == 1), None)
+    return ChosenContext(
+        list(sets.effects.values()),
+        fit,
+        finals,
+        signatures,
+        squares,
+        noise,
+        expected_squares(fit.evaluation.jacobian, noise, fit.evaluation.runs),
+        found.first.chance,
+        dict(changes),
+        measured,
+        {effect: p.start for effect, p in found.prospects.items()},
+        frozenset(sets.effects) - sets.tried,
+        named=named,
+    )
+
+
+def _left(found: Searched, choice: Choice, noise: NoiseModel) -> float:
+    """Share of the mean error above the noise that the chosen set leaves: what none of the effects accounts for."""
+    before, after = (found.known[s].fit.mean_absolute_error for s in (NOTHING, choice.chosen))
+    return share_left(before, after, noise.mean_absolute) if choice.chosen else 1.0
+
+
+def _order(one: Finding, choice: Choice) -> float:
+    """The chosen effects before all others, the first one of the path before the rest."""
+    first = next((s for s in choice.path if s), NOTHING)
+    return (
+        (2.0 if one.effect in first else 0.0)
+        + (1.0 if one.effect in choice.chosen else 0.0)
+        + one.probability
+    )
+
+
+def _one_answer(one: Finding, choice: Choice, groups: Sequence[tuple[str, ...]]) -> Finding:
+    """What cannot be told from a chosen effect is not called absent: it could stand in its place."""
+    in_doubt = any(one.effect in group for group in groups) and one.effect not in choice.chosen
+    if in_doubt and one.verdict in _RULED_OUT:
+        return replace(one, verdict=Verdict.MISSING_IF_SIZE_MATTERS)
+    return one

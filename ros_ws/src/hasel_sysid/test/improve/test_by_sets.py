@@ -1,0 +1,85 @@
+"""The search among sets of effects in a made-up world, where it is known what every effect does."""
+
+import math
+
+import pytest
+from hasel_sysid.diagnosis import Verdict
+from hasel_sysid.errors import SysidError
+from hasel_sysid.improve import Status, improve
+from hasel_sysid.testing.made_up_world import MadeUpWorld
+
+
+def improved(hidden, stranger=0.0, most_effects=3, seed=1, most_evaluations=math.inf, on_stage=None):
+    """What is found when these effects, of typical size, and a stranger of so much rms are hidden."""
+    world = MadeUpWorld(seed, shared=16)
+    measured = world.measured(
+        world.with_typical(*hidden), stranger=stranger, most_evaluations=most_evaluations
+    )
+    return improve(measured, world.model, most_effects=most_effects, on_stage=on_stage, by="sets")
+
+
+@pytest.mark.parametrize(
+    "hidden", [("payload",), ("quadratic_drag", "drive_creep"), ("slow_creep", "pre_bend", "gravity_tilt")]
+)
+def test_what_is_hidden_is_named(hidden):
+    """One, two or three effects, and nothing beside them; each is said to be missing, the rest is not."""
+    written = []
+    found = improved(hidden, on_stage=written.append)
+    assert set(found.missing) == set(hidden)
+    assert found.status is Status.EXPLAINED
+    said = {f.effect for f in found.diagnosis.findings if f.verdict is Verdict.MISSING}
+    assert said == set(hidden)
+    assert found.diagnosis.findings[0].effect in hidden
+    assert [stage.effects for stage in written] == [stage.effects for stage in found.stages]
+    assert [len(stage.effects) for stage in found.stages] == sorted({len(s.effects) for s in found.stages})
+
+
+def test_nothing_hidden_is_nothing_missing():
+    """The model is left as it was fitted."""
+    found = improved(())
+    assert found.status is Status.NOTHING_MISSING
+    assert [stage.effects for stage in found.stages] == [()]
+
+
+def test_a_stranger_is_not_explained():
+    """What no effect does is not called explained, whatever imitates a part of it."""
+    assert improved((), stranger=0.02).status in (Status.UNEXPLAINED, Status.PARTLY_EXPLAINED)
+
+
+def test_the_number_of_effects_is_kept_to():
+    """Three are hidden, two may be added: what is left is not called explained."""
+    found = improved(("slow_creep", "pre_bend", "gravity_tilt"), most_effects=2)
+    assert len(found.stages[-1].effects) <= 2
+    assert found.status is not Status.EXPLAINED
+
+
+def test_a_search_whose_time_is_over_ends_in_good_order():
+    """From no time at all to enough: it says what it had no time for, and never that this is absent."""
+    hidden = ("quadratic_drag", "drive_creep")
+    found = [improved(hidden, most_evaluations=most) for most in (0, math.inf)]
+    assert "The search ended at the limit" in found[0].reason
+    assert found[0].status is not Status.EXPLAINED
+    untried = [f for f in found[0].diagnosis.findings if f.verdict is Verdict.NOT_TRIED]
+    assert untried
+    assert {f.effect for f in untried} <= set(found[0].not_tried)
+    assert set(found[1].missing) == set(hidden)
+    assert "The search ended" not in found[1].reason
+    assert found[1].not_tried == []
+
+
+def test_the_answer_has_the_keys_of_every_other_search():
+    """What reads the JSON need not know how it was searched."""
+    world = MadeUpWorld(1, shared=16)
+    problem = world.measured(world.with_typical("payload"))
+    new, old = (improve(problem, world.model, by=by).to_json() for by in ("sets", "greedy"))
+    assert new.keys() >= old.keys()
+    assert new["verdict"].keys() >= old["verdict"].keys()
+    assert [r.keys() for r in new["ranking"][:1]] == [r.keys() for r in old["ranking"][:1]]
+    assert {r["effect"] for r in new["ranking"]} == {r["effect"] for r in old["ranking"]}
+
+
+def test_a_search_that_does_not_exist():
+    """One sentence that names those that do."""
+    world = MadeUpWorld(1)
+    with pytest.raises(SysidError, match="sets"):
+        improve(world.measured(world.model), world.model, by="set")

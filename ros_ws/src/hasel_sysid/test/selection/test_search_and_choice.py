@@ -1,0 +1,134 @@
+"""Which set of effects is chosen, on linear problems with a known truth and no simulator."""
+
+import numpy as np
+import pytest
+from hasel_sysid.noise import NoiseModel
+from hasel_sysid.selection import POLICY, choose, search
+from hasel_sysid.testing.linear_sets import LinearSets, run_numbers, smooth_series
+
+WHITE = NoiseModel(0.03**2, 0.0, 0.5)
+SLOW = NoiseModel(0.01**2, 0.03**2, 0.9)
+NAMES = tuple("abcdefghij")
+
+
+def made_up(seed, names=NAMES, runs=None):
+    """A series for every name, unlike each other."""
+    generator = np.random.default_rng(seed)
+    runs = run_numbers() if runs is None else runs
+    return {name: smooth_series(generator, runs) for name in names}
+
+
+def chosen(sets):
+    """What is chosen, and all of it."""
+    found = search(sets, POLICY)
+    choice = choose(found, POLICY)
+    return "".join(sorted(choice.chosen)), choice, found
+
+
+@pytest.mark.parametrize("noise", [WHITE, SLOW], ids=["white", "shared by neighbours"])
+@pytest.mark.parametrize("sizes", [{"c": 0.03}, {"c": 0.03, "g": -0.02}, {"a": 0.02, "d": 0.02, "j": 0.03}])
+def test_what_is_there_is_chosen(sizes, noise):
+    """One, two or three effects, each as large as the noise or smaller, and nothing beside them."""
+    for seed in range(2):
+        assert chosen(LinearSets(made_up(seed), sizes, noise, seed))[0] == "".join(sorted(sizes))
+
+
+@pytest.mark.parametrize("noise", [WHITE, SLOW], ids=["white", "shared by neighbours"])
+def test_noise_is_taken_for_noise(noise):
+    """One in a hundred may be taken for an effect: of thirty no more than two are."""
+    false = sum(chosen(LinearSets(made_up(seed), {}, noise, seed))[0] != "" for seed in range(30))
+    assert false <= 2
+
+
+def test_two_that_hide_each_other_are_found_together():
+    """Each alone looks like a third one, which is nearly their difference: adding one by one would begin with that."""
+    for seed in range(3):
+        series = made_up(seed)
+        series["b"] = series["a"] + 0.3 * series["b"]
+        series["c"] = (series["b"] - series["a"]) / 0.3 + 0.25 * series["c"]
+        assert chosen(LinearSets(series, {"a": -0.2, "b": 0.2}, WHITE, seed))[0] in ("ab", "c")
+        assert chosen(LinearSets(series, {"a": -0.2, "b": 0.25}, WHITE, seed))[0] == "ab"
+
+
+def test_what_only_stood_in_for_two_others_goes():
+    """The likeliest single effect is a mixture of the two that are there."""
+    for seed in range(3):
+        series = made_up(seed)
+        series["c"] = series["a"] + series["b"] + 0.5 * series["c"]
+        assert chosen(LinearSets(series, {"a": 0.05, "b": 0.04}, WHITE, seed))[0] == "ab"
+
+
+def test_twins_are_a_group():
+    """An effect whose series differs by less than the noise shows is named beside the chosen one."""
+    for seed in range(3):
+        series = made_up(seed)
+        series["b"] = series["a"] + 0.02 * series["b"]
+        name, choice, _ = chosen(LinearSets(series, {"a": 0.05}, WHITE, seed))
+        assert name in "ab"
+        assert choice.groups == [("a", "b")]
+        assert 0.02 < choice.weight_of("a") < 0.98
+
+
+def test_what_the_recordings_tell_apart_is_no_group():
+    """Its weight is that of certainty."""
+    _, choice, _ = chosen(LinearSets(made_up(1), {"a": 0.05}, WHITE, 1))
+    assert choice.groups == []
+    assert choice.weight_of("a") > 0.95
+
+
+def test_the_other_member_of_a_pair_may_have_a_twin():
+    """The group is of that member alone."""
+    series = made_up(3)
+    series["b"] = series["a"] + 0.02 * series["b"]
+    name, choice, _ = chosen(LinearSets(series, {"a": 0.05, "f": 0.05}, WHITE, 3))
+    assert name in ("af", "bf")
+    assert choice.groups == [("a", "b")]
+
+
+def test_effects_that_exclude_each_other_are_never_together():
+    """The best that can be had is one of them."""
+    sets = LinearSets(made_up(2), {"a": 0.05, "b": 0.03}, WHITE, 2, exclusive=[frozenset("ab")])
+    _, choice, found = chosen(sets)
+    assert not choice.chosen >= {"a", "b"}
+    assert not any(effects >= {"a", "b"} for effects in found.known)
+
+
+def test_no_more_than_three():
+    """Four are there: more effects than that could imitate anything."""
+    found = search(LinearSets(made_up(4), dict.fromkeys("abcd", 0.05), WHITE, 4), POLICY)
+    assert max(map(len, found.known)) == POLICY.most_effects
+    assert found.last.chance < POLICY.level
+
+
+def test_a_stranger_leaves_something_missing():
+    """Whatever imitates a part of it, the last test still says that something is missing."""
+    stranger = 0.1 * smooth_series(np.random.default_rng(99), run_numbers())
+    series = made_up(5)
+    series["a"] = series["a"] + 6.0 * stranger
+    _, _, found = chosen(LinearSets(series, {}, WHITE, 5, stranger=stranger))
+    assert found.first.chance < POLICY.level
+
+
+def test_what_one_run_alone_asks_for_is_not_added():
+    """A disturbance of a single run looks like an effect there, and the other runs know nothing of it."""
+    for seed in range(3):
+        series = made_up(seed)
+        runs = run_numbers()
+        disturbed = np.where(runs == 3, 0.08 * series["a"], 0.0)
+        assert chosen(LinearSets(series, {}, WHITE, seed, stranger=disturbed))[0] == ""
+
+
+def test_one_run_is_judged_by_its_parts():
+    """Nothing else can be left out of it."""
+    runs = run_numbers(1, 480)
+    name, _, found = chosen(LinearSets(made_up(6, runs=runs), {"b": 0.05}, WHITE, 6, runs=runs))
+    assert name == "b"
+    assert len(found.worths[frozenset("b")].densities) == 4
+
+
+def test_a_search_out_of_time_still_answers():
+    """With what it has fitted: one set in any case."""
+    sets = LinearSets(made_up(7), {"a": 0.05, "b": 0.04, "c": 0.04}, WHITE, 7, most_fits=0)
+    _, _, found = chosen(sets)
+    assert sets.fits == 1
+    assert len(found.known) == 2
