@@ -16,6 +16,7 @@ setup(
         "h5py",
         "jinja2",
         "matplotlib",
+        "numba>=0.60",
         "numpy>=1.26",
         "plotly>=6",
         "rich",
