@@ -24,9 +24,9 @@ _ATTEMPTS = 5
 _DRAWING_S = 1800.0
 _WATCHED = BoxRun(5200.0, 2.5, unseen=True)
 _RIVALS = 4  # effects between which the further run is to decide
-_WHOLE_S = 360.0  # as long as it should take; on two cores it takes longer
+_WHOLE_S = 360.0  # as long as it should take
 _AFTER_S = 100.0  # of it for what comes after the search
-_LEAST_S = 150.0  # for the search, however long the runs took: cut shorter it may not come to the effect
+_LEAST_S = 300.0  # for the search, however busy the machine: cut shorter it may not come to the effect
 
 
 class Session:
