@@ -135,6 +135,7 @@ class Builder:
             add_tip_plate(masses, self.mesh, plate.mass_kg_per_m, plate.rotary_inertia_kg_m)
         self.mass = Mass(self.mesh, masses)
         self._values = model.effect_values()
+        self._known_sites: dict[str, Sites] = {}
 
     def system(self) -> System:
         """The mechanical system at the model's values."""
@@ -159,15 +160,21 @@ class Builder:
         return Solid(self.mesh, self.nodes, coefficients, Branches(branches), plane_stress, order)
 
     def _sites(self, effect: ForceEffect, p: SimpleNamespace) -> Sites:
-        if effect.sites == "body":
-            plate = self._described.body.tip_plate
-            body = body_sites(self.mesh, self.nodes, self._density)
-            return body if plate is None else with_point_mass(body, self.mesh, plate.mass_kg_per_m)
-        if effect.sites == "skin":
+        if effect.sites == "points":
+            return point_sites(self.mesh, effect.points(marker_points(self.model)[:3], p))
+        if effect.sites not in self._known_sites:
+            self._known_sites[effect.sites] = self._sites_of_all(effect.sites)
+        return self._known_sites[effect.sites]
+
+    def _sites_of_all(self, kind: str) -> Sites:
+        """The sites of all effects at the body, the skin or the centre line."""
+        if kind == "skin":
             return skin_sites(self.mesh)
-        if effect.sites == "line":
+        if kind == "line":
             return line_sites(self.mesh)
-        return point_sites(self.mesh, effect.points(marker_points(self.model)[:3], p))
+        plate = self._described.body.tip_plate
+        body = body_sites(self.mesh, self.nodes, self._density)
+        return body if plate is None else with_point_mass(body, self.mesh, plate.mass_kg_per_m)
 
     def _force_laws(self, effect: ForceEffect, p: SimpleNamespace) -> list[ForceLaw]:
         """What acts of one effect: its force, and its flux where it has one."""
@@ -175,7 +182,8 @@ class Builder:
         around = self._described.surroundings
         laws = [ForceLaw(effect, p, self._sites(effect, p), self.nodes, gravity, around)]
         if effect.has_flux:
-            laws.append(ForceLaw(effect, p, flux_sites(self.mesh), self.nodes, gravity, around, flux=True))
+            sites = flux_sites(laws[0].sites)
+            laws.append(ForceLaw(effect, p, sites, self.nodes, gravity, around, flux=True))
         return laws
 
     def _stress_law(self, effect: MaterialEffect, p: SimpleNamespace) -> StressLaw:

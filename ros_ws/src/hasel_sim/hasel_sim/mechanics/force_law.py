@@ -59,7 +59,6 @@ class ForceLaw:
         self.values, self._groups = values, grouped(values)
         self._slopes: dict[str, np.ndarray] = {}
         self._by_contraction: np.ndarray | None = None
-        self._last: tuple[Motion, dict[str, np.ndarray]] | None = None
 
     @staticmethod
     def beside(each: Sequence["ForceLaw"]) -> list["ForceLaw"]:
@@ -75,20 +74,24 @@ class ForceLaw:
         return out
 
     def _moved(self, motion: Motion) -> dict[str, np.ndarray]:
-        """Motion at the sites [n, 2, lanes]; kept for the last motion, which is asked for several times."""
-        if self._last is None or self._last[0] is not motion:
-            depends = self.effect.depends_on
-            fields = {"position": self.sites.value(motion.position)}
-            nothing = np.zeros_like(fields["position"])
-            fields["velocity"] = self.sites.value(motion.velocity) if "velocity" in depends else nothing
-            fields["acceleration"] = (
-                self.sites.value(motion.acceleration) if "acceleration" in depends else nothing
-            )
-            fields["tangent"] = self.sites.tangent(motion.position) if self._has_tangent else nothing
-            turning = "tangent_rate" in depends
-            fields["tangent_rate"] = self.sites.tangent(motion.velocity) if turning else nothing
-            self._last = motion, fields
-        return self._last[1]
+        """Motion at the sites [n, 2, lanes]."""
+        known, depends = motion.found.setdefault(id(self.sites.shape), {}), self.effect.depends_on
+        fields = {"position": self._field(known, "position", motion)}
+        for name in ("velocity", "acceleration", "tangent", "tangent_rate"):
+            asked = name in depends or (name == "tangent" and self._has_tangent)
+            fields[name] = self._field(known, name, motion) if asked else np.zeros_like(fields["position"])
+        return fields
+
+    def _field(self, known: dict[str, np.ndarray], name: str, motion: Motion) -> np.ndarray:
+        """One quantity at the sites; laws at the same sites share what was interpolated."""
+        if name not in known:
+            if name in ("tangent", "tangent_rate"):
+                known[name] = self.sites.tangent(
+                    motion.position if name == "tangent" else motion.velocity
+                )
+            else:
+                known[name] = self.sites.value(getattr(motion, name))
+        return known[name]
 
     def _force(self, fields: dict[str, np.ndarray], drive: DriveState, values=None) -> np.ndarray:
         """The effect's force at fields [copies, n, 2, lanes], in the same shape; values: others than its own."""

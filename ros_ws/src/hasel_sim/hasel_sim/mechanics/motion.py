@@ -1,7 +1,7 @@
 """What a residual is evaluated at: motion of the nodes, drive of the muscles, memory of the material; in every lane."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -40,11 +40,15 @@ class DriveState:
 
 @dataclass(frozen=True)
 class Motion:
-    """Nodal positions [m], velocities [m/s] and accelerations [m/s^2], each [nodes, 2, lanes]."""
+    """Nodal positions [m], velocities [m/s] and accelerations [m/s^2], each [nodes, 2, lanes].
+
+    found: what was interpolated of it before, since several effects ask for the same.
+    """
 
     position: np.ndarray
     velocity: np.ndarray
     acceleration: np.ndarray
+    found: dict = field(default_factory=dict, compare=False, repr=False)
 
 
 @dataclass(frozen=True)

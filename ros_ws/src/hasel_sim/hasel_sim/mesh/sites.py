@@ -1,6 +1,6 @@
 """Places where forces act: the body, the skin, the centre line, points of it; each interpolates a few nodes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
@@ -122,39 +122,28 @@ def skin_sites(mesh: Mesh) -> Sites:
 
 
 def line_sites(mesh: Mesh) -> Sites:
-    """Two Gauss points in every element along the centre line, from the nose to the tail's end [m]."""
+    """Two Gauss points in every element along the centre line, and the tail's end, which stands for no length [m]."""
     points, weights = np.polynomial.legendre.leggauss(2)
     every = mesh.nodes[mesh.elements]
     crossed = (every[..., 1].min(axis=1) <= 0.0) & (every[..., 1].max(axis=1) >= 0.0)
     ends = np.unique(np.round(every[crossed][:, :4, 0], 12))
     middle, half = 0.5 * (ends[1:] + ends[:-1]), 0.5 * np.diff(ends)
-    places = (middle[:, None] + half[:, None] * points).ravel()
-    nodes, shape, slope = _on_the_centre_line(mesh, places)
-    return Sites.of(nodes, shape, slope, (half[:, None] * weights).ravel())
+    places = np.append((middle[:, None] + half[:, None] * points).ravel(), mesh.nodes[mesh.tip, 0].mean())
+    found = [mesh.point((float(x), 0.0)) for x in places]
+    nodes, shape, gradient = (np.array(part) for part in zip(*found, strict=True))
+    measure = np.append((half[:, None] * weights).ravel(), 0.0)
+    return Sites.of(nodes, shape, np.ascontiguousarray(gradient[..., 0]), measure)
 
 
-def flux_sites(mesh: Mesh) -> Sites:
-    """The same places and the tail's end, for a flux along the centre line instead of a force.
+def flux_sites(line: Sites) -> Sites:
+    """The sites of a centre line for a flux along it instead of a force.
 
     A flux G [N/m] acts by its divergence, less what leaves at the tail: on a field phi of displacements it does the
     work G(L) phi(L) - integral of G dphi/ds, so that the sum of its forces is G at the tail.
     """
-    line = line_sites(mesh)
-    end = float(mesh.nodes[mesh.tip, 0].mean())
-    nodes, shape, slope = _on_the_centre_line(mesh, np.array([end]))
-    return Sites(
-        np.concatenate([line.nodes, nodes]),
-        np.concatenate([line.shape, shape]),
-        np.concatenate([line.slope, slope]),
-        np.append(line.measure, 1.0),
-        np.concatenate([-line.slope * line.measure[:, None], shape]),
-    )
-
-
-def _on_the_centre_line(mesh: Mesh, places: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    found = [mesh.point((float(x), 0.0)) for x in places]
-    nodes, shape, gradient = (np.array(part) for part in zip(*found, strict=True))
-    return nodes, shape, gradient[..., 0]
+    weight = -line.slope * line.measure[:, None]
+    weight[-1] = line.shape[-1]
+    return replace(line, weight=weight)
 
 
 def point_sites(mesh: Mesh, positions: np.ndarray) -> Sites:

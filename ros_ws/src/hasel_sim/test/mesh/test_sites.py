@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sim.build import Builder
-from hasel_sim.mesh.sites import body_sites, point_sites, skin_sites
+from hasel_sim.mesh.sites import body_sites, flux_sites, line_sites, point_sites, skin_sites
 
 
 def test_skin_sites_add_up_to_the_circumference(rectangle):
@@ -46,3 +46,22 @@ def test_a_force_on_a_point_keeps_its_sum_and_moment(swimmer):
     out = out[..., 0]
     assert out.sum(axis=0) == pytest.approx([0.0, 2.0], abs=1e-12)
     assert (mesh.nodes[:, 0] * out[:, 1]).sum() == pytest.approx(0.2)
+
+
+def test_sites_of_the_centre_line_run_from_nose_to_tail(swimmer):
+    """Measures sum to the whole length; the tangent is the direction of the body; the last site is the tail's end."""
+    mesh = Builder(swimmer).mesh
+    line = line_sites(mesh)
+    assert line.measure.sum() == pytest.approx(0.19)
+    assert line.value(mesh.nodes[..., None])[-1, :, 0] == pytest.approx([0.19, 0.0])
+    tangent = line.tangent(mesh.nodes[..., None])[..., 0]
+    assert tangent == pytest.approx(np.tile([1.0, 0.0], (len(tangent), 1)), abs=1e-9)
+
+
+def test_a_flux_along_the_centre_line_sums_to_its_value_at_the_tail(swimmer):
+    """Whatever the flux: what one piece gives the next one takes."""
+    mesh = Builder(swimmer).mesh
+    flux = np.random.default_rng(1).standard_normal((len(line_sites(mesh).nodes), 2, 1))
+    out = np.zeros((*mesh.nodes.shape, 1))
+    flux_sites(line_sites(mesh)).scatter(flux, out)
+    assert out.sum(axis=0)[:, 0] == pytest.approx(flux[-1, :, 0])
