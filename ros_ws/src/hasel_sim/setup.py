@@ -39,6 +39,7 @@ setup(
             "effects = hasel_sim.commands.entry:effects",
             "show_mesh = hasel_sim.commands.entry:show_mesh",
             "simulator = hasel_sim.start_simulator:main",
+            "swim = hasel_sim.commands.entry:swim",
         ]
     },
 )

@@ -25,3 +25,11 @@ def show_mesh() -> int:
     from hasel_sim.commands.show_mesh import run
 
     return run(options)
+
+
+def swim() -> int:
+    """`swim`."""
+    options = parsers.swim_parser().parse_args()
+    from hasel_sim.commands.swim import run
+
+    return run(options)

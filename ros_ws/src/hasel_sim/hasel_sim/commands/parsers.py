@@ -39,3 +39,127 @@ def show_mesh_parser() -> argparse.ArgumentParser:
     )
     options.add_argument("--density", type=float, metavar="D", help="mesh density, instead of the model's")
     return options
+
+
+def swim_parser() -> argparse.ArgumentParser:
+    """Options of `swim`."""
+    options = argparse.ArgumentParser(
+        prog="swim",
+        description="How fast a free body swims, by voltage and frequency: a table, a picture and the optimum.",
+    )
+    options.add_argument(
+        "--model", default="swimmer_in_oil", metavar="NAME|FILE", help="default: swimmer_in_oil"
+    )
+    options.add_argument(
+        "--voltage",
+        type=voltages,
+        default=((3500.0, 3500.0), (4500.0, 4500.0), (5500.0, 5500.0)),
+        metavar="V,V,…",
+        help="of the boxes, in V; 5500/4800 for unequal muscles (default: 3500,4500,5500)",
+    )
+    options.add_argument(
+        "--frequency",
+        type=numbers,
+        default=numbers("1:10:0.5"),
+        metavar="A:B:STEP",
+        help="in Hz, a range or a list with commas (default: 1:10:0.5)",
+    )
+    options.add_argument(
+        "--duration", type=positive, default=10.0, metavar="S", help="of each swim, in s (default: 10)"
+    )
+    options.add_argument(
+        "--free",
+        type=free_range,
+        action="append",
+        default=[],
+        metavar="PARAMETER=LOW:HIGH[:COUNT]",
+        help="repeat the sweep with a parameter or constant at values of a range (3 of them): what decides the optimum",
+    )
+    options.add_argument(
+        "--set",
+        type=assignment,
+        action="append",
+        default=[],
+        metavar="PARAMETER=VALUE",
+        help="another value of a parameter or of a constant of the model",
+    )
+    options.add_argument(
+        "--output",
+        type=Path,
+        default=Path("swim"),
+        metavar="DIR",
+        help="for table and picture (default: swim)",
+    )
+    options.add_argument("--json", type=Path, metavar="FILE", help="write all numbers here")
+    options.add_argument("--jobs", type=int, metavar="N", help="processes (default: one per core)")
+    options.add_argument(
+        "--scheduler", metavar="ADDRESS", help="a Dask cluster, such as tcp://head-node:8786"
+    )
+    return options
+
+
+def numbers(text: str) -> tuple[float, ...]:
+    """Numbers from "1,2.5,4" or from "first:last:step", last included. Raises ArgumentTypeError."""
+    try:
+        if ":" not in text:
+            found = [float(part) for part in text.split(",")]
+        else:
+            first, last, step = (float(part) for part in text.split(":"))
+            found = [first + n * step for n in range(int((last - first) / step + 1e-9) + 1)]
+    except (ValueError, ZeroDivisionError):
+        found = []
+    if not found or not all(0 < number < float("inf") for number in found):
+        raise argparse.ArgumentTypeError(
+            f"'{text}' is neither a list nor a range; expected numbers above 0, such as 1,2,3 or 1:10:0.5"
+        )
+    return tuple(round(number, 12) for number in found)
+
+
+def voltages(text: str) -> tuple[tuple[float, float], ...]:
+    """Pairs of voltages [V] from "3500,5500/4800". Raises ArgumentTypeError."""
+    pairs = []
+    for part in text.split(","):
+        first, _, second = part.partition("/")
+        found = (*numbers(first), *numbers(second or first))
+        if len(found) != 2:
+            raise argparse.ArgumentTypeError(
+                f"'{text}' is no list of voltages; expected such as 3500,4500 or 5500/4800, in V"
+            )
+        pairs.append((found[0], found[1]))
+    return tuple(pairs)
+
+
+def positive(text: str) -> float:
+    """A number above 0. Raises ArgumentTypeError."""
+    found = numbers(text)
+    if len(found) != 1:
+        raise argparse.ArgumentTypeError(f"'{text}' is not one number; expected one above 0")
+    return found[0]
+
+
+def assignment(text: str) -> tuple[str, float]:
+    """Name and value from "name=value". Raises ArgumentTypeError."""
+    name, _, value = text.partition("=")
+    try:
+        return name.strip(), float(value)
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"'{text}' sets nothing; expected PARAMETER=VALUE, such as body.depth_m=0.04"
+        ) from None
+
+
+def free_range(text: str) -> tuple[str, tuple[float, ...]]:
+    """Name and values from "name=low:high" or "name=low:high:count". Raises ArgumentTypeError."""
+    name, _, values = text.partition("=")
+    try:
+        low, high, *count = values.split(":")
+        pieces = int(count[0]) - 1 if count else 2
+        first, last = float(low), float(high)
+        if pieces < 1 or not first < last or len(count) > 1:
+            raise ValueError
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"'{text}' is no range of a parameter; expected PARAMETER=LOW:HIGH or PARAMETER=LOW:HIGH:COUNT, such as "
+            "body.depth_m=0.03:0.06"
+        ) from None
+    return name.strip(), tuple(first + (last - first) * n / pieces for n in range(pieces + 1))

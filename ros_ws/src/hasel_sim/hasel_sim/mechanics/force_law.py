@@ -86,9 +86,7 @@ class ForceLaw:
         """One quantity at the sites; laws at the same sites share what was interpolated."""
         if name not in known:
             if name in ("tangent", "tangent_rate"):
-                known[name] = self.sites.tangent(
-                    motion.position if name == "tangent" else motion.velocity
-                )
+                known[name] = self.sites.tangent(motion.position if name == "tangent" else motion.velocity)
             else:
                 known[name] = self.sites.value(getattr(motion, name))
         return known[name]

@@ -12,7 +12,7 @@ from hasel_sim.drive.amplitudes import AmplitudeTable, amplitude_tables
 from hasel_sim.effects.base import Effect
 from hasel_sim.effects.registry import find_effects
 from hasel_sim.errors import ModelError, nearest_name
-from hasel_sim.model.constants import constants, with_constants
+from hasel_sim.model.constants import constants, unit_of, with_constants
 from hasel_sim.model.description import Description, Numerics
 from hasel_sim.model.muscle_law import law_parameters
 from hasel_sim.model.parameter import Parameter
@@ -141,6 +141,23 @@ class Model:
             error = (standard_errors or {}).get(name, self.parameter(name).standard_error)
             parameters[name] = replace(self.parameter(name), value=float(value), standard_error=error)
         return replace(self, parameters=parameters)
+
+    def with_freed(self, *names: str) -> "Model":
+        """A copy in which these constants of the file are parameters, at the file's values.
+
+        Raises ModelError for a name that is neither a constant nor a parameter.
+        """
+        known, freed = constants(self.description), dict(self.parameters)
+        for name in names:
+            if name in freed:
+                continue
+            if name not in known:
+                raise ModelError(
+                    f"'{name}' is neither a parameter nor a constant of model '{self.name}'; "
+                    f"{nearest_name(name, {*freed, *known})}"
+                )
+            freed[name] = Parameter(name, known[name], unit_of(name), -float("inf"), float("inf"))
+        return replace(self, parameters=freed)
 
     def with_levels(self, levels: np.ndarray | Sequence[float] | Mapping[str, np.ndarray]) -> "Model":
         """A copy with an amplitude for each of these levels; known ones keep their value, others are dropped.

@@ -144,15 +144,25 @@ def _named_from(folder: Path, effect: Effect) -> str:
 
 def save_model(model: Model, path: str | Path) -> None:
     """Write a model file that `load_model` reads back to the same model; effects in files are named relative to it."""
-    folder = Path(path).resolve().parent
-    content = json.loads(model.description.model_dump_json(exclude_none=True))
-    content["effects"] = [_named_from(folder, effect) for effect in model.effects]
-    content["parameters"] = {name: _entry(parameter) for name, parameter in model.parameters.items()}
+    content = _content(model, model.description, Path(path).resolve().parent)
     yaml = YAML(typ="safe")
     yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]
     yaml.default_flow_style = False
     with Path(path).open("w") as file:
         yaml.dump(content, file)
+
+
+def model_text(model: Model, description: Description) -> str:
+    """All that a model's file would say with another description, in one line; effects in files with their text."""
+    content = _content(model, description, Path.cwd())
+    return json.dumps([content, [effect.text for effect in model.effects]], sort_keys=True)
+
+
+def _content(model: Model, description: Description, folder: Path) -> dict:
+    content = json.loads(description.model_dump_json(exclude_none=True))
+    content["effects"] = [_named_from(folder, effect) for effect in model.effects]
+    content["parameters"] = {name: _entry(parameter) for name, parameter in model.parameters.items()}
+    return content
 
 
 def _entry(parameter: Parameter) -> dict:
