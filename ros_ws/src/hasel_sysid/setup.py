@@ -38,6 +38,7 @@ setup(
             "diagnose = hasel_sysid.command_line.entry:diagnose",
             "improve = hasel_sysid.command_line.entry:improve",
             "suggest = hasel_sysid.command_line.entry:suggest",
+            "bench_muscle = hasel_sysid.command_line.entry:bench_muscle",
             "add = hasel_sysid.command_line.entry:add",
             "remove = hasel_sysid.command_line.entry:remove",
             "convert = hasel_sysid.command_line.convert:main",

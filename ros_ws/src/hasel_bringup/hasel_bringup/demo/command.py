@@ -9,13 +9,14 @@ from functools import partial
 from pathlib import Path
 
 from hasel_recording import RecordingError, read_recording
-from hasel_sysid.command_line import fit, improve
+from hasel_sysid.command_line import bench_muscle, fit, improve
 from hasel_sysid.command_line.running import MISLEADING
 from rich.console import Console
 from rich.markup import escape
 
 from hasel_bringup.demo.live_error import LiveError
 from hasel_bringup.demo.measured_bodies import MeasuredBody, found_in
+from hasel_bringup.demo.measured_muscle import UNSEEN_VOLTAGES, steps_in
 from hasel_bringup.errors import BringupError
 
 _REPLAYED = "val_5200V_2.5Hz.csv"
@@ -24,10 +25,11 @@ _REPLAYED = "val_5200V_2.5Hz.csv"
 class Demo:
     """The steps in order; each tells what it does and how long it took."""
 
-    def __init__(self, data: Path, bodies: Sequence[Path], output: Path) -> None:
+    def __init__(self, data: Path, bodies: Sequence[Path], output: Path, muscle: Path | None = None) -> None:
         self.fitted, self.unseen = _files(data, "fit_*.csv"), _files(data, "val_*.csv")
         self.replayed = data / _REPLAYED if (data / _REPLAYED) in self.unseen else self.unseen[-1]
         self.bodies = found_in(list(bodies))
+        self.lifts = [] if muscle is None else steps_in(muscle)
         self.output = output
         output.mkdir(parents=True, exist_ok=True)
         self._console = Console(highlight=False)
@@ -58,6 +60,8 @@ class Demo:
                 f"A measured body: fit the {body.name.replace('_', ' ')} to {_runs(fitted)}, judge on {_runs(unseen)}",
                 partial(self._measured, body, fitted, unseen),
             )
+        if self.lifts:
+            self._step("A measured muscle on its bench, judged on voltages that were not fitted", self._bench)
         minutes, seconds = divmod(round(time.monotonic() - begun), 60)
         self._console.print(
             f"\nDone in {minutes} min {seconds} s: open {escape(str(self.output / 'report.html'))}"
@@ -84,6 +88,10 @@ class Demo:
         """The model is a bare one: what the real body does besides is to be found."""
         recordings = [*map(str, fitted), "--validate", *map(str, unseen)]
         _call(improve, [*recordings, "--model", body.model, "--output", str(self.output / body.name)])
+
+    def _bench(self) -> None:
+        unseen = ["--unseen-voltages", ",".join(map(str, UNSEEN_VOLTAGES))]
+        _call(bench_muscle, [*map(str, self.lifts), *unseen, "--output", str(self.output / "muscle")])
 
 
 def _runs(paths: Sequence[Path]) -> str:
@@ -114,7 +122,7 @@ def _call(command, arguments: Sequence[str]) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run the command with these options; returns its exit code."""
     try:
-        Demo(options.data, options.body, options.output).run()
+        Demo(options.data, options.body, options.output, options.muscle).run()
     except (BringupError, RecordingError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1

@@ -26,6 +26,12 @@ def parser() -> argparse.ArgumentParser:
         help="also the measured bodies in this folder: beam, loaded beam, arm (may be given several times)",
     )
     options.add_argument(
+        "--muscle",
+        type=Path,
+        metavar="DIR",
+        help="also the measured muscle in this clone of the public repository MadhavL/PH-HASEL-Python",
+    )
+    options.add_argument(
         "--output", type=Path, default=Path("output") / "demo", metavar="DIR", help="(default: %(default)s)"
     )
     return options

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from types import SimpleNamespace
 
 import numpy as np
@@ -124,6 +125,7 @@ class Muscle:
             voltage = effect.electrodes(time, voltage, p)
         return voltage
 
+    @cached_property
     def populations(self) -> list[tuple[float, Pouch]]:
         """Shares [1] of the pouches, and what these are like with the values of the parameters."""
         freed = {
@@ -144,7 +146,7 @@ class Muscle:
         weight = 0.5 * self.mass * 9.81
         x = np.zeros(len(rows))
         acting = self._acting()
-        for share, pouch in self.populations():
+        for share, pouch in self.populations:
             angle = _angle(pouch, volts, force + weight, acting)
             held = Held(pouch, angle, force + weight, rest + weight)
             one = pouch.contraction(angle)
@@ -158,7 +160,7 @@ class Muscle:
         return np.max(
             [
                 pouch.force(voltage, np.full_like(voltage, pouch.relaxed_angle))
-                for _, pouch in self.populations()
+                for _, pouch in self.populations
             ],
             axis=0,
         )
@@ -166,7 +168,7 @@ class Muscle:
     @property
     def rest_length(self) -> float:
         """Length between the outer seals [m] without voltage."""
-        return self.count * self.populations()[0][1].relaxed_length
+        return self.count * self.populations[0][1].relaxed_length
 
 
 def _angle(pouch: Pouch, voltage: np.ndarray, load: np.ndarray, acting: list) -> np.ndarray:

@@ -96,7 +96,7 @@ def test_a_fitted_muscle_takes_its_place(read, tmp_path):
     law = read(SWIMMER + "muscle: {law: peano_hasel, file: mine.yaml}\n").description.muscle
     assert law.pouch.fill == 0.8
     assert law.effects == {"edge_effect": {"strip": 0.4}}
-    ((_, pouch),) = law.muscle().populations()
+    ((_, pouch),) = law.muscle().populations
     assert_allclose(pouch.width, 0.050 - 2 * 0.4 * 0.020)
 
 

@@ -15,6 +15,8 @@ SETTLING_S = 1.0
 _SAME = 0.01
 """Voltages that differ by less than this share of the highest are one."""
 _FEWEST_AT_REST = 5
+_MEDIAN = np.sqrt(np.pi / 2)
+"""Standard error of a median by that of a mean, of normal numbers."""
 
 
 @dataclass(frozen=True)
@@ -22,7 +24,8 @@ class SettledRun:
     """Frames at times [s] [n] with voltage [V], contraction [m] from the rest before the first lift, and load [N].
 
     used [n]: which of them are settled and measured; hold [n]: number of the stretch of constant voltage; level [n]:
-    its magnitude [V], at rest that of the lift before. noise: standard deviation of a frame, in metres or newtons.
+    its magnitude [V], at rest that of the lift before. noise: standard deviation of a frame, zero_error: of
+    what was called zero, which all frames share, both in metres or newtons.
     """
 
     name: str
@@ -37,6 +40,7 @@ class SettledRun:
     rest_load: float
     noise: float
     noise_source: str
+    zero_error: float = 0.0
 
     @property
     def measured(self) -> np.ndarray:
@@ -92,6 +96,9 @@ def settled(recording: BenchRecording, settling: float = SETTLING_S) -> SettledR
         rest_load=float(np.nanmedian(load[before])) if before.any() else 0.0,
         noise=noise,
         noise_source=source,
+        zero_error=_MEDIAN * noise / np.sqrt(resting.sum())
+        if resting.any() and recording.held == "load"
+        else 0.0,
     )
 
 

@@ -39,6 +39,11 @@ def suggest() -> int:
     return _run(parsers.suggest_parser, "suggest")
 
 
+def bench_muscle() -> int:
+    """`bench_muscle RECORDING…`."""
+    return _run(parsers.bench_muscle_parser, "bench_muscle")
+
+
 def add() -> int:
     """`add EFFECT…`."""
     return _run(parsers.add_parser, "effects", "run_add")

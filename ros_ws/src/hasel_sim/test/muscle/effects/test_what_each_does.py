@@ -49,7 +49,7 @@ def test_edges_cost_narrow_pouches_more(muscle, pouch):
 
 def test_oil_is_a_capacitor_in_series(muscle, pouch):
     """The zipped capacitance is that of film, liquid and film in series."""
-    ((_, thicker),) = with_effect(muscle, trapped_oil__gap=6e-6).populations()
+    ((_, thicker),) = with_effect(muscle, trapped_oil__gap=6e-6).populations
     oil = 8.8541878128e-12 * 3.0 * pouch.width / 6e-6
     film = pouch.capacitance_per_zipped_length
     assert_allclose(thicker.capacitance_per_zipped_length, film * oil / (film + oil), rtol=1e-12)

@@ -1,0 +1,61 @@
+"""What is said of one effect of the bench."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+from hasel_sysid.bench_muscle.fit import BenchFit
+from hasel_sysid.bench_muscle.left_out import Advantage
+
+
+class Verdict(Enum):
+    """In the order in which they are listed."""
+
+    MISSING = "missing"
+    AS_GOOD = "as good as the one that was added"
+    BEYOND = "would help, but only beyond its plausible range"
+    ABSENT = "absent"
+    NOT_JUDGED = "not judged"
+    UNSEEN = "cannot be seen"
+
+
+@dataclass(frozen=True)
+class Trial:
+    """An effect beside those there already, fitted, with what it gains on voltages left out."""
+
+    effect: str
+    fit: BenchFit
+    left_out: tuple[float, ...]
+    gain: Advantage
+
+    @property
+    def beyond(self) -> bool:
+        """Whether a number of its own would leave its plausible range, other than for nothing."""
+        muscle = self.fit.muscle
+        return any(
+            name.startswith(f"{self.effect}.")
+            and muscle.values[name] - muscle.parameters[name].lower > 0.5 * _range(muscle.parameters[name])
+            for name in self.fit.at_bound
+        )
+
+    @property
+    def certain(self) -> bool:
+        """Whether a size that is nothing at its null differs from it by two standard errors."""
+        kind = next(effect for effect in self.fit.muscle.effects if effect.id == self.effect)
+        sizes = [self.fit.muscle.parameters[f"{self.effect}.{p.name}"] for p in kind.parameters if not p.scan]
+        return all(size.standard_error is not None and size.value > 2 * size.standard_error for size in sizes)
+
+
+def _range(parameter) -> float:
+    return parameter.upper - parameter.lower
+
+
+@dataclass(frozen=True)
+class Finding:
+    """An effect, what is said of it, and why."""
+
+    effect: str
+    verdict: Verdict
+    reason: str
+
+    def __str__(self) -> str:
+        return f"{self.effect}: {self.verdict.value}; {self.reason}."
