@@ -1,0 +1,66 @@
+"""What a set is worth, against the predictive density computed run by run."""
+
+import numpy as np
+import pytest
+from hasel_sysid.projection import orthonormal
+from hasel_sysid.selection.likelihood import Whitened
+from hasel_sysid.selection.worth import worth
+from scipy.stats import multivariate_normal
+
+RUNS = np.repeat(np.arange(5), 12)
+PRIOR_RUNS = 0.1
+
+
+def fitted(columns, series):
+    """White noise of variance one, without offsets."""
+    basis = orthonormal(columns)
+    return Whitened(series - basis @ (basis.T @ series), basis, RUNS)
+
+
+def test_it_is_the_density_of_every_run_given_the_others():
+    """Bayes with the information of a tenth of an average run about every parameter, where the fit to all runs is."""
+    generator = np.random.default_rng(2)
+    columns, series = generator.standard_normal((60, 3)), generator.standard_normal(60)
+    values = np.linalg.lstsq(columns, series, rcond=None)[0]
+    prior = PRIOR_RUNS / 5 * columns.T @ columns
+    expected = []
+    for run in range(5):
+        here, others = run == RUNS, run != RUNS
+        information = columns[others].T @ columns[others] + prior
+        mean = np.linalg.solve(information, columns[others].T @ series[others] + prior @ values)
+        spread = np.eye(12) + columns[here] @ np.linalg.solve(information, columns[here].T)
+        density = multivariate_normal(columns[here] @ mean, spread).logpdf(series[here])
+        expected.append(density + 6 * np.log(2 * np.pi))
+    assert worth(fitted(columns, series), PRIOR_RUNS).densities == pytest.approx(expected)
+
+
+def test_parameters_that_help_nobody_cost():
+    """The more of them, the less runs left out are foretold, though all runs are fitted better."""
+    generator = np.random.default_rng(3)
+    useless, series = generator.standard_normal((60, 6)), generator.standard_normal(60)
+    few, many = (fitted(useless[:, :n], series) for n in (1, 6))
+    assert many.logarithm > few.logarithm
+    assert worth(many, PRIOR_RUNS).total < worth(few, PRIOR_RUNS).total
+
+
+def test_an_amplitude_that_one_run_alone_shows_costs_a_few_units_only():
+    """No other run foretells it, so that run is foretold hardly worse than without it."""
+    series = np.random.default_rng(4).standard_normal(60)
+    own = np.where(RUNS == 2, np.sin(np.arange(60.0)), 0.0)
+    nothing = fitted(np.zeros((60, 0)), series)
+    cost = worth(nothing, PRIOR_RUNS).total - worth(fitted(own[:, None], series), PRIOR_RUNS).total
+    assert 0.0 < cost < 5.0
+
+
+def test_the_standard_error_of_a_gain_is_how_it_varies():
+    """Over many draws of the noise, of two laws of which neither is the truth."""
+    generator = np.random.default_rng(6)
+    one, other = generator.standard_normal((2, 60, 1))
+    gains = []
+    for _ in range(400):
+        series = 0.4 * (one + other)[:, 0] + generator.standard_normal(60)
+        first, second = (worth(fitted(columns, series), PRIOR_RUNS) for columns in (one, other))
+        gains.append(first.over(second))
+    scatter = np.std([gain.total for gain in gains])
+    assert np.mean([gain.by_noise for gain in gains]) == pytest.approx(scatter, rel=0.25)
+    assert np.mean([gain.scatter for gain in gains]) == pytest.approx(scatter, rel=0.35)
