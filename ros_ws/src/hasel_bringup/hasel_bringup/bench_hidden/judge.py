@@ -1,5 +1,7 @@
 """Set the JSON of `improve` against the truth of its case."""
 
+from math import nan
+
 from hasel_sim.effects.registry import catalogue
 
 from hasel_bringup.bench_hidden.case import Case
@@ -27,6 +29,7 @@ def judge(case: Case, laboratory: Laboratory, answer: dict, seconds: float) -> O
         floor_unseen=laboratory.floor_unseen,
         estimates=_estimates(laboratory.values, stages[-1]["parameters"]),
         seconds=seconds,
+        probability=float(answer["ranking"][0].get("probability", nan)) if answer["ranking"] else nan,
     )
 
 

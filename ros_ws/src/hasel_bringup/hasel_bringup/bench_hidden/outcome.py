@@ -32,7 +32,7 @@ class Outcome:
     """hidden: ids; ranked: ids, most probable first; missing: ids that `improve` says are missing and adds.
 
     mae_*: mean |Δ sin θ| of the fitted baseline and of the last stage; floor_*: of the noise alone;
-    failure: why there is no answer, in which case all else is empty.
+    probability: that `improve` gives the effect ranked first; failure: why there is no answer; all else is empty then.
     """
 
     case: str
@@ -51,6 +51,7 @@ class Outcome:
     floor_unseen: float = np.nan
     estimates: tuple[Estimate, ...] = ()
     seconds: float = np.nan
+    probability: float = np.nan
     failure: str = ""
 
     @property

@@ -5,9 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from hasel_bringup.bench_hidden.outcome import Outcome, outcome_from_dict
+from hasel_bringup.bench_hidden.reliability import Bin, reliability
 from hasel_bringup.bench_hidden.summary import Bar, bars, confusion
 from hasel_bringup.bench_hidden.truth import NUMERICS
 
+_LINE = 20
 _WORDS = {True: "yes", False: "**no**", None: ""}
 
 
@@ -77,6 +79,7 @@ def _section(name: str, outcomes: Sequence[Outcome]) -> list[str]:
         _effect_table([o for o in outcomes if o.kind in ("single", "unlisted") and not o.failure]),
         "### Confusion: hidden → named first\n",
         _confusion_list(confusion(outcomes)),
+        *_reliability(reliability(outcomes)),
         *([f"Without an answer: {o.case} ({o.failure})\n" for o in failures]),
     ]
 
@@ -116,6 +119,35 @@ def _effect_table(outcomes: Sequence[Outcome]) -> str:
 def _percent(shares: Sequence[float]) -> str:
     finite = [share for share in shares if np.isfinite(share)]
     return f"{100 * np.median(finite):.0f} %" if finite else "–"
+
+
+def _reliability(bins: Sequence[Bin]) -> list[str]:
+    if not bins:
+        return []
+    rows = [
+        [
+            f"{b.low:.0%}–{b.high:.0%}",
+            f"{b.stated:.0%}",
+            f"{b.share:.0%} ({b.interval[0]:.0%}–{b.interval[1]:.0%})",
+            _line(b),
+            str(b.count),
+        ]
+        for b in bins
+    ]
+    header = ["called probable", "on average", "right (95 %)", "stated │, right ●", "out of"]
+    return [
+        "### Reliability: of what is called so probable, how much is right?\n",
+        "The effect ranked first where something is said to be missing, pairs aside.\n",
+        _table(header, rows),
+    ]
+
+
+def _line(one: Bin) -> str:
+    """From 0 to 100 %, the stated probability and the share that is right."""
+    cells = ["·"] * (_LINE + 1)
+    cells[round(_LINE * min(one.stated, 1.0))] = "│"
+    cells[round(_LINE * one.share)] = "●"
+    return f"`{''.join(cells)}`"
 
 
 def _confusion_list(table: dict[str, dict[str, int]]) -> str:
