@@ -17,12 +17,16 @@ from hasel_sysid.noise import NoiseModel, estimate_noise
 from hasel_sysid.noise_sources.above_the_band import noise_above_the_band
 from hasel_sysid.noise_sources.between_periods import noise_between_periods
 from hasel_sysid.problem import Problem
+from hasel_sysid.projection import orthonormal
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect
 
 _BATCH = 8
 _HALVINGS = 2
 """How often what cannot be simulated, or is far worse, is tried again from half of its size."""
-_FAR = 2.0
+_FAR, _SOME_HOPE = 2.0, 0.2
+"""What makes the sum of squares so many times worse is too far off, unless it could never lower it by such a share."""
+_SIZES = (0.1, 2.0)
+"""Smallest and largest start, in typical sizes."""
 _BRIEF = 10
 """Evaluations that a full fit is given."""
 
@@ -116,13 +120,15 @@ class SimulatedSets:
         if not names:
             return {}
         trials = Trials(self.problem, of.fit.evaluation)
-        first = self._first(trials, [self.effects[name] for name in names], always=of.effects == NOTHING)
-        if of.effects == NOTHING:
-            self.trials, self.first = trials, first
-            self.tried |= trials.tried
+        if of.effects == NOTHING or not self.first:
+            first = self._first(trials, [self.effects[name] for name in names])
+            rounds = (most, most // 2)
+            self.trials, self.first, self.tried = trials, first, set(trials.tried)
+        else:
+            first, rounds = trials.first(self._sized(of, names)), (most // 2, most // 4)
         looks = {t.start.effect.id: _looks(t, trials) for t in reversed(first)}
         best = _best_of_each([_prospect(t, looks) for t in first], rank)
-        for keep in (most, most // 2):
+        for keep in rounds:
             if not keep or self.out_of_time():
                 break
             going_on = best[:keep]
@@ -130,25 +136,46 @@ class SimulatedSets:
             best = _best_of_each([*moved, *best[keep:]], rank)
         return {prospect.effect: prospect for prospect in best}
 
-    def _first(self, trials: Trials, effects: Sequence[Effect], always: bool) -> list[Trial]:
+    def _sized(self, of: FittedSet, names: Collection[str]) -> list[Start]:
+        """The best start of every effect, of the size that its change beside the baseline leads to expect here."""
+        basis = orthonormal(of.jacobian)
+        best: dict[str, tuple[float, Start]] = {}
+        for trial in self.first:
+            effect = trial.start.effect.id
+            if effect not in names:
+                continue
+            change = self.fitted.evaluation.residual - trial.residual
+            left = change - basis @ (basis.T @ change)
+            power, along = float(left @ left), float(left @ of.residual)
+            drop = along * abs(along) / power if power > 0 else 0.0
+            if effect not in best or drop > best[effect][0]:
+                size = float(np.clip(along / power, *_SIZES)) if power > 0 else 1.0
+                best[effect] = drop, resized(trial.start, size)
+        return [start for _, start in best.values()]
+
+    def _first(self, trials: Trials, effects: Sequence[Effect]) -> list[Trial]:
         every = [start for effect in effects for start in starts(effect)]
         if self.decades:
             every += [start for effect in effects for start in decade_starts(effect)]
         every.sort(key=lambda start: not start.changes_nothing)
         found: list[Trial] = []
         for begin in range(0, len(every), _BATCH):
-            if self.out_of_time() and (begin > 0 or not always):
+            if begin > 0 and self.out_of_time():
                 break
             found += trials.first(every[begin : begin + _BATCH])
         return found if self.decades else found + self._nearer(trials, every, found)
 
     def _nearer(self, trials: Trials, begun: Sequence[Start], found: Sequence[Trial]) -> list[Trial]:
-        """From half the size, or a quarter, of what could not be simulated or is far worse than without the effect."""
+        """From half the size, or a quarter, of what could not be simulated or is too far off to be believed."""
         squares = trials.fitted.sum_of_squares
         nearer: list[Trial] = []
         begun = [start for start in begun if start.effect.id in trials.tried]
         for _ in range(_HALVINGS):
-            done = {id(trial.start) for trial in found if trial.sum_of_squares <= _FAR * squares}
+            done = {
+                id(trial.start)
+                for trial in found
+                if trial.sum_of_squares <= _FAR * squares or trial.promised < _SOME_HOPE * squares
+            }
             halved = [(start, resized(start, 0.5)) for start in begun if id(start) not in done]
             begun = [half for start, half in halved if half.values != start.values]
             if not begun or self.out_of_time():
