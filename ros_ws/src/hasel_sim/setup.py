@@ -37,6 +37,7 @@ setup(
         "console_scripts": [
             "bench = hasel_sim.commands.entry:bench",
             "effects = hasel_sim.commands.entry:effects",
+            "optimise = hasel_sim.commands.entry:optimise",
             "show_mesh = hasel_sim.commands.entry:show_mesh",
             "simulator = hasel_sim.start_simulator:main",
             "swim = hasel_sim.commands.entry:swim",

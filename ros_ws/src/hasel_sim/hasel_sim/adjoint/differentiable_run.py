@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import torch
 
-from hasel_sim.adjoint.gradient import gradient
-from hasel_sim.adjoint.trajectory import follow
+from hasel_sim.adjoint.gradient import gradient, gradient_of_shapes
+from hasel_sim.adjoint.trajectory import Trajectory, follow
 from hasel_sim.build import moved_nodes
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.errors import SimulationError
@@ -27,6 +27,8 @@ class DifferentiableRun:
         prepared = PreparedRun(model, run, self.parameters)
         self.balance_times = prepared.plan.balance_times
         """Instants [s] at which the contraction is given, [steps]."""
+        self.boundaries = prepared.plan.boundaries
+        """Instants [s] at which the shapes are, [steps + 1]."""
 
     def values(self) -> torch.Tensor:
         """The model's own values of the parameters."""
@@ -64,6 +66,21 @@ class DifferentiableRun:
         values = self.values() if values is None else values
         outline = self.outline() if outline is None else outline
         return _Angle.apply(self, contraction, values, outline)
+
+    def shapes(
+        self,
+        contraction: torch.Tensor | None = None,
+        values: torch.Tensor | None = None,
+        outline: torch.Tensor | None = None,
+    ) -> torch.Tensor:
+        """Nodal positions [m] [steps + 1, nodes, 2] at the boundaries of the steps; arguments and errors as of `angle`.
+
+        With them goes whatever depends on where the body is: how fast it swims, where it heads.
+        """
+        contraction = self.contraction(values) if contraction is None else contraction
+        values = self.values() if values is None else values
+        outline = self.outline() if outline is None else outline
+        return _Shapes.apply(self, contraction, values, outline)
 
     def _at(self, values: torch.Tensor) -> Model:
         return self.model.with_values(dict(zip(self.parameters, values.tolist(), strict=True)))
@@ -124,18 +141,35 @@ class _Waveform(torch.autograd.Function):
         return None, out, None, None
 
 
+def _followed(run: DifferentiableRun, contraction, values, outline) -> Trajectory:
+    prepared = run.prepared(values.detach(), outline.detach())
+    expected = (len(prepared.plan.coefficients), prepared.muscles)
+    if tuple(contraction.shape) != expected:
+        raise SimulationError(
+            f"the contraction has the shape {tuple(contraction.shape)}; expected {expected}, one row per step: "
+            "give it at balance_times"
+        )
+    return follow(prepared, contraction.detach().numpy())
+
+
+class _Shapes(torch.autograd.Function):
+    @staticmethod
+    def forward(ctx, run: DifferentiableRun, contraction, values, outline) -> torch.Tensor:
+        ctx.trajectory = _followed(run, contraction, values, outline)
+        return torch.from_numpy(ctx.trajectory.shapes)
+
+    @staticmethod
+    def backward(ctx, weights: torch.Tensor):
+        found = gradient_of_shapes(ctx.trajectory, weights.detach().numpy(), ctx.needs_input_grad[3])
+        outline = torch.from_numpy(found.outline) if ctx.needs_input_grad[3] else None
+        return None, torch.from_numpy(found.contraction), torch.from_numpy(found.parameters), outline
+
+
 class _Angle(torch.autograd.Function):
     @staticmethod
     def forward(ctx, run: DifferentiableRun, contraction, values, outline) -> torch.Tensor:
-        prepared = run.prepared(values.detach(), outline.detach())
-        expected = (len(prepared.plan.coefficients), prepared.muscles)
-        if tuple(contraction.shape) != expected:
-            raise SimulationError(
-                f"the contraction has the shape {tuple(contraction.shape)}; expected {expected}, one row per step: "
-                "give it at balance_times"
-            )
-        ctx.trajectory = follow(prepared, contraction.detach().numpy())
-        return torch.from_numpy(prepared.at_frames(ctx.trajectory.series))
+        ctx.trajectory = _followed(run, contraction, values, outline)
+        return torch.from_numpy(ctx.trajectory.prepared.at_frames(ctx.trajectory.series))
 
     @staticmethod
     def backward(ctx, weights: torch.Tensor):

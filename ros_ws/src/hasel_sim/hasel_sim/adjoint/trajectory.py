@@ -15,12 +15,14 @@ from hasel_sim.prepared_run import PreparedRun
 class Trajectory:
     """The first state, every step in the parts it was followed in, and what the camera sees.
 
-    markers and lines across the body through them: [steps + 1, 3, 2].
+    shapes: nodal positions [m] [steps + 1, nodes, 2]; markers and lines across the body through them:
+    [steps + 1, 3, 2].
     """
 
     prepared: PreparedRun
     start: State
     steps: list[list[Part]]
+    shapes: np.ndarray
     markers: np.ndarray
     lines: np.ndarray
 
@@ -44,5 +46,5 @@ def follow(prepared: PreparedRun, contraction: np.ndarray) -> Trajectory:
         steps.append(stepper.follow(state, drive, c))
         state = steps[-1][-1].after
         positions.append(state.position[..., 0])
-    markers, lines = prepared.rows(np.array(positions))
-    return Trajectory(prepared, start, steps, markers, lines)
+    shapes = np.array(positions)
+    return Trajectory(prepared, start, steps, shapes, *prepared.rows(shapes))

@@ -19,6 +19,14 @@ def effects() -> int:
     return run(options)
 
 
+def optimise() -> int:
+    """`optimise`."""
+    options = parsers.optimise_parser().parse_args()
+    from hasel_sim.commands.optimise import run
+
+    return run(options)
+
+
 def show_mesh() -> int:
     """`show_mesh [MODEL]`."""
     options = parsers.show_mesh_parser().parse_args()

@@ -163,3 +163,78 @@ def free_range(text: str) -> tuple[str, tuple[float, ...]]:
             "body.depth_m=0.03:0.06"
         ) from None
     return name.strip(), tuple(first + (last - first) * n / pieces for n in range(pieces + 1))
+
+
+def optimise_parser() -> argparse.ArgumentParser:
+    """Options of `optimise`."""
+    options = argparse.ArgumentParser(
+        prog="optimise",
+        description="Find the waveform of the two muscles with which a free body swims best, and write it as a file "
+        "that an experiment can play.",
+    )
+    options.add_argument(
+        "--model", default="swimmer_in_oil", metavar="NAME|FILE", help="default: swimmer_in_oil"
+    )
+    options.add_argument("--frequency", type=positive, default=2.0, metavar="HZ", help="default: 2")
+    options.add_argument(
+        "--goal",
+        choices=("speed", "cost"),
+        default="speed",
+        help="the fastest swim, or the least work per distance (default: speed)",
+    )
+    options.add_argument(
+        "--turning",
+        type=float,
+        metavar="DEG_PER_S",
+        help="the rate at which it is to turn to the left: 0 swims straight (default: whatever comes)",
+    )
+    options.add_argument(
+        "--vary",
+        type=lambda text: tuple(text.split(",")),
+        default=("first", "second"),
+        metavar="NAME,…",
+        help="what may change, of first and second (the voltages), duty and phase (default: first,second)",
+    )
+    options.add_argument(
+        "--start",
+        type=voltages,
+        default=((5000.0, 5000.0),),
+        metavar="V[/V]",
+        help="voltages to start from (default: 5000)",
+    )
+    options.add_argument("--duty", type=positive, default=1.0, help="to start from (default: 1)")
+    options.add_argument("--phase", type=positive, default=0.5, help="to start from (default: 0.5)")
+    options.add_argument(
+        "--largest", type=positive, default=5500.0, metavar="V", help="largest voltage (default: 5500)"
+    )
+    options.add_argument(
+        "--set",
+        type=assignment,
+        action="append",
+        default=[],
+        metavar="PARAMETER=VALUE",
+        help="another value of a parameter or of a constant of the model",
+    )
+    options.add_argument(
+        "--duration", type=positive, default=4.0, metavar="S", help="of the swims that are tried (default: 4)"
+    )
+    options.add_argument(
+        "--density",
+        type=positive,
+        default=0.5,
+        metavar="D",
+        help="mesh density while searching (default: 0.5)",
+    )
+    options.add_argument("--most", type=int, default=20, metavar="N", help="iterations at most (default: 20)")
+    options.add_argument(
+        "--play", type=positive, default=20.0, metavar="S", help="length of the waveform file (default: 20)"
+    )
+    options.add_argument(
+        "--output",
+        type=Path,
+        default=Path("best_waveform.csv"),
+        metavar="FILE",
+        help="default: best_waveform.csv",
+    )
+    options.add_argument("--json", type=Path, metavar="FILE", help="write all numbers here")
+    return options
