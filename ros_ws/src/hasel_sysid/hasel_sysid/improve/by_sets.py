@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-import numpy as np
+from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis.adequacy import adequacy
@@ -18,9 +18,12 @@ from hasel_sysid.improve.result import Improvement, Stage
 from hasel_sysid.improve.set_up import opposed_runs
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection import POLICY, Choice, FittedSet, Policy, Searched, choose, search
-from hasel_sysid.selection.sets import NOTHING, EffectSet, name_of
+from hasel_sysid.selection.sets import EffectSet, name_of
 from hasel_sysid.selection.simulated_sets import SimulatedSets
 from hasel_sysid.selection.verdicts import diagnosis
+
+_BRIEF = 12
+"""Evaluations for a fit to an opening."""
 
 Progress = Callable[[str, float], None]
 OnStage = Callable[[Stage], None]
@@ -43,8 +46,7 @@ def improve_by_sets(
     near = in_step(fit.evaluation)
     effects = candidate_effects(fit.model, tuple(only) if only else None)
     begun = () if near or opposed else _from_afar(problem, fit, effects, policy, progress)
-    numerics = np.column_stack(list(changes.values())) if near and changes else None
-    sets = SimulatedSets(problem, fit, effects, numerics)
+    sets = SimulatedSets(problem, fit, effects, list(changes.values()) if near else ())
     found = search(sets, policy, _part(progress, "search", 0.25, 0.95), begun)
     choice = choose(found, policy)
     said = diagnosis(sets, found, choice, changes)
@@ -77,28 +79,37 @@ def _from_afar(
     problem: Problem, fit: FitResult, effects: Sequence, policy: Policy, progress: Progress | None
 ) -> tuple[FittedSet, ...]:
     """Sets of effects that bring the model into step with all frames, found in openings that grow."""
-    chosen: EffectSet = NOTHING
-    model = fit.model
+    base = fit.model
+    rivals: list[Model] = []
     every = openings(problem)
     for number, opening in enumerate(every[:-1]):
         if problem.time_limit.is_over():
             break
-        here = fit_least_squares(opening, model, most_evaluations=12, drafts=False)
-        if in_step(here.evaluation) or len(chosen) >= policy.most_effects:
-            model = here.model
+        here = fit_least_squares(opening, base, most_evaluations=_BRIEF, drafts=False)
+        sets = SimulatedSets(opening, here, effects, decades=True)
+        begun = _fitted(sets, opening, rivals)
+        reached = [here, *(one.fit for one in begun[:1])][-1]
+        if in_step(reached.evaluation) or len(sets.known_as(reached).effects) >= policy.most_effects:
+            rivals = [one.fit.model for one in begun]
             continue
-        base = fit_least_squares(opening, fit.model, most_evaluations=12, drafts=False)
-        sets = SimulatedSets(opening, base, effects, decades=True)
-        begun = (sets.known_as(here),) if chosen else ()
         report = _part(progress, f"opening {number + 1} of {len(every)}", 0.15, 0.25)
         found = search(sets, policy, report, begun)
-        chosen = choose(found, policy).chosen
-        model = found.known[chosen].fit.model
-    if not chosen:
-        return ()
-    whole = SimulatedSets(problem, fit, effects)
-    reached = whole.known_as(fit_least_squares(problem, model, drafts=False))
-    return (reached,)
+        choice = choose(found, policy)
+        wanted = dict.fromkeys([choice.chosen, *choice.alike, *choice.path])
+        rivals = [found.known[one].fit.model for one in wanted if one][: 2 * policy.fits]
+    return _fitted(SimulatedSets(problem, fit, effects), problem, rivals)
+
+
+def _fitted(sets: SimulatedSets, problem: Problem, models: Sequence[Model]) -> tuple[FittedSet, ...]:
+    """Models with effects, fitted to all frames of a problem; those that cannot be simulated there are left out."""
+    found = []
+    for model in models:
+        try:
+            fit = fit_least_squares(problem, model, most_evaluations=_BRIEF, drafts=False)
+        except SimulationError:
+            continue
+        found.append(sets.known_as(fit))
+    return tuple(found)
 
 
 def _why_here(found: Searched, choice: Choice, policy: Policy, first: Stage) -> tuple[str, bool]:
@@ -121,9 +132,10 @@ def _why_here(found: Searched, choice: Choice, policy: Policy, first: Stage) -> 
         return f"What is left after adding {added} looks like no other effect.", True
     if len(choice.chosen) >= policy.most_effects:
         return f"Effect {policy.most_effects} was the last: more effects could imitate anything.", False
+    nearest = f"; nearest was {name_of(found.best)}" if found.best != choice.chosen else ""
     return (
-        f"After adding {added} something is still missing, but no further effect foretells runs that are left out "
-        f"of the fit better; nearest was {name_of(found.best)}.",
+        f"After adding {added} something is still missing, but no further effect both takes away a tenth of the squared "
+        f"error and foretells runs that are left out of the fit better{nearest}.",
         False,
     )
 

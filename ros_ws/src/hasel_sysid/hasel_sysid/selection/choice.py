@@ -7,6 +7,7 @@ import numpy as np
 from hasel_sysid.selection.policy import Policy
 from hasel_sysid.selection.search import Searched, plausible
 from hasel_sysid.selection.sets import NOTHING, EffectSet
+from hasel_sysid.selection.worth import Worth
 
 _RESAMPLED = 2000
 _NO_ODDS = float(np.log(20.0))
@@ -41,7 +42,7 @@ class Choice:
 
 
 def choose(found: Searched, policy: Policy) -> Choice:
-    """The smallest set that is worth as much as the best one, to within its standard error.
+    """The smallest set that is worth as much as the best one, to within its standard error, or leaves hardly more.
 
     No set is chosen where nothing is missing.
     """
@@ -56,9 +57,12 @@ def _smallest(found: Searched, policy: Policy) -> EffectSet:
     return min(enough, key=lambda s: (len(s), -found.worths[s].total))
 
 
-def _worth_as_much(found: Searched, effects: EffectSet, best, policy: Policy) -> bool:
+def _worth_as_much(found: Searched, effects: EffectSet, best: Worth, policy: Policy) -> bool:
     more = best.over(found.worths[effects])
-    return more.total <= policy.standard_errors * more.standard_error
+    if more.total <= policy.standard_errors * more.standard_error:
+        return True
+    before, after = (found.known[s].residual for s in (effects, found.best))
+    return float(after @ after) > (1 - policy.matters) * float(before @ before)
 
 
 def _alike(found: Searched, chosen: EffectSet, other: EffectSet, policy: Policy) -> bool:

@@ -37,13 +37,13 @@ class Likelihood:
         noise: NoiseModel,
         runs: np.ndarray,
         discrepancy: float = 0.0,
-        numerics: np.ndarray | None = None,
+        slack: np.ndarray | None = None,
     ) -> None:
-        """runs [frames]; discrepancy: rms of what no model has, as slow as noise can be; numerics [frames, n]: changes
+        """runs [frames]; discrepancy: rms of what no model has, as slow as noise can be; slack [frames, n]: changes
         that are in the error of every run, each in an unknown amount with a standard deviation of one.
         """
         self.noise, self.runs, self.discrepancy = noise, runs, discrepancy
-        self._numerics = np.zeros((len(runs), 0)) if numerics is None else numerics
+        self._slack = np.zeros((len(runs), 0)) if slack is None else slack
 
     def whiten(self, columns: np.ndarray) -> np.ndarray:
         """Columns [frames] or [frames, n] in units of independent noise of variance one, offsets taken out."""
@@ -56,15 +56,15 @@ class Likelihood:
 
     @cached_property
     def _known(self) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Of every run: its frames, the directions of offset and numerics, whitened, and what is left of each."""
+        """Of every run: its frames, the directions of offset and slack, whitened, and what is left of each."""
         found = []
         for run in np.unique(self.runs):
             here = self.runs == run
             offset = self._innovations(np.ones((int(here.sum()), 1)))
             offset /= np.linalg.norm(offset)
-            numerics = self._innovations(self._numerics[here])
-            numerics = numerics - offset @ (offset.T @ numerics)
-            directions, strength, _ = np.linalg.svd(numerics, full_matrices=False)
+            slack = self._innovations(self._slack[here])
+            slack = slack - offset @ (offset.T @ slack)
+            directions, strength, _ = np.linalg.svd(slack, full_matrices=False)
             left = np.concatenate([[0.0], 1 / np.sqrt(1 + strength**2)])
             found.append((here, np.column_stack([offset, directions]), left))
         return found

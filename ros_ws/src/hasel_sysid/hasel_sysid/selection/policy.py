@@ -17,6 +17,7 @@ class Policy:
     prior_runs: what is known of every parameter before a run is foretold, in runs: little, and not nothing, since an
         amplitude that one run alone shows could not be foretold at all.
     standard_errors: by which a larger set must be worth more than a smaller one (Breiman et al. 1984).
+    matters: share of the squared error that a larger set must take away; what another mesh leaves is less.
     doubt: standard errors of a log-likelihood ratio (Vuong 1989) within which two sets are not told apart, 95 %.
     """
 
@@ -28,6 +29,7 @@ class Policy:
     fits: int = 3
     prior_runs: float = 0.1
     standard_errors: float = 1.0
+    matters: float = 0.1
     doubt: float = 2.0
 
 

@@ -83,7 +83,7 @@ class _Search:
         """Judge by what the best fits so far tell of the noise."""
         noise = self.sets.noise(list(self.known.values()))
         discrepancy = self.policy.discrepancy * self.sets.swing
-        self.likelihood = Likelihood(noise, self.sets.runs, discrepancy, self.sets.numerics)
+        self.likelihood = Likelihood(noise, self.sets.runs, discrepancy, self.sets.slack)
         self.whitened = {effects: self.likelihood.whitened(f) for effects, f in self.known.items()}
 
     def say(self, text: str, done: float) -> None:
@@ -93,7 +93,8 @@ class _Search:
     def judged(self) -> Searched:
         """All known sets by the noise as it is known now."""
         self.use_noise()
-        worths = {s: worth(w, self.policy.prior_runs) for s, w in self.whitened.items()}
+        dispersion = self.dispersion
+        worths = {s: worth(w, self.policy.prior_runs, dispersion) for s, w in self.whitened.items()}
         best = max(plausible(self.known), key=lambda s: worths[s].total)
         first = self.tested(NOTHING)
         last = self.tested(best) if best else first
@@ -126,7 +127,16 @@ class _Search:
 
     def value(self, effects: EffectSet) -> float:
         """Of a known set: likelier by what noise alone may gain, for every effect more."""
-        return self.whitened[effects].logarithm - self.threshold * len(effects)
+        return self.whitened[effects].logarithm - self.threshold * self.dispersion * len(effects)
+
+    @property
+    def dispersion(self) -> float:
+        """What the likeliest set leaves over what its noise explains, at least one (Wedderburn 1974).
+
+        As long as no set describes the runs, differences between sets are worth as much less.
+        """
+        best = max((self.whitened[s] for s in plausible(self.known)), key=lambda w: w.logarithm)
+        return max(1.0, -2 * best.logarithm / max(len(best.residual) - best.basis.shape[1], 1))
 
     def look_beyond(self, effects: EffectSet, wanted: list[str] | None) -> None:
         """Learn what one more effect could do to a set."""
@@ -171,7 +181,7 @@ class _Search:
     def rivals(self, found: Searched) -> list["_Proposal"]:
         """Sets of the best one's size that come so near to it that they may not be told apart."""
         # at d standard errors the error itself is at most 2 d, and the ratio 2 d^2: half its square is what it costs
-        reach = found.whitened[found.best].logarithm - 2 * self.policy.doubt**2
+        reach = found.whitened[found.best].logarithm - 2 * self.policy.doubt**2 * self.dispersion
         smaller = [rest for gone in found.best if (rest := found.best - {gone}) in self.known]
         near = [p for p in self.additions(smaller) if p.promised > reach]
         return sorted(near, key=lambda p: -p.promised)
@@ -179,7 +189,8 @@ class _Search:
     def better(self, proposals: Iterable["_Proposal"]) -> list["_Proposal"]:
         """Those that promise more than the best known set, most promising first."""
         best = max(map(self.value, plausible(self.known)))
-        valued = [(p.promised - self.threshold * len(p.effects), p) for p in proposals]
+        cost = self.threshold * self.dispersion
+        valued = [(p.promised - cost * len(p.effects), p) for p in proposals]
         return [p for value, p in sorted(valued, key=lambda pair: -pair[0]) if value > best]
 
     def _proposal(
@@ -203,12 +214,30 @@ class _Search:
                 continue
             self.tried.add(proposal.effects)
             self.say(f"fitting {name_of(proposal.effects)}", min(0.9, 0.1 * len(self.tried)))
-            fitted = self.sets.fit(proposal.effects, proposal.of, proposal.added)
+            self._keep(self.sets.fit(proposal.effects, proposal.of, proposal.added))
+            self._keep(self._again(proposal.effects))
             count += 1
-            if fitted is not None:
-                self.known[proposal.effects] = fitted
-                self.whitened[proposal.effects] = self.likelihood.whitened(fitted)
         return count
+
+    def _again(self, effects: EffectSet) -> FittedSet | None:
+        """From its likeliest smaller set, where it ended less likely than that one: then it was lost on its way."""
+        below = [smaller for gone in effects if (smaller := effects - {gone}) in self.known]
+        if not below:
+            return None
+        best = max(below, key=lambda smaller: self.whitened[smaller].logarithm)
+        if effects in self.known and self.whitened[effects].logarithm >= self.whitened[best].logarithm:
+            return None
+        (new,) = effects - best
+        prospect = {**self.prospects[NOTHING], **self.prospects.get(best, {})}.get(new)
+        return None if prospect is None else self.sets.fit(effects, self.known[best], (prospect,))
+
+    def _keep(self, fitted: FittedSet | None) -> None:
+        """Of two fits of a set the likelier one."""
+        if fitted is None:
+            return
+        whitened, known = self.likelihood.whitened(fitted), self.whitened.get(fitted.effects)
+        if known is None or whitened.logarithm > known.logarithm:
+            self.known[fitted.effects], self.whitened[fitted.effects] = fitted, whitened
 
 
 @dataclass(frozen=True)

@@ -42,7 +42,8 @@ class Prospect:
 
     residual [frames]: with the effect at some size; jacobian [frames, parameters]: there, the set's own parameters and
     then the effect's, of which there are `own`; lower, upper [parameters]: by how much they may change; looks
-    [frames, n]: what the effect can look like, its size and sign left open; start: what the problem knows the place by.
+    [frames, n]: what the effect can look like, its size and sign left open; beside: the effects of the set; start: what
+    the problem knows the place by.
     """
 
     effect: str
@@ -52,6 +53,7 @@ class Prospect:
     lower: np.ndarray
     upper: np.ndarray
     looks: np.ndarray
+    beside: EffectSet
     start: Any = None
 
 
@@ -68,6 +70,7 @@ def together(of: FittedSet, added: Sequence[Prospect], dropped: Collection[str])
         np.concatenate([of.lower[stays], *(p.lower[-p.own :] for p in added)]),
         np.concatenate([of.upper[stays], *(p.upper[-p.own :] for p in added)]),
         np.zeros((len(residual), 0)),
+        of.effects,
     )
 
 
@@ -76,8 +79,8 @@ class Sets(Protocol):
 
     runs: np.ndarray
     """Number of the run of every frame, [frames]."""
-    numerics: np.ndarray
-    """What finer numerics change, [frames, n]: errors that every set is known to make, each run in its own amount."""
+    slack: np.ndarray
+    """Errors that every set is known to make, [frames, n], such as those of the mesh; each run in its own amount."""
     swing: float
     """The largest that was measured, from the mean of its run; what no model has is in proportion to it."""
 

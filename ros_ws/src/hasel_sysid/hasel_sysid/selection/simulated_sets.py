@@ -41,16 +41,16 @@ class SimulatedSets:
         problem: Problem,
         fit: FitResult,
         effects: Sequence[Effect],
-        numerics: np.ndarray | None = None,
+        slack: Sequence[np.ndarray] = (),
         decades: bool = False,
     ) -> None:
-        """numerics [frames, n]: what finer numerics change; decades: look at every effect at sizes over the decades of
+        """slack: errors [frames] that every set makes; decades: look at every effect at sizes over the decades of
         its range, where the model may be far off.
         """
         self.problem, self.fitted, self.decades = problem, fit, decades
         self.effects = {effect.id: effect for effect in effects}
         self.runs = fit.evaluation.runs
-        self.numerics = np.zeros((len(self.runs), 0)) if numerics is None else numerics
+        self.slack = np.column_stack([np.zeros((len(self.runs), 0)), *slack])
         self.swing = problem.largest_swing
         self.tried: set[str] = set()
         self.first: list[Trial] = []
@@ -127,12 +127,12 @@ class SimulatedSets:
         else:
             first, rounds = trials.first(self._sized(of, names)), (most // 2, most // 4)
         looks = {t.start.effect.id: _looks(t, trials) for t in reversed(first)}
-        best = _best_of_each([_prospect(t, looks) for t in first], rank)
+        best = _best_of_each([_prospect(t, looks, of.effects) for t in first], rank)
         for keep in rounds:
             if not keep or self.out_of_time():
                 break
             going_on = best[:keep]
-            moved = [_prospect(t, looks) for t in trials.further([p.start for p in going_on])]
+            moved = [_prospect(t, looks, of.effects) for t in trials.further([p.start for p in going_on])]
             best = _best_of_each([*moved, *best[keep:]], rank)
         return {prospect.effect: prospect for prospect in best}
 
@@ -190,9 +190,12 @@ class SimulatedSets:
         values = dict(base.model.values)
         for prospect in added:
             trial: Trial = prospect.start
+            beside = near.effects == prospect.beside
             for name, value in trial.step.items():
-                change = value - base.model.values[name] if name in base.model.values else 0.0
-                values[name] = values[name] + change if name in values else value
+                if name not in values:
+                    values[name] = value
+                elif beside:
+                    values[name] += value - base.model.values[name]
         try:
             model = self._model(base.model, effects, near.effects).with_values({})
             values = {name: _inside(model, name, values[name]) for name in model.free if name in values}
@@ -250,7 +253,7 @@ def _looks(trial: Trial, trials: Trials) -> np.ndarray:
     return np.column_stack([trials.fitted.residual - trial.residual, trial.jacobian[:, own]])
 
 
-def _prospect(trial: Trial, looks: dict[str, np.ndarray]) -> Prospect:
+def _prospect(trial: Trial, looks: dict[str, np.ndarray], beside: EffectSet) -> Prospect:
     effect = trial.start.effect.id
     own = [name in trial.start.values for name in trial.names]
     order = np.argsort(own, kind="stable")
@@ -263,5 +266,6 @@ def _prospect(trial: Trial, looks: dict[str, np.ndarray]) -> Prospect:
         lower[order],
         upper[order],
         looks[effect],
+        beside,
         trial,
     )

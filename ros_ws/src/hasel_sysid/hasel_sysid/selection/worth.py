@@ -50,26 +50,30 @@ class Gain:
         return max(self.scatter, self.by_noise)
 
 
-def worth(fitted: Whitened, prior_runs: float) -> Worth:
+def worth(fitted: Whitened, prior_runs: float, dispersion: float = 1.0) -> Worth:
     """The leave-one-run-out log predictive density, linearised at the fit to all runs.
 
-    prior_runs: what is known of the parameters beforehand, as the information of so many average runs.
+    prior_runs: what is known of the parameters beforehand, as the information of so many average runs; dispersion: of
+    the errors of the best set, over their noise's.
     """
     folds = fitted.runs
     alone = len(np.unique(folds)) == 1
     if alone:
         folds = _PARTS * np.arange(len(folds)) // len(folds)
     numbers = np.unique(folds)
-    densities = [_density(fitted, folds == fold, prior_runs / len(numbers)) for fold in numbers]
-    return Worth(np.array(densities), fitted.residual, not alone)
+    residual = fitted.residual / np.sqrt(dispersion)
+    densities = [
+        _density(fitted.basis, residual, folds == fold, prior_runs / len(numbers)) for fold in numbers
+    ]
+    return Worth(np.array(densities), residual, not alone)
 
 
-def _density(fitted: Whitened, here: np.ndarray, prior: float) -> float:
-    own, residual = fitted.basis[here], fitted.residual
+def _density(basis: np.ndarray, residual: np.ndarray, here: np.ndarray, prior: float) -> float:
+    own = basis[here]
     size = own.shape[1]
     information = (1 + prior) * np.eye(size) - own.T @ own
     spread = own @ np.linalg.inv(information)
-    error = residual[here] - spread @ (fitted.basis[~here].T @ residual[~here])
+    error = residual[here] - spread @ (basis[~here].T @ residual[~here])
     # the covariance I + own information^-1 own', by its small side
     inner = np.eye(size) - own.T @ own / (1 + prior)
     _, logarithm = np.linalg.slogdet(inner)

@@ -49,7 +49,7 @@ class LinearSets:
         exclusive: sets of effects that do not go together; most_fits: after which the time is over.
         """
         self.runs = run_numbers() if runs is None else runs
-        self.numerics, self.swing = np.zeros((len(self.runs), 0)), 0.0
+        self.slack, self.swing = np.zeros((len(self.runs), 0)), 0.0
         self.series, self._noise, self._exclusive = dict(series), noise, tuple(exclusive)
         generator = np.random.default_rng([seed, 17])
         self._own = np.column_stack([smooth_series(generator, self.runs) for _ in range(2)])
@@ -90,7 +90,7 @@ class LinearSets:
         own = self._centred(self.series[name][:, None])
         jacobian = np.column_stack([of.jacobian, own])
         free = np.full(jacobian.shape[1], np.inf)
-        return Prospect(name, of.residual, jacobian, 1, -free, free, own)
+        return Prospect(name, of.residual, jacobian, 1, -free, free, own, of.effects)
 
     def _fitted(self, effects: EffectSet) -> FittedSet:
         names = sorted(effects)

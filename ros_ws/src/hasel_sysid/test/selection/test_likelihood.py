@@ -12,12 +12,12 @@ NOISE = NoiseModel(0.5, 2.0, 0.8)
 DISCREPANCY = 0.7
 
 
-def covariance(count, numerics=None):
+def covariance(count, slack=None):
     """Of the frames of one run."""
     lag = np.arange(count)
     first = NOISE.coloured * NOISE.correlation**lag + DISCREPANCY**2 * LONGEST_CORRELATION**lag
     first[0] += NOISE.white
-    return toeplitz(first) + (0.0 if numerics is None else numerics @ numerics.T)
+    return toeplitz(first) + (0.0 if slack is None else slack @ slack.T)
 
 
 @pytest.fixture
@@ -29,15 +29,15 @@ def generator():
 @pytest.mark.parametrize("finer", [0, 2])
 def test_differences_of_the_logarithm_are_those_of_the_density(generator, finer):
     """Of two series without their run's mean, where an offset of any size is as likely as any other."""
-    numerics = generator.standard_normal((len(RUNS), finer))
-    likelihood = Likelihood(NOISE, RUNS, DISCREPANCY, numerics)
+    slack = generator.standard_normal((len(RUNS), finer))
+    likelihood = Likelihood(NOISE, RUNS, DISCREPANCY, slack)
     series = generator.standard_normal((len(RUNS), 2))
     ours = -0.5 * (likelihood.whiten(series) ** 2).sum(axis=0)
     theirs = np.zeros(2)
     for run in (0, 1):
         here = run == RUNS
         # a proper prior so wide that it is none
-        full = covariance(here.sum(), numerics[here]) + 1e6
+        full = covariance(here.sum(), slack[here]) + 1e6
         theirs += [multivariate_normal(cov=full).logpdf(series[here, n]) for n in (0, 1)]
     assert ours[0] - ours[1] == pytest.approx(theirs[0] - theirs[1], rel=1e-4)
 
