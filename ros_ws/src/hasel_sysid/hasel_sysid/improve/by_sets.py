@@ -134,7 +134,7 @@ def _why_here(found: Searched, choice: Choice, policy: Policy, first: Stage) -> 
         return f"Effect {policy.most_effects} was the last: more effects could imitate anything.", False
     nearest = f"; nearest was {name_of(found.best)}" if found.best != choice.chosen else ""
     return (
-        f"After adding {added} something is still missing, but no further effect both takes away a tenth of the squared "
+        f"After adding {added} something is still missing, but no further effect takes away a tenth of the squared "
         f"error and foretells runs that are left out of the fit better{nearest}.",
         False,
     )

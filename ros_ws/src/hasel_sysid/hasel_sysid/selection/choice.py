@@ -61,8 +61,7 @@ def _worth_as_much(found: Searched, effects: EffectSet, best: Worth, policy: Pol
     more = best.over(found.worths[effects])
     if more.total <= policy.standard_errors * more.standard_error:
         return True
-    before, after = (found.known[s].residual for s in (effects, found.best))
-    return float(after @ after) > (1 - policy.matters) * float(before @ before)
+    return found.known[found.best].squares > (1 - policy.matters) * found.known[effects].squares
 
 
 def _alike(found: Searched, chosen: EffectSet, other: EffectSet, policy: Policy) -> bool:

@@ -220,24 +220,25 @@ class _Search:
         return count
 
     def _again(self, effects: EffectSet) -> FittedSet | None:
-        """From its likeliest smaller set, where it ended less likely than that one: then it was lost on its way."""
+        """From its best smaller set, where it ended with larger squares than that one: then it was lost on its way."""
         below = [smaller for gone in effects if (smaller := effects - {gone}) in self.known]
         if not below:
             return None
-        best = max(below, key=lambda smaller: self.whitened[smaller].logarithm)
-        if effects in self.known and self.whitened[effects].logarithm >= self.whitened[best].logarithm:
+        best = min(below, key=lambda smaller: self.known[smaller].squares)
+        if effects in self.known and self.known[effects].squares <= self.known[best].squares:
             return None
         (new,) = effects - best
         prospect = {**self.prospects[NOTHING], **self.prospects.get(best, {})}.get(new)
         return None if prospect is None else self.sets.fit(effects, self.known[best], (prospect,))
 
     def _keep(self, fitted: FittedSet | None) -> None:
-        """Of two fits of a set the likelier one."""
+        """Of two fits of a set the better one."""
         if fitted is None:
             return
-        whitened, known = self.likelihood.whitened(fitted), self.whitened.get(fitted.effects)
-        if known is None or whitened.logarithm > known.logarithm:
-            self.known[fitted.effects], self.whitened[fitted.effects] = fitted, whitened
+        known = self.known.get(fitted.effects)
+        if known is None or fitted.squares < known.squares:
+            self.known[fitted.effects] = fitted
+            self.whitened[fitted.effects] = self.likelihood.whitened(fitted)
 
 
 @dataclass(frozen=True)

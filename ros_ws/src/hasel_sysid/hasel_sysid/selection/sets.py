@@ -32,6 +32,11 @@ class FittedSet:
     plausible: bool = True
     fit: Any = None
 
+    @property
+    def squares(self) -> float:
+        """Sum of the squared residuals, which a fit makes least."""
+        return float(self.residual @ self.residual)
+
     def __str__(self) -> str:
         return name_of(self.effects)
 

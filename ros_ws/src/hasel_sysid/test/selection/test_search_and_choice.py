@@ -1,5 +1,7 @@
 """Which set of effects is chosen, on linear problems with a known truth and no simulator."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hasel_sysid.noise import NoiseModel
@@ -132,3 +134,48 @@ def test_a_search_out_of_time_still_answers():
     _, _, found = chosen(sets)
     assert sets.fits == 1
     assert len(found.known) == 2
+
+
+def test_a_trifle_is_seen_and_not_added():
+    """It takes away a twentieth of the squared error: surely there, and less than what another mesh leaves."""
+    seen = 0
+    for seed in range(4):
+        name, _, found = chosen(LinearSets(made_up(seed), {"a": 0.006}, WHITE, seed))
+        assert name == ""
+        seen += found.first.chance < POLICY.level
+    assert seen >= 2
+
+
+class LostOnTheWay(LinearSets):
+    """A fit of two effects from the baseline ends where the baseline is."""
+
+    def fit(self, effects, near, added):
+        """As of sets, but for that."""
+        fitted = super().fit(effects, near, added)
+        if len(effects) > 1 and not near.effects:
+            return replace(fitted, residual=self.baseline().residual)
+        return fitted
+
+
+def test_a_fit_that_was_lost_begins_again_from_the_smaller_set():
+    """A set cannot fit worse than a part of it."""
+    series = made_up(8)
+    series["c"] = series["a"] - series["b"] + 0.3 * series["c"]
+    sets = LostOnTheWay(series, {"a": 0.05, "b": 0.05}, WHITE, 8)
+    name, _, found = chosen(sets)
+    assert name == "ab"
+    squares = {effects: fitted.squares for effects, fitted in found.known.items()}
+    for effects in squares:
+        below = [squares[part] for gone in effects if (part := effects - {gone}) in squares]
+        assert squares[effects] <= 1.0001 * min(below, default=np.inf)
+
+
+def test_while_no_set_describes_the_runs_the_differences_count_for_less():
+    """Two that imitate a stranger much alike are not told apart, though their likelihoods are far from equal."""
+    stranger = 0.3 * smooth_series(np.random.default_rng(99), run_numbers())
+    series = {name: one + 2.0 * stranger for name, one in made_up(9, "ab").items()}
+    series["b"] = series["a"] + 0.15 * series["b"]
+    _, choice, found = chosen(LinearSets(series, {}, WHITE, 9, stranger=stranger))
+    one, other = (found.whitened[frozenset(name)].logarithm for name in "ab")
+    assert abs(one - other) > np.log(20.0)
+    assert len(choice.alike) > 1 or len(choice.chosen) > 1
