@@ -7,7 +7,7 @@ from rich.console import Console
 
 from hasel_sysid.command_line.running import MISLEADING
 from hasel_sysid.compare import Comparison
-from hasel_sysid.compare.table import condition_table, run_table
+from hasel_sysid.compare.table import condition_table, run_table, speed_table
 from hasel_sysid.data_gate import Finding, Severity, check_recording
 from hasel_sysid.dataset import Experiment
 
@@ -24,6 +24,9 @@ def show(comparisons: Sequence[Comparison], said: Sequence[Finding] = ()) -> Non
     tell(comparisons[0].set_up, said)
     console = Console(soft_wrap=True)
     console.print(run_table(comparisons))
+    speeds = speed_table(comparisons)
+    if speeds is not None:
+        console.print(speeds)
     if any(run.series.level > 0 for run in comparisons[0].runs):
         console.print(condition_table(comparisons))
     for comparison in comparisons:

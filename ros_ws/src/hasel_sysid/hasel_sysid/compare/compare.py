@@ -9,6 +9,7 @@ from hasel_sim.run import Simulation
 
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.compare.run_comparison import RunComparison
+from hasel_sysid.compare.swimming_speed import swimming_speed
 from hasel_sysid.data_gate import check_against_model, check_recording
 from hasel_sysid.dataset import Experiment, prepared
 from hasel_sysid.errors import SysidError
@@ -59,8 +60,14 @@ def comparison_of(
     series = [series_of(e, s) for e, s in zip(every, simulations, strict=True)]
     where = where_it_fails(series)
     seen = len(experiments)
+    free = swims_freely(model)
+    speeds = [
+        swimming_speed(e.recording, simulation, s.cycle.period if s.cycle else None, free)
+        for e, simulation, s in zip(every, simulations, series, strict=True)
+    ]
     runs = tuple(
-        RunComparison(s, n >= seen, a) for n, (s, a) in enumerate(zip(series, where.runs, strict=True))
+        RunComparison(s, n >= seen, a, speed)
+        for n, (s, a, speed) in enumerate(zip(series, where.runs, speeds, strict=True))
     )
     set_up = []
     for experiment, simulation in zip(every, simulations, strict=True):
@@ -68,6 +75,13 @@ def comparison_of(
         set_up += check_recording(recording)
         set_up += check_against_model(recording, simulation.sin_theta, simulation.markers)
     return Comparison(label or model.name, model, runs, where, tuple(set_up))
+
+
+def swims_freely(model: Model) -> bool:
+    """Whether the body is in a fluid and nothing holds it or its head marker, so that its way can be compared too."""
+    described = model.description
+    held = described.body.clamped or described.markers["head"].fixed
+    return described.medium is not None and not held
 
 
 def series_of(experiment: Experiment, simulation: Simulation) -> RunSeries:

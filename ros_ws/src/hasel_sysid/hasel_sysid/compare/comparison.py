@@ -40,6 +40,12 @@ class Comparison:
         return _error([run for run in self.runs if run.unseen])
 
     @property
+    def mean_speed_error(self) -> float | None:
+        """Mean |Δ speed| [m/s] over all runs of a body that swims; None without such runs."""
+        errors = [abs(run.speed.error) for run in self.runs if run.speed is not None]
+        return float(np.mean(errors)) if errors else None
+
+    @property
     def by_level(self) -> tuple[ConditionError, ...]:
         """Error for every level of the drive."""
         return error_by_level([run.series for run in self.runs])
@@ -57,6 +63,7 @@ class Comparison:
             "mae_fit": self.mean_absolute_error,
             "mae_validation": self.mean_absolute_error_unseen,
             "runs": [run.to_json() for run in self.runs],
+            "mean_speed_error_m_per_s": self.mean_speed_error,
             "by_level": [_row(row, "level") for row in self.by_level],
             "by_frequency": [_row(row, "frequency") for row in self.by_frequency],
             "where_it_fails": self.where.sentences(),

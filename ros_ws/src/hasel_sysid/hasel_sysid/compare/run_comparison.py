@@ -4,17 +4,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hasel_sysid.compare.swimming_speed import SwimmingSpeed
 from hasel_sysid.where_it_fails.in_one_run import RunAnalysis
 from hasel_sysid.where_it_fails.run_series import RunSeries
 
 
 @dataclass(frozen=True)
 class RunComparison:
-    """series: what was compared, frame by frame; unseen: not used for fitting; analysis: where it fails."""
+    """series: what was compared, frame by frame; unseen: not used for fitting; analysis: where it fails.
+
+    speed: of a body that swims and whose markers were recorded, else None.
+    """
 
     series: RunSeries
     unseen: bool
     analysis: RunAnalysis
+    speed: SwimmingSpeed | None = None
 
     @property
     def name(self) -> str:
@@ -55,6 +60,16 @@ class RunComparison:
             "fit_percent": self.fit_percent,
             "noise": self.analysis.noise,
             "failures": [failure.to_json() for failure in self.analysis.failures],
+            **self._speeds(),
+        }
+
+    def _speeds(self) -> dict[str, float]:
+        if self.speed is None:
+            return {}
+        return {
+            "speed_m_per_s": self.speed.measured,
+            "simulated_speed_m_per_s": self.speed.simulated,
+            "speed_error_m_per_s": self.speed.error,
         }
 
     def __str__(self) -> str:

@@ -40,6 +40,26 @@ def run_table(comparisons: Sequence[Comparison]) -> Table:
     return table
 
 
+def speed_table(comparisons: Sequence[Comparison]) -> Table | None:
+    """Swimming speeds of every run, measured and of each model; None where nothing swims."""
+    if all(comparison.mean_speed_error is None for comparison in comparisons):
+        return None
+    table = Table(title="swimming speed of the head marker, mm/s", title_justify="left")
+    table.add_column("run")
+    table.add_column("measured", justify="right")
+    for comparison in comparisons:
+        table.add_column("simulated" if len(comparisons) == 1 else comparison.label, justify="right")
+    for index, run in enumerate(comparisons[0].runs):
+        if run.speed is not None:
+            found = [comparison.runs[index].speed for comparison in comparisons]
+            cells = ["-" if speed is None else f"{1e3 * speed.simulated:.2f}" for speed in found]
+            table.add_row(run.name, f"{1e3 * run.speed.measured:.2f}", *cells)
+    table.add_section()
+    errors = [comparison.mean_speed_error for comparison in comparisons]
+    table.add_row("mean |Δ speed|", "", *("-" if e is None else f"{1e3 * e:.2f}" for e in errors))
+    return table
+
+
 def condition_table(comparisons: Sequence[Comparison]) -> Table:
     """Errors by level of the drive and by frequency, one column per model."""
     table = Table(title="by drive and frequency", title_justify="left")

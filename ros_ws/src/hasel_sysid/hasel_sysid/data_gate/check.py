@@ -6,6 +6,7 @@ from hasel_recording import Recording
 
 from hasel_sysid.data_gate.angle import check_angle
 from hasel_sysid.data_gate.command import check_command
+from hasel_sysid.data_gate.drive_frequency import check_drive_frequency
 from hasel_sysid.data_gate.finding import Finding, Severity
 from hasel_sysid.data_gate.frames import check_frames
 from hasel_sysid.data_gate.header import check_header
@@ -22,7 +23,7 @@ def check_recording(recording: Recording) -> list[Finding]:
     if not _STOP & {finding.fault for finding in found}:
         found += [*check_angle(recording), *check_command(recording), *check_markers(recording)]
         if not _NO_RESPONSE & {finding.fault for finding in found}:
-            found += check_response(recording)
+            found += [*check_response(recording), *check_drive_frequency(recording)]
     return ordered(recording.name, found)
 
 

@@ -1,0 +1,62 @@
+"""A drive whose frequency is not that of the response."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hasel_sysid.data_gate import check_recording
+from hasel_sysid.data_gate.drive_frequency import check_drive_frequency, explained
+
+
+def _slower(recording, ratio: float):
+    """The response of a run at a share of the drive's frequency."""
+    time = recording.time_s
+    return replace(recording, sin_theta=np.interp(ratio * time, time, recording.sin_theta))
+
+
+@pytest.fixture
+def long_run(made_recording, angle):
+    """Sixteen periods of 2 Hz."""
+    short = made_recording()
+    time = np.arange(0.0, 8.0, 1 / 120)
+    noise = 0.002 * np.random.default_rng(1).standard_normal(len(time))
+    drive = np.zeros((len(time), 2))
+    drive[np.mod(time, 0.5) < 0.25, 0] = 4500.0
+    drive[np.mod(time, 0.5) >= 0.25, 1] = 4500.0
+    return replace(short, time_s=time, sin_theta=angle(time, 2.0) + noise, drive_signal=drive)
+
+
+@pytest.mark.parametrize("ratio", [0.75, 0.6, 0.9])
+def test_a_response_at_another_frequency_is_an_error_with_its_ratio(long_run, ratio):
+    """Such as a tail that beats at three quarters of the motor's named frequency."""
+    (found,) = check_drive_frequency(_slower(long_run, ratio))
+    assert found.fault == "frequency of the drive" and found.severity.value == "error"
+    assert found.number == pytest.approx(ratio, abs=0.02)
+    assert "of the 2 Hz of the drive" in found.sentence
+    assert found.fault in {f.fault for f in check_recording(_slower(long_run, ratio))}
+
+
+def test_a_response_with_the_drives_period_is_left_in_peace(long_run):
+    """Also where its double dominates, where it is mostly noise, or too short to tell."""
+    assert check_drive_frequency(long_run) == []
+    time = long_run.time_s
+    doubled = 0.02 * np.sin(4 * np.pi * time) + 0.1 * np.sin(8 * np.pi * time)
+    noise = 0.1 * np.random.default_rng(2).standard_normal(len(time))
+    for series in (doubled, noise):
+        assert check_drive_frequency(replace(long_run, sin_theta=series)) == []
+    short = 150
+    few = replace(
+        _slower(long_run, 0.75),
+        time_s=time[:short],
+        sin_theta=_slower(long_run, 0.75).sin_theta[:short],
+        drive_signal=long_run.drive_signal[:short],
+    )
+    assert check_drive_frequency(few) == []
+
+
+def test_explained_variance():
+    """All of a square wave's first harmonics at its frequency, little beside it."""
+    time = np.arange(0.0, 6.0, 1 / 100)
+    wave = np.sin(2 * np.pi * 1.5 * time) + 0.3 * np.cos(6 * np.pi * 1.5 * time)
+    assert explained(time, wave, 1.5) == pytest.approx(1.0)
+    assert explained(time, wave, 2.0) < 0.2
