@@ -22,6 +22,7 @@ MAY_IMPORT = {
 }
 ROSDEP_KEYS = {
     "cv2": "python3-opencv",
+    "h5py": "python3-h5py",
     "hypothesis": "python3-hypothesis",
     "jinja2": "python3-jinja2",
     "matplotlib": "python3-matplotlib",
