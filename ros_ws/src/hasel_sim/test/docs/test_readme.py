@@ -49,6 +49,14 @@ def test_the_adjoint_program_continues_the_first(programs, tmp_path):
     assert "tensor([" in output
 
 
+def test_the_program_of_the_muscle_prints_strokes_and_forces(programs, tmp_path):
+    """By itself: nothing without voltage, and more at more of it."""
+    lifted, held = re.findall(r"\[(.*?)\]", _run(programs[4], tmp_path))
+    for numbers in (lifted, held):
+        none, some, more = map(float, numbers.split())
+        assert none == 0 < some < more
+
+
 def test_files_that_the_text_links_to_exist():
     """Pictures, pages and examples."""
     links = re.findall(r"\]\(([^)#]+)\)", README.read_text(encoding="utf-8"))

@@ -46,7 +46,7 @@ def refusal(tmp_path):
 
 def test_the_models_that_come_with_the_package_can_be_read():
     """By their names."""
-    assert model_names() == ["arm", "beam", "swimmer", "swimmer_in_oil"]
+    assert model_names() == ["arm", "beam", "swimmer", "swimmer_by_law", "swimmer_in_oil"]
     for name in model_names():
         assert load_model(name).name == name
 

@@ -25,11 +25,11 @@ def stroke_table(
     problem: BenchProblem, muscles: Sequence[tuple[str, Muscle]], unseen: BenchProblem | None
 ) -> Table:
     """Measured and simulated answer by voltage and load; unseen voltages are marked."""
-    table = Table(title="settled lifts, mean of all at one voltage and load", title_justify="left")
+    table = Table(title="settled lifts, mean of all at one voltage and load; *: unseen", title_justify="left")
     for name in ("voltage", "held", "lifts", "measured", *(name for name, _ in muscles)):
         table.add_column(name, justify="right", no_wrap=True)
     fitted = [(row, "") for row in _rows(problem, [muscle for _, muscle in muscles])]
-    apart = [(row, " (unseen)") for row in _rows(unseen, [muscle for _, muscle in muscles])] if unseen else []
+    apart = [(row, " *") for row in _rows(unseen, [muscle for _, muscle in muscles])] if unseen else []
     for row, mark in sorted([*fitted, *apart]):
         table.add_row(f"{row[0]:g} V{mark}", *row[1:])
     return table

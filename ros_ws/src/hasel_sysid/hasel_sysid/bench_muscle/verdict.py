@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from enum import Enum
 
+from hasel_sim.muscle.effect import MuscleEffect
+
 from hasel_sysid.bench_muscle.fit import BenchFit
 from hasel_sysid.bench_muscle.left_out import Advantage
 
@@ -29,24 +31,24 @@ class Trial:
 
     @property
     def beyond(self) -> bool:
-        """Whether a number of its own would leave its plausible range, other than for nothing."""
-        muscle = self.fit.muscle
-        return any(
-            name.startswith(f"{self.effect}.")
-            and muscle.values[name] - muscle.parameters[name].lower > 0.5 * _range(muscle.parameters[name])
-            for name in self.fit.at_bound
-        )
+        """Whether a number of its own would leave its plausible range; a size may be nothing, a time may not."""
+        for p in self._kind.parameters:
+            fitted = self.fit.muscle.parameters[f"{self.effect}.{p.name}"]
+            nothing = not p.scan and fitted.value < 0.5 * (fitted.lower + fitted.upper)
+            if fitted.name in self.fit.at_bound and not nothing:
+                return True
+        return False
 
     @property
     def certain(self) -> bool:
         """Whether a size that is nothing at its null differs from it by two standard errors."""
-        kind = next(effect for effect in self.fit.muscle.effects if effect.id == self.effect)
-        sizes = [self.fit.muscle.parameters[f"{self.effect}.{p.name}"] for p in kind.parameters if not p.scan]
+        named = [f"{self.effect}.{p.name}" for p in self._kind.parameters if not p.scan]
+        sizes = [self.fit.muscle.parameters[name] for name in named]
         return all(size.standard_error is not None and size.value > 2 * size.standard_error for size in sizes)
 
-
-def _range(parameter) -> float:
-    return parameter.upper - parameter.lower
+    @property
+    def _kind(self) -> MuscleEffect:
+        return next(effect for effect in self.fit.muscle.effects if effect.id == self.effect)
 
 
 @dataclass(frozen=True)

@@ -93,6 +93,15 @@ def test_a_stranger_leaves_the_others_unjudged(bench, tmp_path):
     assert Verdict.ABSENT not in {finding.verdict for finding in found.findings}
 
 
+def test_a_time_beyond_its_range_is_not_added(bench, problem_of):
+    """Charge that is retained at once only weakens the voltage: that is no retention, however well it fits."""
+    problem = problem_of(bench.hiding(trapped_oil__gap=3e-5))
+    found = improve_muscle(problem, load_muscle("peano_hasel"), candidates=["charge_retention"])
+    assert found.missing == []
+    (finding,) = found.findings
+    assert finding.verdict in (Verdict.BEYOND, Verdict.NOT_JUDGED)
+
+
 def test_too_few_voltages_are_refused(bench, problem_of):
     """Four voltages cannot tell an effect from chance."""
     bench.voltages = (2000.0, 3000.0, 4000.0, 5000.0)

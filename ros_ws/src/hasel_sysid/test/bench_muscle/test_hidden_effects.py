@@ -1,0 +1,62 @@
+"""How often the right effect of a muscle is named: every one hidden in turn, and nothing hidden many times."""
+
+import numpy as np
+import pytest
+from hasel_sim.muscle.catalogue import muscle_catalogue
+from hasel_sim.muscle.muscle_file import load_muscle
+from hasel_sysid.bench_muscle.improve import improve_muscle
+from hasel_sysid.bench_muscle.problem import bench_problem
+from hasel_sysid.bench_muscle.reading import read_bench
+from hasel_sysid.bench_muscle.settled import settled
+from hasel_sysid.bench_muscle.verdict import Verdict
+
+UNSEEN = ("edge_effect", "series_compliance", "trapped_oil")
+"""Of one muscle under one load: a scale of the force, which a free permittivity imitates, or nothing at all."""
+
+
+@pytest.fixture
+def found_for(tmp_path):
+    """What is found in a bench's lifts, of its own muscle with fill and permittivity off by some per cent."""
+
+    def find(bench):
+        rng = np.random.default_rng(bench.seed)
+        nominal = load_muscle("peano_hasel").values
+        bench.muscle = bench.muscle.with_values({n: v * rng.uniform(0.93, 1.07) for n, v in nominal.items()})
+        problem = bench_problem([settled(read_bench(bench.write_csv(tmp_path / f"{bench.seed}.csv")))])
+        return improve_muscle(problem, load_muscle("peano_hasel"))
+
+    return find
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(20))
+def test_nothing_hidden(bench, found_for, seed):
+    """No effect is accused."""
+    bench.seed = seed
+    assert found_for(bench).status == "nothing_missing"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("effect", [name for name in muscle_catalogue() if name not in UNSEEN])
+def test_a_hidden_effect_is_named_first_or_within_its_group(bench, found_for, effect, seed):
+    """At its typical size; with it the law describes the lifts."""
+    bench.seed = seed
+    parameters = muscle_catalogue()[effect].parameters
+    bench.hiding(**{f"{effect}__{p.name}": p.typical for p in parameters})
+    found = found_for(bench)
+    assert found.missing
+    first = found.stages[2]
+    assert effect in (first.added, *first.rivals)
+    assert found.status == "explained"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("effect", UNSEEN)
+def test_what_cannot_be_seen_is_said_to_be(bench, found_for, effect):
+    """Hidden, it is not accused, nor is any other; the verdict is that it cannot be seen."""
+    bench.hiding(**{f"{effect}__{p.name}": p.typical for p in muscle_catalogue()[effect].parameters})
+    found = found_for(bench)
+    assert found.missing == []
+    verdicts = {finding.effect: finding.verdict for finding in found.findings}
+    assert verdicts.get(effect, Verdict.UNSEEN) is Verdict.UNSEEN
