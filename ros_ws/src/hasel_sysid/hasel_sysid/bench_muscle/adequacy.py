@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from hasel_sim.muscle.muscle import Muscle
-from scipy.stats import chi2
+from scipy.stats import f as fisher
 
 from hasel_sysid.bench_muscle.problem import BenchProblem
 
-_SURE = 0.95
+_SURE = 0.99
 
 
 @dataclass(frozen=True)
@@ -36,12 +36,17 @@ class Adequacy:
 
 
 def adequacy(problem: BenchProblem, muscle: Muscle) -> Adequacy:
-    """How a muscle's error compares with noise and repeatability."""
+    """How a muscle's error compares with noise and repeatability.
+
+    A ratio of mean squares (Fisher): holds against the frames that tell the noise, each of which is few.
+    """
     squares = problem.per_hold(problem.residual(muscle))
     noise = float(np.sqrt(np.average(problem.noise**2, weights=problem.weights)))
     repeats = repeatability(problem)
-    scatter = np.sqrt(noise**2 + (repeats or 0.0) ** 2)
-    allowed = scatter * np.sqrt(chi2.ppf(_SURE, len(squares)) / len(squares))
+    zero = float(np.sqrt(np.average((problem.zeros**2).sum(axis=1), weights=problem.weights)))
+    scatter = np.sqrt(noise**2 + zero**2 + (repeats or 0.0) ** 2)
+    known = max(2, min(run.noise_frames for run in problem.runs) - 1)
+    allowed = scatter * np.sqrt(fisher.ppf(_SURE, len(squares), known))
     return Adequacy(float(np.sqrt(np.mean(squares))), float(allowed), noise, repeats)
 
 

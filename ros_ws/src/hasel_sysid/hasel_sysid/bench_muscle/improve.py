@@ -8,7 +8,7 @@ from hasel_sim.muscle.catalogue import muscle_catalogue
 from hasel_sim.muscle.muscle import Muscle
 
 from hasel_sysid.bench_muscle.adequacy import Adequacy, adequacy
-from hasel_sysid.bench_muscle.fit import BenchFit, fit_muscle, jacobian
+from hasel_sysid.bench_muscle.fit import BenchFit, fit_muscle
 from hasel_sysid.bench_muscle.left_out import (
     FEWEST_LEVELS,
     Advantage,
@@ -118,7 +118,7 @@ def improve_muscle(
 
 
 def _good(trial: Trial) -> bool:
-    return trial.gain.luck < _LUCK and trial.gain.factor > _MATTERS and not trial.beyond and trial.certain
+    return trial.gain.luck < _LUCK and trial.gain.factor > _MATTERS and not trial.beyond
 
 
 class _Search:
@@ -152,20 +152,10 @@ class _Search:
         return advantages([gains(before, after, self.floor)])[0]
 
     def visible(self, fit: BenchFit, name: str) -> bool:
-        """Whether its typical size changes frames by more than noise, in a way that nothing free makes up for."""
-        muscle = fit.muscle
-        free = [each for each in muscle.free if each not in fit.at_bound]
-        with_it = muscle.with_effects(name)
+        """Whether, at its typical size, anything above the noise is left when all that is free makes up for it."""
         typical = {f"{name}.{p.name}": p.typical for p in muscle_catalogue()[name].parameters}
-        base = self.problem.residual(muscle)
-        change = self.problem.residual(with_it.with_values(typical)) - base
-        root = np.sqrt(self.problem.weights)
-        slopes = root[:, None] * jacobian(self.problem, muscle, free)
-        rest = root * change
-        if slopes.shape[1]:
-            rest = rest - slopes @ np.linalg.lstsq(slopes, rest, rcond=1e-8)[0]
-        holds = len(np.unique(self.problem.holds))
-        return bool(np.sqrt(rest @ rest / holds) > np.sqrt(self.floor))
+        world = self.problem.as_if(fit.muscle.with_effects(name).with_values(typical))
+        return fit_muscle(world, fit.muscle, brief=True).cost > self.floor
 
     def findings(
         self, found: BenchImprovement, left: Sequence[str], trials: dict[str, Trial]
@@ -191,10 +181,6 @@ class _Search:
                 name,
                 Verdict.UNSEEN,
                 "beside what is free, its typical size would change these lifts by less than their noise",
-            )
-        if trial is not None and trial.gain.luck < _LUCK and not (trial.beyond or trial.certain):
-            return Finding(
-                name, Verdict.NOT_JUDGED, f"{_sizes(trial.fit.muscle, name)}: its size is not certain"
             )
         if trial is not None and trial.beyond and trial.gain.luck < _LUCK:
             return Finding(name, Verdict.BEYOND, f"{_sizes(trial.fit.muscle, name)}; {trial.gain}")

@@ -1,7 +1,7 @@
 """Settled runs to fit, and how far a muscle's law is from them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -104,6 +104,16 @@ class BenchProblem:
             if here.any():
                 found[unit] = float(np.average(away[here], weights=self.weights[here]))
         return found
+
+    def as_if(self, muscle: Muscle) -> "BenchProblem":
+        """The problem in a world in which this muscle is right."""
+        runs = []
+        for run in self.runs:
+            quantity = "contraction" if run.held == "load" else "load"
+            answer = getattr(run, quantity).copy()
+            answer[run.used] = run.predicted(muscle)
+            runs.append(replace(run, **{quantity: answer}))
+        return BenchProblem(tuple(runs), self.scales)
 
     def only_levels(self, levels: Sequence[float] | np.ndarray, keep: bool = True) -> "BenchProblem":
         """The problem with the frames of some levels [V] (keep) or without them."""

@@ -40,13 +40,6 @@ class Trial:
         return False
 
     @property
-    def certain(self) -> bool:
-        """Whether a size that is nothing at its null differs from it by two standard errors."""
-        named = [f"{self.effect}.{p.name}" for p in self._kind.parameters if not p.scan]
-        sizes = [self.fit.muscle.parameters[name] for name in named]
-        return all(size.standard_error is not None and size.value > 2 * size.standard_error for size in sizes)
-
-    @property
     def _kind(self) -> MuscleEffect:
         return next(effect for effect in self.fit.muscle.effects if effect.id == self.effect)
 

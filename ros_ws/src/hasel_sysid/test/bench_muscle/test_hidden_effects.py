@@ -10,8 +10,9 @@ from hasel_sysid.bench_muscle.reading import read_bench
 from hasel_sysid.bench_muscle.settled import settled
 from hasel_sysid.bench_muscle.verdict import Verdict
 
-UNSEEN = ("edge_effect", "series_compliance", "trapped_oil")
-"""Of one muscle under one load: a scale of the force, which a free permittivity imitates, or nothing at all."""
+UNSEEN = {"edge_effect__strip": 0.1, "series_compliance__compliance": 1e-5, "trapped_oil__gap": 1.5e-6}
+"""Under one load these are a scale of the force, which a free permittivity imitates, or nothing at all."""
+SEEN = [name for name in muscle_catalogue() if not any(key.startswith(name) for key in UNSEEN)]
 
 
 @pytest.fixture
@@ -38,7 +39,7 @@ def test_nothing_hidden(bench, found_for, seed):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
-@pytest.mark.parametrize("effect", [name for name in muscle_catalogue() if name not in UNSEEN])
+@pytest.mark.parametrize("effect", SEEN)
 def test_a_hidden_effect_is_named_first_or_within_its_group(bench, found_for, effect, seed):
     """At its typical size; with it the law describes the lifts."""
     bench.seed = seed
@@ -52,11 +53,10 @@ def test_a_hidden_effect_is_named_first_or_within_its_group(bench, found_for, ef
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("effect", UNSEEN)
-def test_what_cannot_be_seen_is_said_to_be(bench, found_for, effect):
+@pytest.mark.parametrize("hidden", UNSEEN)
+def test_what_cannot_be_seen_is_said_to_be(bench, found_for, hidden):
     """Hidden, it is not accused, nor is any other; the verdict is that it cannot be seen."""
-    bench.hiding(**{f"{effect}__{p.name}": p.typical for p in muscle_catalogue()[effect].parameters})
-    found = found_for(bench)
+    found = found_for(bench.hiding(**{hidden: UNSEEN[hidden]}))
     assert found.missing == []
     verdicts = {finding.effect: finding.verdict for finding in found.findings}
-    assert verdicts.get(effect, Verdict.UNSEEN) is Verdict.UNSEEN
+    assert verdicts[hidden.partition("__")[0]] is Verdict.UNSEEN
