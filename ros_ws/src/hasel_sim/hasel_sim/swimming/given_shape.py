@@ -61,12 +61,16 @@ class Way:
 
 
 def swim(
-    swimmer: Swimmer, times: np.ndarray, velocity: Sequence[float] = (0.0, 0.0), held: Sequence[int] = ()
+    swimmer: Swimmer,
+    times: np.ndarray,
+    velocity: Sequence[float] = (0.0, 0.0),
+    held: Sequence[int] = (),
+    tolerance: float = 1e-6,
 ) -> Way:
     """The way from rest, or from a velocity [m/s] [2], at times [s] [n].
 
-    held: directions of motion that something prevents, of 0 (along x), 1 (along y) and 2 (turning). Raises
-    SimulationError where it cannot be followed.
+    held: directions of motion that something prevents, of 0 (along x), 1 (along y) and 2 (turning); tolerance:
+    relative, of the integration. Raises SimulationError where the way cannot be followed.
     """
     free = [direction for direction in range(3) if direction not in held]
 
@@ -76,7 +80,8 @@ def swim(
         return np.concatenate([state[3:], acceleration])
 
     start = np.array([0.0, 0.0, 0.0, *velocity, 0.0])
-    found = solve_ivp(rate, (times[0], times[-1]), start, method="LSODA", t_eval=times, rtol=1e-6, atol=1e-9)
+    span = (times[0], times[-1])
+    found = solve_ivp(rate, span, start, method="LSODA", t_eval=times, rtol=tolerance, atol=1e-3 * tolerance)
     if not found.success:
         raise SimulationError(
             f"the given shape cannot be followed ({found.message}); expected one that is smooth"
@@ -86,39 +91,47 @@ def swim(
 
 def _acceleration(swimmer: Swimmer, time: float, state: np.ndarray, free: list[int]) -> np.ndarray:
     """Acceleration of the frame (x, y, turning) in its free directions: forces out of balance are affine in it."""
-    rest = out_of_balance(swimmer, time, state, np.zeros(3))[free]
-    columns = [out_of_balance(swimmer, time, state, unit)[free] - rest for unit in np.eye(3)[free]]
-    return -np.linalg.solve(np.stack(columns, axis=1), rest)
+    tried = np.concatenate([np.zeros((1, 3)), np.eye(3)[free]])
+    found = out_of_balance(swimmer, time, state, tried)[:, free]
+    return -np.linalg.solve((found[1:] - found[0]).T, found[0])
 
 
 def out_of_balance(swimmer: Swimmer, time: float, state: np.ndarray, acceleration: np.ndarray) -> np.ndarray:
-    """Inertia less the forces of the fluid, per depth: along x, along y [N/m] and about the frame's origin [N], [3].
+    """Inertia less the fluid's forces, per depth: along x, along y [N/m] and about the frame's origin [N], [..., 3].
 
-    state: x, y [m], turned [rad] and their rates; acceleration: the rates' rates.
+    state: x, y [m], turned [rad] and their rates; acceleration: the rates' rates, [3], or several to be tried [k, 3].
     """
+    tried = np.atleast_2d(acceleration)
     shape, turn, spin = swimmer.shape(time), state[2], state[5]
     to_world = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
     arm, slip, push = (part @ to_world for part in (shape.position, shape.velocity, shape.acceleration))
     tangent, bending = shape.tangent @ to_world, shape.tangent_rate @ to_world
     around, across = _turned(arm), _turned(tangent)
-    moved = acceleration[:2] + acceleration[2] * around - spin**2 * arm + 2 * spin * _turned(slip) + push
+    moved = tried[:, None, :2] + tried[:, 2, None, None] * around
+    moved = moved - spin**2 * arm + 2 * spin * _turned(slip) + push
+    many = (len(tried), 1)
     at = _sites(
-        swimmer, arm, state[3:5] + spin * around + slip, moved, tangent, spin * across + bending, time
+        swimmer,
+        np.tile(arm, many),
+        np.tile(state[3:5] + spin * around + slip, many),
+        moved.reshape(-1, 2),
+        np.tile(tangent, many),
+        np.tile(spin * across + bending, many),
+        time,
     )
     directions = np.zeros((3, 2, *arm.shape))
     directions[0, 0, :, 0] = directions[1, 0, :, 1] = 1.0
     directions[2] = around, across
-    inertia = swimmer.mass[:, None] * moved
-    out = np.einsum("cni,ni->c", directions[:, 0], inertia)
+    out = np.einsum("cni,n,kni->kc", directions[:, 0], swimmer.mass, moved)
     for effect, values in swimmer.effects:
         p = SimpleNamespace(**{**effect.null(), **values})
-        force = swimmer.lengths[:, None] * effect.force(at, p)
-        out -= np.einsum("cni,ni->c", directions[:, 0], force)
+        force = effect.force(at, p).reshape(moved.shape)
+        out -= np.einsum("cni,n,kni->kc", directions[:, 0], swimmer.lengths, force)
         if effect.has_flux:
-            flux = effect.flux(at, p)
-            out -= np.einsum("ci,i->c", directions[:, 0, -1], flux[-1])
-            out += np.einsum("cni,ni->c", directions[:, 1], swimmer.lengths[:, None] * flux)
-    return out
+            flux = effect.flux(at, p).reshape(moved.shape)
+            out -= np.einsum("ci,ki->kc", directions[:, 0, -1], flux[:, -1])
+            out += np.einsum("cni,n,kni->kc", directions[:, 1], swimmer.lengths, flux)
+    return out.reshape(np.shape(acceleration))
 
 
 def _turned(vectors: np.ndarray) -> np.ndarray:
@@ -138,7 +151,7 @@ def _sites(
         tangent_rate=tangent_rate,
         reference=position,
         rest_normal=np.zeros_like(position),
-        measure=swimmer.lengths,
+        measure=np.tile(swimmer.lengths, len(position) // len(swimmer.lengths)),
         voltage=nothing,
         contraction=nothing,
         time=time,

@@ -45,3 +45,21 @@ def test_the_best_outline_bends_more_with_the_same_area(example):
     assert np.trapezoid(after, s) == pytest.approx(np.trapezoid(before, s), rel=1e-3)
     assert after.max() < before.max() + 0.01
     assert after.min() > module.LOWEST - 0.01
+
+
+def test_a_measured_fish_swims_as_fast_as_its_tail_beats(example):
+    """Mean error over eight speeds below 0.025 m/s (published: 0.134 for elongated-body theory, 0.019 fitted)."""
+    module = example("measured_fish")
+    errors = [abs(module.speed(run, 0.43) - run.speed) for run in module.RUNS]
+    assert np.mean(errors) < 0.025
+    assert max(errors) < 0.05
+    ratios = [run.frequency / run.named for run in module.RUNS]
+    assert ratios == pytest.approx([0.75] * 8, abs=0.015)
+
+
+def test_the_drag_of_the_measured_fish_meets_the_runs_it_is_fitted_to(example):
+    """Somewhat too much drag makes both too slow, somewhat too little too fast."""
+    module = example("measured_fish")
+    chosen = [run for run in module.RUNS if run.named in module.FITTED]
+    slow, fast = (sum(module.speed(run, drag) - run.speed for run in chosen) for drag in (0.47, 0.39))
+    assert slow < 0 < fast

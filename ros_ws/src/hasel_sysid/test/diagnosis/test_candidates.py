@@ -69,5 +69,12 @@ def test_forces_of_a_fluid_are_suspects_only_where_there_is_one():
     wet = {
         effect.id for effect in candidate_effects(swimmer.without_effects(*(e.id for e in swimmer.effects)))
     }
-    of_fluids = {"viscous_drag", "normal_drag", "skin_friction", "reactive_force", "finite_depth_added_mass"}
-    assert wet - dry == of_fluids and dry < wet
+    of_fluids = {
+        "form_drag",
+        "viscous_drag",
+        "normal_drag",
+        "skin_friction",
+        "reactive_force",
+        "finite_depth_added_mass",
+    }
+    assert wet - dry == {*of_fluids, "form_drag"} and dry < wet
