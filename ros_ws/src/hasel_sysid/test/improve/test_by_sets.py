@@ -83,3 +83,21 @@ def test_a_search_that_does_not_exist():
     world = MadeUpWorld(1)
     with pytest.raises(SysidError, match="sets"):
         improve(world.measured(world.model), world.model, by="set")
+
+
+def test_without_candidates_the_baseline_stays():
+    """The only effect that was named is in the model already."""
+    world = MadeUpWorld(1, shared=16)
+    model = world.model.with_effects("payload")
+    found = improve(world.measured(world.with_typical("payload")), model, only=("payload",), by="sets")
+    assert [stage.effects for stage in found.stages] == [()]
+    assert found.diagnosis.findings == []
+
+
+def test_unseen_runs_are_only_compared_with():
+    """Every stage tells its error on them."""
+    world = MadeUpWorld(2, shared=16)
+    truth = world.with_typical("payload")
+    found = improve(world.measured(truth), world.model, world.measured(truth), by="sets")
+    assert found.missing == ("payload",)
+    assert found.stages[-1].mae_validation < 0.5 * found.stages[0].mae_validation
