@@ -25,6 +25,8 @@ _HALVINGS = 2
 """How often what cannot be simulated, or is far worse, is tried again from half of its size."""
 _FAR, _SOME_HOPE = 2.0, 0.2
 """What makes the sum of squares so many times worse is too far off, unless it could never lower it by such a share."""
+_RIVAL = 0.5
+"""What could take away less than this share of what the best one could gets no further steps."""
 _SIZES = (0.1, 2.0)
 """Smallest and largest start, in typical sizes."""
 _BRIEF = 10
@@ -131,9 +133,10 @@ class SimulatedSets:
         for keep in rounds:
             if not keep or self.out_of_time():
                 break
-            going_on = best[:keep]
+            most_hope = max(prospect.start.promised for prospect in best)
+            going_on = [p for p in best[:keep] if p.start.promised >= _RIVAL * most_hope]
             moved = [_prospect(t, looks, of.effects) for t in trials.further([p.start for p in going_on])]
-            best = _best_of_each([*moved, *best[keep:]], rank)
+            best = _best_of_each([*moved, *(p for p in best if p not in going_on)], rank)
         return {prospect.effect: prospect for prospect in best}
 
     def _sized(self, of: FittedSet, names: Collection[str]) -> list[Start]:
