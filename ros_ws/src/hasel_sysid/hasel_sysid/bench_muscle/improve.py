@@ -1,14 +1,14 @@
 """Add what a muscle's law lacks, one effect after the other, judged on voltages that the fit did not see."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from hasel_sim.muscle.catalogue import muscle_catalogue
 from hasel_sim.muscle.muscle import Muscle
 
 from hasel_sysid.bench_muscle.adequacy import Adequacy, adequacy
-from hasel_sysid.bench_muscle.fit import BenchFit, fit_muscle
+from hasel_sysid.bench_muscle.fit import BenchFit, fit_muscle, with_errors
 from hasel_sysid.bench_muscle.left_out import (
     FEWEST_LEVELS,
     Advantage,
@@ -155,7 +155,15 @@ class _Search:
         """Whether, at its typical size, anything above the noise is left when all that is free makes up for it."""
         typical = {f"{name}.{p.name}": p.typical for p in muscle_catalogue()[name].parameters}
         world = self.problem.as_if(fit.muscle.with_effects(name).with_values(typical))
-        return fit_muscle(world, fit.muscle, brief=True).cost > self.floor
+        return fit_muscle(world, fit.muscle).cost > self.floor
+
+    def _may_hide(self, muscle: Muscle, name: str) -> bool:
+        """Whether the lifts are described as well with the effect at its typical size, everything else fitted again."""
+        typical = {f"{name}.{p.name}": p.typical for p in muscle_catalogue()[name].parameters}
+        with_it = muscle.with_effects(name).with_values(typical)
+        fixed = {key: replace(with_it.parameters[key], free=False) for key in typical}
+        frozen = replace(with_it, parameters={**with_it.parameters, **fixed})
+        return adequacy(self.problem, fit_muscle(self.problem, frozen).muscle).describes
 
     def findings(
         self, found: BenchImprovement, left: Sequence[str], trials: dict[str, Trial]
@@ -187,8 +195,14 @@ class _Search:
         if not found.adequacy.describes:
             reason = "the model does not describe these lifts yet"
             return Finding(name, Verdict.NOT_JUDGED, reason if trial is None else f"{reason}; {trial.gain}")
+        if self._may_hide(found.muscle, name):
+            return Finding(
+                name, Verdict.UNSEEN, "with its typical size what is free would describe these lifts as well"
+            )
         fit = fit_muscle(self.problem, found.muscle.with_effects(name), _starts(name))
-        return Finding(name, Verdict.ABSENT, f"at most {_bounds(fit.muscle, name)}")
+        others = tuple(bound for bound in fit.at_bound if not bound.startswith(f"{name}."))
+        limited = with_errors(self.problem, replace(fit, at_bound=others))
+        return Finding(name, Verdict.ABSENT, f"at most {_bounds(limited.muscle, name)}")
 
 
 def _starts(name: str) -> list[dict[str, float]]:

@@ -64,6 +64,23 @@ def test_a_hidden_effect_is_named_and_sized(bench, problem_of, effect, name, val
     assert rival.law < 0.2 * rival.table
 
 
+def test_what_a_free_constant_imitates_is_not_called_absent(bench, problem_of):
+    """A layer of oil is a film of another permittivity: hidden, it is neither named nor excluded."""
+    problem = problem_of(bench.hiding(trapped_oil__gap=5e-6))
+    found = improve_muscle(problem, load_muscle("peano_hasel"), candidates=["trapped_oil"])
+    assert found.status == "nothing_missing"
+    assert [finding.verdict for finding in found.findings] == [Verdict.UNSEEN]
+
+
+def test_the_limit_of_what_is_absent_is_one(bench, problem_of):
+    """A stiffness that is absent is at most some hundredths of a newton, and the limit is not nothing."""
+    found = improve_muscle(problem_of(bench), load_muscle("peano_hasel"), candidates=["parallel_stiffness"])
+    (finding,) = found.findings
+    assert finding.verdict is Verdict.ABSENT
+    limit = float(finding.reason.split("parallel_stiffness.stiffness ")[1].split()[0])
+    assert 1e-5 < limit < 0.05
+
+
 def test_what_a_hanging_load_cannot_show_is_said(bench, problem_of):
     """A spring in series never moves under one load: cannot be seen."""
     found = improve_muscle(problem_of(bench), load_muscle("peano_hasel"), candidates=["series_compliance"])
