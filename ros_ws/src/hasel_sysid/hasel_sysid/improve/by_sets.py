@@ -25,6 +25,8 @@ from hasel_sysid.selection.verdicts import diagnosis
 _BRIEF = 12
 """Evaluations for a fit to an opening."""
 
+_CREDIT = "takes away a tenth of the squared error that finer numerics would leave and foretells runs that are left out better"
+
 Progress = Callable[[str, float], None]
 OnStage = Callable[[Stage], None]
 
@@ -134,8 +136,7 @@ def _why_here(found: Searched, choice: Choice, policy: Policy, first: Stage) -> 
         return f"Effect {policy.most_effects} was the last: more effects could imitate anything.", False
     nearest = f"; nearest was {name_of(found.best)}" if found.best != choice.chosen else ""
     return (
-        f"After adding {added} something is still missing, but no further effect takes away a tenth of the squared "
-        f"error and foretells runs that are left out of the fit better{nearest}.",
+        f"After adding {added} something is still missing, but no further effect {_CREDIT}{nearest}.",
         False,
     )
 

@@ -61,7 +61,12 @@ def _worth_as_much(found: Searched, effects: EffectSet, best: Worth, policy: Pol
     more = best.over(found.worths[effects])
     if more.total <= policy.standard_errors * more.standard_error:
         return True
-    return found.known[found.best].squares > (1 - policy.matters) * found.known[effects].squares
+    # what finer numerics would take away as well is not to an effect's credit
+    left = [
+        found.likelihood.squares_beyond_slack(found.known[s].residual, policy.doubt)
+        for s in (effects, found.best)
+    ]
+    return left[1] > (1 - policy.matters) * left[0]
 
 
 def _alike(found: Searched, chosen: EffectSet, other: EffectSet, policy: Policy) -> bool:

@@ -81,6 +81,18 @@ class Likelihood:
         residual, basis = self.whiten(fitted.residual), orthonormal(self.whiten(fitted.jacobian))
         return Whitened(residual - basis @ (basis.T @ residual), basis, self.runs)
 
+    def squares_beyond_slack(self, residual: np.ndarray, most: float) -> float:
+        """Sum of squares of a residual [frames] that the errors which every set is known to make cannot take away.
+
+        most: standard deviations of their amount in a run.
+        """
+        total = 0.0
+        for run in np.unique(self.runs):
+            here = self.runs == run
+            reach = np.full(self._slack.shape[1], most)
+            total += bounded_change(residual[here], self._slack[here], -reach, reach)[1]
+        return total
+
     def promised(self, prospect: Prospect) -> float:
         """Logarithm of the likelihood, up to the same constant, one bounded step on from where a prospect is."""
         _, squares = bounded_change(

@@ -146,6 +146,16 @@ def test_a_trifle_is_seen_and_not_added():
     assert seen >= 2
 
 
+def test_what_finer_numerics_would_take_away_is_not_to_an_effects_credit():
+    """An effect much like the change by a finer mesh is added for what that cannot be, and not for what it may be."""
+    for seed in range(3):
+        series = made_up(seed)
+        mesh = 0.02 * (series["a"] + 0.3 * series["b"])
+        assert chosen(LinearSets(series, {"a": 0.015}, WHITE, seed))[0] == "a"
+        assert chosen(LinearSets(series, {"a": 0.015}, WHITE, seed, slack=[mesh]))[0] == ""
+        assert chosen(LinearSets(series, {"a": 0.2}, WHITE, seed, slack=[mesh]))[0] == "a"
+
+
 class LostOnTheWay(LinearSets):
     """A fit of two effects from the baseline ends where the baseline is."""
 
