@@ -26,6 +26,13 @@ def box_run(duration: float = 1.0, voltage: float = 5500.0, frequency: float = 2
     return Run("5.5 kV, 2 Hz", frames, DriveSchedule(switches, voltages))
 
 
+def swimmer_with_every_force() -> Model:
+    """The swimmer in oil with all effects of its fluid that may stand side by side."""
+    model = load_model("swimmer_in_oil").with_effects("form_drag", "viscous_drag")
+    further = {"form_drag.coefficient": 0.05, "viscous_drag.across": 4.0, "viscous_drag.along": 2.0}
+    return model.with_values(further)
+
+
 def node_count(model: Model) -> int:
     """Nodes of a model's mesh."""
     return len(model_mesh(model).nodes)

@@ -26,7 +26,10 @@ class Bar:
 
 @dataclass(frozen=True)
 class SpeedReport:
-    """All speeds; slope: of log cost against log nodes; parameters: (number, cost over forward)."""
+    """All speeds; slope: of log cost against log nodes; parameters: (number, cost over forward).
+
+    free_swim: real-time factor of a free swim of 10 s with every force of the fluid.
+    """
 
     first_run: float
     sizes: list[Speed]
@@ -36,6 +39,7 @@ class SpeedReport:
     parameters: list[tuple[int, float]]
     lanes: SideBySide
     profile: list[tuple[str, float]]
+    free_swim: float
 
     def bars(self) -> list[Bar]:
         """The figures that have a bar."""
@@ -43,6 +47,12 @@ class SpeedReport:
         return [
             Bar(f"real-time factor, {named[0][0]}", self.default.real_time_factor, 5, at_least=True),
             Bar(f"real-time factor, {named[1][0]}", self.large.real_time_factor, 2, at_least=True),
+            Bar(
+                "real-time factor, free swim of 10 s with every force of the fluid",
+                self.free_swim,
+                5,
+                at_least=True,
+            ),
             *(
                 Bar(f"all sensitivities / forward, {name}", s.sensitivities / s.forward, 2)
                 for name, s in named

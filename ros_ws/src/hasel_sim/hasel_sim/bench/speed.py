@@ -6,7 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from hasel_sim.adjoint import DifferentiableRun
-from hasel_sim.bench.cases import FRAMES_PER_SECOND, box_run, fitted_swimmer, node_count, with_nodes
+from hasel_sim.bench.cases import (
+    FRAMES_PER_SECOND,
+    box_run,
+    fitted_swimmer,
+    node_count,
+    swimmer_with_every_force,
+    with_nodes,
+)
 from hasel_sim.bench.reference import band_solutions
 from hasel_sim.bench.timing import processor_seconds
 from hasel_sim.model import Model
@@ -135,3 +142,11 @@ def by_parameters() -> list[tuple[int, float]]:
     works = [lambda n=n: simulate(model, run, names[len(names) - n :]) for n in counts]
     costs = processor_seconds(works, 3)
     return [(n, cost / costs[0]) for n, cost in zip(counts, costs, strict=True)]
+
+
+def free_swim_factor(duration: float = 10.0) -> float:
+    """Real-time factor of a free swim [s] at 5.5 kV, 2 Hz with every force of the fluid, default mesh, one core."""
+    model = swimmer_with_every_force()
+    run = box_run(duration)
+    (seconds,) = processor_seconds([lambda: simulate(model, run)], 1)
+    return duration / seconds

@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 from hasel_sim.bench.cases import fitted_swimmer
 from hasel_sim.bench.convergence import mesh_errors, step_errors
 from hasel_sim.bench.report import ConvergenceReport, SpeedReport
-from hasel_sim.bench.speed import by_nodes, by_parameters, measure_side_by_side
+from hasel_sim.bench.speed import by_nodes, by_parameters, free_swim_factor, measure_side_by_side
 from hasel_sim.bench.timing import first_run_seconds
 from hasel_sim.bench.where_time_goes import shares
 from hasel_sim.commands.parsers import bench_parser
@@ -30,8 +30,10 @@ def measure_speeds(console: Console) -> SpeedReport:
         parameters = by_parameters()
     with console.status("timing runs side by side"):
         lanes = measure_side_by_side(fitted_swimmer())
+    with console.status("timing a free swim"):
+        swim = free_swim_factor()
     return SpeedReport(
-        first_run, sizes, sizes[1], sizes[-1], slope, parameters, lanes, shares(fitted_swimmer())
+        first_run, sizes, sizes[1], sizes[-1], slope, parameters, lanes, shares(fitted_swimmer()), swim
     )
 
 

@@ -22,7 +22,14 @@ class LineMotion:
 
     @staticmethod
     def at(at: SiteState) -> "LineMotion":
-        """That of the sites."""
+        """That of the sites; effects that are called with one state share it."""
+        known = vars(at)
+        if "line_motion" not in known:
+            known["line_motion"] = LineMotion._found(at)
+        return known["line_motion"]
+
+    @staticmethod
+    def _found(at: SiteState) -> "LineMotion":
         tangent = at.tangent / np.hypot(at.tangent[:, 0], at.tangent[:, 1])[:, None]
         normal = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
         return LineMotion(tangent, normal, dot(at.velocity, tangent), dot(at.velocity, normal))

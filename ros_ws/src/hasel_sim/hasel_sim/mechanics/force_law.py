@@ -22,6 +22,8 @@ _DIFFERENCE = {
     "tangent_rate": 1e-6,
 }
 _WatchedState = watched(SiteState)
+_OF_A_LINE = ("velocity", "acceleration", "tangent", "tangent_rate")
+"""What effects at the centre line depend on, in the order in which it is moved for all of them together."""
 
 
 class ForceLaw:
@@ -99,11 +101,8 @@ class ForceLaw:
             lambda rows, lanes, own: self._called(rows, lanes, own, drive),
         )
 
-    def _called(
-        self, rows: dict[str, np.ndarray], lanes: np.ndarray, values, drive: DriveState
-    ) -> np.ndarray:
-        n = len(self._reference)
-        times = len(rows["position"]) // n
+    def _repeated(self, times: int) -> dict[str, np.ndarray]:
+        """What does not move, as often as the sites are called at once."""
         if times not in self._unmoved:
             self._unmoved[times] = {
                 "reference": repeated(self._reference, times),
@@ -111,7 +110,13 @@ class ForceLaw:
                 "measure": repeated(self.sites.measure, times),
                 "gravity": self._gravity,
             }
-        unmoved = self._unmoved[times]
+        return self._unmoved[times]
+
+    def _called(
+        self, rows: dict[str, np.ndarray], lanes: np.ndarray, values, drive: DriveState
+    ) -> np.ndarray:
+        n = len(self._reference)
+        unmoved = self._repeated(len(rows["position"]) // n)
         state = (SiteState if len(lanes) == 1 else _WatchedState)(
             **rows, **unmoved, **drive.of_lane(int(lanes[0])), surroundings=values.surroundings
         )
@@ -126,12 +131,48 @@ class ForceLaw:
             parts.append(self._called(own, np.array([lane]), values, drive).reshape(-1, n, 2))
         return np.stack(parts, axis=1)
 
+    def _with_the_others(self, motion: Motion, drive: DriveState, moved: bool) -> np.ndarray | None:
+        """The force [copies, n, 2, lanes] at a state that all laws at the centre line share; None where they cannot.
+
+        moved: whether at one copy as it is and two with a little more of each quantity of `_OF_A_LINE`, or as it is.
+        """
+        lanes, values = self._groups[0] if self._groups else (np.zeros(0), None)
+        alike = self.effect.sites == "line" and len(lanes) == motion.position.shape[-1]
+        if not alike or values is None or not set(self._moved_by) <= set(_OF_A_LINE):
+            return None
+        key, n = (id(self.sites.shape), moved, values.surroundings), len(self._reference)
+        if key not in motion.found or motion.found[key][0] is not drive:
+            motion.found[key] = drive, self._state_of_all(motion, drive, moved, values.surroundings)
+        state = motion.found[key][1]
+        found = np.asarray(self._respond(state, values.own)).reshape(-1, len(lanes), n, 2)
+        if len(lanes) > 1 and state.looked:
+            return None
+        return np.ascontiguousarray(found.transpose(0, 2, 3, 1))
+
+    def _state_of_all(self, motion: Motion, drive: DriveState, moved: bool, surroundings) -> SiteState:
+        """All lanes at the centre line, one copy after the other."""
+        known = motion.found.setdefault(id(self.sites.shape), {})
+        copies = 1 + 2 * len(_OF_A_LINE) if moved else 1
+        rows = {}
+        for name in ("position", *_OF_A_LINE):
+            field = np.repeat(self._field(known, name, motion)[None], copies, axis=0)
+            if moved and name in _OF_A_LINE:
+                first = 1 + 2 * _OF_A_LINE.index(name)
+                field[first, :, 0] += _DIFFERENCE[name]
+                field[first + 1, :, 1] += _DIFFERENCE[name]
+            rows[name] = field.transpose(0, 3, 1, 2).reshape(-1, 2)
+        lanes = motion.position.shape[-1]
+        unmoved, kind = self._repeated(copies * lanes), SiteState if lanes == 1 else _WatchedState
+        return kind(**rows, **unmoved, **drive.of_lane(0), surroundings=surroundings)
+
     def add_force(
         self, motion: Motion, drive: DriveState, out: np.ndarray, factor: float | np.ndarray = 1.0
     ) -> None:
         """Add factor times the nodal forces to out [nodes, 2, lanes]."""
-        here = {name: field[None] for name, field in self._moved(motion).items()}
-        self.sites.scatter(factor * self._force(here, drive)[0], out)
+        force = self._with_the_others(motion, drive, moved=False)
+        if force is None:
+            force = self._force({name: field[None] for name, field in self._moved(motion).items()}, drive)
+        self.sites.scatter(factor * force[0], out)
 
     def add_excess(
         self,
@@ -194,21 +235,26 @@ class ForceLaw:
         end-of-step acceleration, which moves position, velocity and acceleration by weights [3, lanes]; one-sided
         differences, which find a step as well as central ones.
         """
+        force, order = self._with_the_others(motion, drive, moved=True), _OF_A_LINE
+        if force is None:
+            force, order = self._force_of_its_own(motion, drive), self._moved_by
+        self.sites.scatter(-force[0], out)
+        by_value[:], by_tangent[:] = 0.0, 0.0
+        rows = {"position": 0, "velocity": 1, "acceleration": 2, "tangent": 0, "tangent_rate": 1}
+        for name in self._moved_by:
+            first = 1 + 2 * order.index(name)
+            change = (force[first : first + 2] - force[0]) * (-weights[rows[name]] / _DIFFERENCE[name])
+            table = by_tangent if name.startswith("tangent") else by_value
+            table += change.transpose(1, 2, 0, 3)
+
+    def _force_of_its_own(self, motion: Motion, drive: DriveState) -> np.ndarray:
+        """The force as it is and with a little more of each component of what it depends on."""
         names, at = self._moved_by, self._moved(motion)
         fields = {name: np.repeat(field[None], 1 + 2 * len(names), axis=0) for name, field in at.items()}
         for index, name in enumerate(names):
             for component in range(2):
                 fields[name][1 + 2 * index + component, :, component] += _DIFFERENCE[name]
-        force = self._force(fields, drive)
-        self.sites.scatter(-force[0], out)
-        by_value[:], by_tangent[:] = 0.0, 0.0
-        rows = {"position": 0, "velocity": 1, "acceleration": 2, "tangent": 0, "tangent_rate": 1}
-        for index, name in enumerate(names):
-            change = (force[1 + 2 * index : 3 + 2 * index] - force[0]) * (
-                -weights[rows[name]] / _DIFFERENCE[name]
-            )
-            table = by_tangent if name.startswith("tangent") else by_value
-            table += change.transpose(1, 2, 0, 3)
+        return self._force(fields, drive)
 
     def weighted(self, position, velocity, acceleration) -> tuple[np.ndarray, np.ndarray]:
         """Less the derivatives, weighted per lane: by the value and by the tangent at the sites [n, 2, 2, lanes]."""

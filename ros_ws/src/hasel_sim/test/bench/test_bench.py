@@ -5,15 +5,28 @@ import json
 import numpy as np
 import pytest
 from hasel_sim.bench import reference
-from hasel_sim.bench.cases import box_run, fitted_swimmer, node_count, with_nodes
+from hasel_sim.bench.cases import (
+    box_run,
+    fitted_swimmer,
+    node_count,
+    swimmer_with_every_force,
+    with_nodes,
+)
 from hasel_sim.bench.convergence import mesh_errors, step_errors
 from hasel_sim.bench.report import Bar, SpeedReport
-from hasel_sim.bench.speed import SideBySide, Speed, measure_side_by_side, measure_speed
+from hasel_sim.bench.speed import (
+    SideBySide,
+    Speed,
+    free_swim_factor,
+    measure_side_by_side,
+    measure_speed,
+)
 from hasel_sim.bench.timing import first_run_seconds, processor_seconds
 from hasel_sim.bench.where_time_goes import shares
 from hasel_sim.build import model_mesh
 from hasel_sim.commands import bench
 from hasel_sim.mechanics.banded import BandMatrix
+from hasel_sim.simulate import simulate
 from threadpoolctl import threadpool_limits
 
 
@@ -129,7 +142,7 @@ def test_the_command_prints_tables_and_writes_json(tmp_path, monkeypatch, capsys
     """Exit status 1 when a bar is missed."""
     speed = measure_speed(fitted_swimmer().with_numerics(mesh_density=0.3))
     lanes = SideBySide(4, 1.0, 0.25, 3.0, 1.5)
-    report = SpeedReport(40.0, [speed], speed, speed, 1.0, [(0, 1.0)], lanes, [("all", 1.0)])
+    report = SpeedReport(40.0, [speed], speed, speed, 1.0, [(0, 1.0)], lanes, [("all", 1.0)], 6.0)
     monkeypatch.setattr(bench, "measure_speeds", lambda console: report)
     path = tmp_path / "bench.json"
     assert bench.main(["--json", str(path)]) == 1
@@ -145,3 +158,13 @@ def test_the_command_prints_tables_and_writes_json(tmp_path, monkeypatch, capsys
     printed = capsys.readouterr().out.lower()
     assert "where the time goes" in printed
     assert "side by side" in printed
+
+
+def test_a_free_swim_costs_little_more_than_its_effects_must():
+    """With five forces of the fluid at least a fourteenth of the speed of the dry body (a sixth on a quiet machine)."""
+    model, wet, run = fitted_swimmer(), swimmer_with_every_force(), box_run(0.5)
+    with threadpool_limits(1):
+        dry_time, wet_time = processor_seconds([lambda: simulate(model, run), lambda: simulate(wet, run)], 3)
+        factor = free_swim_factor(0.5)
+    assert wet_time < 14 * dry_time
+    assert factor == pytest.approx(0.5 / wet_time, rel=0.6)
