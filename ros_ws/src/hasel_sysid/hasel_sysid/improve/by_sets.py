@@ -25,7 +25,9 @@ from hasel_sysid.selection.verdicts import diagnosis
 _BRIEF = 12
 """Evaluations for a fit to an opening."""
 
-_CREDIT = "takes away a tenth of the squared error that finer numerics leave and foretells left-out runs better"
+_CREDIT = (
+    "takes away a tenth of the squared error that finer numerics leave and foretells left-out runs better"
+)
 
 Progress = Callable[[str, float], None]
 OnStage = Callable[[Stage], None]
