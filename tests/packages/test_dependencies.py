@@ -42,13 +42,21 @@ ROSDEP_KEYS = {
     "torch": "python3-torch",
     "yaml": "python3-yaml",
 }
-WITHOUT_ROSDEP_KEY = {"av", "distributed", "llvmlite", "plotly", "skfem", "statsmodels", "threadpoolctl"}
+WITHOUT_ROSDEP_KEY = {
+    "av", "distributed", "fastapi", "llvmlite", "nicegui", "plotly", "skfem", "starlette", "statsmodels", "threadpoolctl",
+    "websockets",
+}  # fmt: skip
 NOT_ON_PYPI = {
     "diagnostic_aggregator",
     "launch",
     "launch_ros",
 }  # ROS 2 from apt brings them; who uses them elsewhere skips with the reason
-OPTIONAL_MODULES = {"torch"}  # the adjoint's derivatives and Adam, which are extras
+OPTIONAL_MODULES = {
+    "torch",
+    "nicegui",
+    "fastapi",
+    "starlette",
+}  # the adjoint and Adam, and the workbench's page: extras
 OWN = {path.name for path in PACKAGES}
 each_package = pytest.mark.parametrize("package", PACKAGES, ids=lambda path: path.name)
 

@@ -10,7 +10,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 HEAVY = (
-    "cv2", "dask", "distributed", "jinja2", "matplotlib", "numba", "pandas", "plotly", "pydantic", "rich", "scipy",
+    "cv2", "dask", "distributed", "jinja2", "matplotlib", "nicegui", "numba", "pandas", "plotly", "pydantic", "rich", "scipy",
     "skimage", "statsmodels", "torch",
 )  # fmt: skip
 NODES = {

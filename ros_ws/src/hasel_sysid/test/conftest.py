@@ -119,7 +119,7 @@ def _shared_data(folder: str) -> Path:
     pytest.skip(f"the data folder {folder} is not here; see the README for where it comes from")
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def unseen_rig() -> Path:
     """Folder with runs of the swimmer from an independent simulator."""
     return _shared_data("unseen_rig")

@@ -44,6 +44,11 @@ def bench_muscle() -> int:
     return _run(parsers.bench_muscle_parser, "bench_muscle")
 
 
+def workbench() -> int:
+    """`workbench [RECORDING…]`."""
+    return _run(parsers.workbench_parser, "workbench")
+
+
 def add() -> int:
     """`add EFFECT…`."""
     return _run(parsers.add_parser, "effects", "run_add")

@@ -18,10 +18,15 @@ def recording_options(
     effects: bool = False,
     noise: bool = False,
     everything: bool = False,
+    recordings: str = "+",
+    json: bool = True,
 ) -> argparse.ArgumentParser:
-    """What commands on recordings share: what to read, the model, candidates, where to write, on how many cores."""
+    """What commands on recordings share: what to read, the model, candidates, where to write, on how many cores.
+
+    recordings: how many there must be, as of argparse's nargs.
+    """
     parser = RecordingsParser(prog=prog, description=description)
-    _add_recordings(parser)
+    _add_recordings(parser, recordings)
     add_reading_options(parser)
     _add_model(parser, several_models)
     if effects:
@@ -32,14 +37,14 @@ def recording_options(
         )
     if noise:
         _add_noise(parser)
-    _add_results(parser)
+    _add_results(parser, json)
     _add_workers(parser)
     return parser
 
 
-def _add_recordings(parser: argparse.ArgumentParser) -> None:
+def _add_recordings(parser: argparse.ArgumentParser, count: str) -> None:
     """Positional recordings and --validate."""
-    parser.add_argument("recordings", metavar="RECORDING", nargs="+", type=Path, help=".mcap or .csv file")
+    parser.add_argument("recordings", metavar="RECORDING", nargs=count, type=Path, help=".mcap or .csv file")
     parser.add_argument(
         "--validate",
         metavar="RECORDING",
@@ -61,7 +66,7 @@ def _add_model(parser: argparse.ArgumentParser, several: bool) -> None:
     )
 
 
-def _add_results(parser: argparse.ArgumentParser) -> None:
+def _add_results(parser: argparse.ArgumentParser, json: bool) -> None:
     """--output and --json."""
     parser.add_argument(
         "--output",
@@ -70,7 +75,8 @@ def _add_results(parser: argparse.ArgumentParser) -> None:
         default=Path(),
         help="folder for what is written (default: here)",
     )
-    parser.add_argument("--json", metavar="FILE", type=Path, help="write the results for other programs")
+    if json:
+        parser.add_argument("--json", metavar="FILE", type=Path, help="write the results for other programs")
 
 
 def _add_effects(parser: argparse.ArgumentParser) -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from hasel_recording import Recording
-from hasel_sim.model import Model, load_model
+from hasel_sim.model import Model, load_model, save_model
 from hasel_sim.run import Simulation
 from hasel_sim.simulate import simulate
 
@@ -134,6 +134,13 @@ class Workbench:
         """Write model, report, figures and the script that does it all again; returns their paths."""
         with self._change() as state:
             return export(state, folder or self.folder / "export", self.reading, progress)
+
+    def model_file(self) -> Path:
+        """A file with the model that is shown, for the running simulator."""
+        path = self.folder / "shown.yaml"
+        self.folder.mkdir(parents=True, exist_ok=True)
+        save_model(self.state.shown.model, path)
+        return path
 
     def dismiss(self) -> None:
         """Forget the banners that were read."""

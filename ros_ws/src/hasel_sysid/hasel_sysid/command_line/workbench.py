@@ -1,0 +1,68 @@
+"""`workbench [RECORDING…]`: a page in the browser on which the four steps are done by hand."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from contextlib import ExitStack
+from importlib.util import find_spec
+
+from hasel_recording.reading import drive_of_each
+from hasel_sim.parallel import executor
+
+from hasel_sysid.command_line.parsers import workbench_parser
+from hasel_sysid.command_line.running import run_command
+from hasel_sysid.errors import SysidError
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    return run(workbench_parser().parse_args(arguments))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code."""
+    return run_command(lambda: _serve(options))
+
+
+def _serve(options: argparse.Namespace) -> int:
+    if find_spec("nicegui") is None:
+        raise SysidError(
+            "the workbench needs NiceGUI 3, which is not installed: `pip install 'nicegui>=3,<4'` into the environment "
+            "of this workspace"
+        )
+    from hasel_sysid.workbench import Workbench
+    from hasel_sysid.workbench.jobs import Jobs
+    from hasel_sysid.workbench.live.rig import Rig
+    from hasel_sysid.workbench.page.server import serve
+    from hasel_sysid.workbench.recordings import Reading
+
+    paths = [*options.recordings, *options.validate]
+    drives = dict(zip(map(str, paths), drive_of_each(paths, options.drive), strict=True))
+    reading = Reading(options.map, {path: drive for path, drive in drives.items() if drive is not None})
+    folder = options.output.resolve()
+    jobs, rig = Jobs(), Rig()
+    with ExitStack() as open_:
+        pool = open_.enter_context(executor(options.jobs, options.scheduler))
+        hand = open_.enter_context(
+            executor(2)
+        )  # processes of their own: what is dragged never waits for a search
+        effects = tuple(options.effects) if options.effects else None
+        session = Workbench(pool, hand, folder, options.model, effects, reading)
+        open_.callback(rig.close)
+        if options.rig and (why := rig.connect(options.namespace)):
+            print(f"note: {why}", file=sys.stderr)
+
+        def begin(progress) -> None:
+            if options.validate:
+                session.load(options.validate, True, progress)
+            session.load(options.recordings, False, progress)
+
+        if paths:
+            jobs.start("load", begin)
+        open_.callback(jobs.cancel)
+        serve(session, jobs, rig, options.host, options.port, options.browser)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

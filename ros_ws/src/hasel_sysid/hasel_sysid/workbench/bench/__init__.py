@@ -1,0 +1,1 @@
+"""What a page of the workbench takes, measured in a real browser."""

@@ -1,0 +1,131 @@
+"""The node of the workbench, spun in a thread of its own: hears the rig, asks its services."""
+
+import asyncio
+import threading
+import time
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import rclpy
+from hasel_interfaces.action import RunExperiment
+from hasel_interfaces.msg import BendingAngle, SupplyState
+from hasel_interfaces.srv import LoadModel
+from hasel_recording.endpoints import Role, subscription
+from hasel_recording.topics import MEASURED, SIMULATED, STATE
+from hasel_sim.simulator_messages import rig_voltage, to_nanoseconds
+from rclpy.action import ActionClient
+from rclpy.context import Context
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.signals import SignalHandlerOptions
+from std_srvs.srv import Trigger
+
+from hasel_sysid.errors import SysidError
+from hasel_sysid.workbench.evaluate import Progress
+from hasel_sysid.workbench.live.stream import LiveStream
+
+_STOP_S, _ANSWER_S, _LOOK_S = 1.0, 30.0, 0.05
+
+
+class RigLink:
+    """state: what the supply said last, heard_at: when, of the monotonic clock [s]."""
+
+    def __init__(self, stream: LiveStream, namespace: str) -> None:
+        self.state: SupplyState | None = None
+        self.heard_at = float("-inf")
+        self._stream = stream
+        self._context = Context()
+        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        self._node = rclpy.create_node("hasel_workbench", namespace=namespace, context=self._context)
+        subscription(self._node, SupplyState, STATE, self._on_state, Role.SAMPLES)
+        subscription(self._node, BendingAngle, MEASURED, self._on_measured, Role.SAMPLES)
+        subscription(self._node, BendingAngle, SIMULATED, self._on_simulated, Role.SAMPLES)
+        self._stop = self._node.create_client(Trigger, "emergency_stop")
+        self._load = self._node.create_client(LoadModel, "load_model")
+        self._experiments = ActionClient(self._node, RunExperiment, "run_experiment")
+        self._executor = SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+        self._thread = threading.Thread(target=self._spin, name="rig", daemon=True)
+        self._thread.start()
+
+    def close(self) -> None:
+        """Leave the graph."""
+        self._executor.shutdown()
+        self._thread.join(timeout=5.0)
+        self._node.destroy_node()
+        rclpy.try_shutdown(context=self._context)
+
+    async def stop(self) -> str:
+        """Ask for the emergency stop; what the driver answered."""
+        if not self._stop.service_is_ready():
+            return f"nobody offers {self._stop.srv_name}: use the mushroom switch"
+        future = self._stop.call_async(Trigger.Request())
+        end = time.monotonic() + _STOP_S
+        while not future.done():
+            if time.monotonic() > end:
+                return f"{self._stop.srv_name} did not answer: use the mushroom switch"
+            await asyncio.sleep(0.01)
+        return future.result().message
+
+    def load(self, model: Path) -> str:
+        """Let the simulator take a model file. Raises SysidError."""
+        if not self._load.service_is_ready():
+            raise SysidError(f"nobody offers {self._load.srv_name}; start the simulator first")
+        answer = self._answer(self._load.call_async(LoadModel.Request(model=str(model.resolve()))), _ANSWER_S)
+        if not answer.success:
+            raise SysidError(answer.message)
+        return answer.message
+
+    def run(self, goal: Mapping[str, Any], progress: Progress) -> str:
+        """Have a run made; its recording's path and what was said. Raises SysidError.
+
+        Where `progress` raises, the run is cancelled: the driver ramps down and grounds.
+        """
+        if not self._experiments.server_is_ready():
+            raise SysidError("nobody offers run_experiment; start the driver first")
+
+        def shown(message) -> None:
+            self._share = message.feedback.progress
+
+        self._share = 0.0
+        handle = self._answer(
+            self._experiments.send_goal_async(RunExperiment.Goal(**goal), feedback_callback=shown), _ANSWER_S
+        )
+        if not handle.accepted:
+            raise SysidError("the driver refuses the run; arm it with its own tools, and see what it says")
+        result = handle.get_result_async()
+        try:
+            while not result.done():
+                progress("the run is being made", self._share)
+                time.sleep(_LOOK_S)
+        except BaseException:
+            handle.cancel_goal_async()
+            raise
+        answer = result.result().result
+        if not answer.success:
+            raise SysidError(f"the run failed: {answer.message}")
+        return f"{answer.message} {answer.recording}"
+
+    def _answer(self, future: Any, seconds: float) -> Any:
+        end = time.monotonic() + seconds
+        while not future.done():
+            if time.monotonic() > end:
+                raise SysidError(f"no answer within {seconds:g} s; is the rig still there?")
+            time.sleep(_LOOK_S)
+        return future.result()
+
+    def _on_state(self, message: SupplyState) -> None:
+        self.state, self.heard_at = message, time.monotonic()
+        self._stream.voltage(to_nanoseconds(message.header.stamp), tuple(rig_voltage(message)))
+
+    def _on_measured(self, message: BendingAngle) -> None:
+        sine = message.sin_theta if message.valid else float("nan")
+        self._stream.measured(to_nanoseconds(message.header.stamp), sine)
+
+    def _on_simulated(self, message: BendingAngle) -> None:
+        self._stream.simulated(to_nanoseconds(message.header.stamp), message.sin_theta)
+
+    def _spin(self) -> None:
+        with suppress(ExternalShutdownException):
+            self._executor.spin()

@@ -1,0 +1,1 @@
+"""The page: a thin layer over the session, on NiceGUI and plain canvases."""

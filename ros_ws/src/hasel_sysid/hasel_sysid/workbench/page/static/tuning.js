@@ -1,0 +1,66 @@
+// Dragging a value: at once what the derivatives foretell, and behind it the true simulation of this run.
+"use strict";
+const tuning = {
+  values: {}, asking: false, again: false, truths: 0,
+  value(slider) {
+    const low = +slider.dataset.low, high = +slider.dataset.high, share = slider.value / 1000;
+    return +slider.dataset.log ? low * (high / low) ** share : low + share * (high - low);
+  },
+  drag(slider) {
+    const began = performance.now(), value = this.value(slider);
+    this.values[slider.dataset.name] = value;
+    const text = `${+value.toPrecision(4)}${slider.dataset.unit}`;
+    slider.setAttribute("aria-valuetext", text);
+    slider.nextElementSibling.textContent = text;
+    this.began = began;
+    this.predict(began);
+    this.simulate(began);
+  },
+  async predict(began) {
+    if (this.foretelling) { this.latest = began; return; }
+    this.foretelling = true;
+    try {
+      const {header, numbers} = unpack(await fetched(`/data/predict/${encodeURIComponent(bench.run)}`, this.values));
+      if (began > (this.lastTruth || 0)) {
+        bench.curve.foretold = {series: numbers, true: false};
+        bench.draw();
+        this.errors(header, "foretold");
+        requestAnimationFrame(() => bench.times.predict.push(performance.now() - began));
+      }
+    } catch (error) { bench.say(error.message); }
+    this.foretelling = false;
+    if (this.latest) { const next = this.latest; this.latest = null; this.predict(next); }
+  },
+  async simulate(began) {
+    if (this.asking) { this.again = began; return; }
+    this.asking = true;
+    try {
+      const buffer = await fetched(`/data/truth/${encodeURIComponent(bench.run)}`, this.values);
+      const first = unpack(buffer), length = new DataView(buffer).getUint32(0, true);
+      const series = first.numbers.slice(0, first.header.film);
+      if (!this.again) {
+        bench.curve.foretold = {series, true: true};
+        bench.body.show(unpack(buffer.slice(4 + length + 4 * first.header.film)));
+        this.lastTruth = began;
+        bench.draw();
+        requestAnimationFrame(() => bench.times.truth.push(performance.now() - began));
+        this.truths++;
+      }
+    } catch (error) { bench.say(error.message); }
+    this.asking = false;
+    if (this.again) { const next = this.again; this.again = false; this.simulate(next); }
+  },
+  errors(found, how) {
+    for (const [id, value] of [["wb-error", found.error], ["wb-error-unseen", found.errorUnseen]]) {
+      const place = document.getElementById(id);
+      if (!place || value === null || value === undefined) continue;
+      place.textContent = value.toFixed(4);
+      place.dataset.how = how;
+    }
+  },
+  // The value is let go: the session takes it, and simulates all runs with it.
+  drop() {
+    emitEvent("wb-values", this.values);
+    this.values = {};
+  },
+};

@@ -1,0 +1,218 @@
+"""The page in a real browser: load, see, try, watch the error fall, take it back."""
+
+import os
+import re
+import select
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from hasel_sysid.workbench.bench.browser import Browser, BrowserPage, find_browser
+
+pytestmark = [
+    pytest.mark.skipif(find_browser() is None, reason="no browser is installed: apt install chromium"),
+    pytest.mark.timeout(300),
+]
+_PATIENCE_S = 60.0
+_START = "from hasel_sysid.command_line.workbench import main; import sys; sys.exit(main(sys.argv[1:]))"
+_ERROR = "+document.getElementById('wb-error').textContent"
+
+
+class Server:
+    """The command as a process of its own."""
+
+    def __init__(self, folder: Path, *arguments: object) -> None:
+        command = [sys.executable, "-c", _START, *map(str, arguments), "--output", str(folder), "--port", "0"]
+        command += ["--no-browser", "--no-rig", "--effects", "quadratic_drag,linear_drag"]
+        own = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+        self._process = subprocess.Popen(  # NiceGUI behaves otherwise where it sees pytest
+            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=own
+        )
+        self.address = self._address()
+
+    def _address(self) -> str:
+        ready, _, _ = select.select([self._process.stdout], [], [], _PATIENCE_S)
+        line = self._process.stdout.readline() if ready else ""
+        found = re.search(r"http://127\.0\.0\.1:\d+/", line)
+        if not found:
+            self._process.kill()
+            raise AssertionError(f"{line!r} {self._process.communicate()[1]}")
+        return found[0]
+
+    def close(self) -> str:
+        self._process.terminate()
+        try:
+            return self._process.communicate(timeout=30)[1]
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            return self._process.communicate()[1]
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory, unseen_rig) -> Iterator[Server]:
+    """A workbench with two runs to fit and one unseen."""
+    rig_folder = unseen_rig / "quadratic_drag"
+    fitted = [rig_folder / "fit_4500V_3.5Hz.csv", rig_folder / "fit_5500V_2.0Hz.csv"]
+    one = Server(tmp_path_factory.mktemp("served"), *fitted, "--validate", rig_folder / "val_5200V_2.5Hz.csv")
+    yield one
+    one.close()
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """One for all tests."""
+    with Browser() as one:
+        yield one
+
+
+@pytest.fixture(scope="module")
+def page(server, browser) -> BrowserPage:
+    """A page on which the runs are drawn."""
+    one = browser.open(server.address)
+    one.until("window.bench && bench.shown > 0", _PATIENCE_S)
+    return one
+
+
+def idle(page: BrowserPage) -> None:
+    """Wait until nothing is under way and the page shows it."""
+    page.until(
+        "![...document.querySelectorAll('button')].some(b => b.innerText === 'cancel' && b.offsetParent)",
+        _PATIENCE_S,
+    )
+
+
+def test_the_body_moves_and_the_map_leads_to_its_stretch(page):
+    """Played, time goes on and the picture changes; a clicked cell zooms the curve and stops the body there."""
+    picture = "document.getElementById('wb-body').toDataURL()"
+    page.run("bench.select('fit_5500V_2.0Hz')")
+    page.run("bench.seek(0)")
+    before = page.run(picture)
+    page.run("bench.toggle()")
+    page.until("bench.time > 0.2", _PATIENCE_S)
+    assert page.run(picture) != before
+    page.run('document.querySelector(\'td[data-run="val_5200V_2.5Hz"][data-cell="5"]\').click()')
+    page.until("bench.curve.mark && bench.run === 'val_5200V_2.5Hz'", _PATIENCE_S)
+    assert page.run("!bench.playing && bench.time > bench.curve.mark[0] && bench.time < bench.curve.mark[1]")
+    page.run("document.querySelector('td[data-cell=\"5\"]').focus()")
+    page.press("ArrowRight")
+    assert page.run("document.activeElement.dataset.cell") == "6"
+    page.run("document.activeElement.blur()")
+    at = page.run("bench.time")
+    page.press("ArrowRight")
+    assert page.run("bench.time") > at
+    page.run("bench.whole()")
+
+
+def test_nothing_comes_from_elsewhere(page, server):
+    """All that the page loads comes from this machine."""
+    assert all(address.startswith((server.address, "data:")) for address in page.addresses())
+    assert page.errors == []
+
+
+def test_everything_has_a_name(page):
+    """Buttons, inputs and pictures say to a screen reader what they are."""
+    nameless = page.run(
+        "[...document.querySelectorAll('button, input:not([type=file]), canvas, svg.waterfall')]"
+        ".filter(e => e.offsetParent && !(e.getAttribute('aria-label') || e.innerText || "
+        "e.closest('label') || e.closest('[aria-label]'))).map(e => e.outerHTML)"
+    )
+    assert nameless == []
+
+
+def test_a_truncated_file_is_a_banner(page, tmp_path):
+    """With the file's name and what is wrong; the session goes on."""
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(b"\x89MCAP0\r\n\x00\x01")
+    page.choose_files(".wb-upload-fitted input[type=file]", [cut])
+    page.until(
+        "[...document.querySelectorAll('.wb-banner.error')].some(e => e.innerText.includes('cut'))",
+        _PATIENCE_S,
+    )
+    idle(page)
+    page.click("I have read these")
+    page.until("!document.querySelector('.wb-banner')", _PATIENCE_S)
+    assert page.run("bench.runs.length") == 3
+
+
+def test_the_four_steps(page, server, browser, tmp_path):
+    """The top effect is the hidden one; on, the error falls; another page sees it; taken back, all is as before."""
+    page.click("Diagnose")
+    page.until("document.querySelector('.chip.missing')", _PATIENCE_S)
+    idle(page)
+    assert page.run("document.querySelector('.wb-effect').dataset.effect") == "quadratic_drag"
+    before = page.run(_ERROR)
+    page.click("switch on quadratic_drag")
+    page.until(f"{_ERROR} < {0.4 * before}", _PATIENCE_S)
+    tried = page.run(_ERROR)
+    page.until("bench.curve.data.rows.includes('before')", _PATIENCE_S)
+    page.picture(tmp_path / "tried.png")
+
+    other = browser.open(server.address, 800, 900, dark=True)
+    other.until(f"window.bench && bench.shown > 0 && {_ERROR} === {tried}", _PATIENCE_S)
+    assert other.run("document.documentElement.scrollWidth <= 800")
+    assert other.run("document.body.classList.contains('body--dark')")
+    other.click("Keep")
+    page.until("[...document.querySelectorAll('ol.steps li')].length === 3", _PATIENCE_S)
+    page.go(server.address)  # reload: the session is the server's
+    page.until(f"window.bench && bench.shown > 0 && {_ERROR} === {tried}", _PATIENCE_S)
+    assert page.run("bench.run") == "val_5200V_2.5Hz"  # what the page itself had chosen, too
+    page.click("Take back")
+    page.until(f"{_ERROR} === {before}", _PATIENCE_S)
+    other.until(f"{_ERROR} === {before}", _PATIENCE_S)
+    assert page.errors == other.errors == []
+
+
+def test_a_dragged_value_is_followed(page):
+    """At once by the derivatives, then by the true simulation; let go, the session has it, and gives it back."""
+    idle(page)
+    before = page.run(_ERROR)
+    page.run("bench.times = {predict: [], truth: []}")
+    drag = (
+        "(() => {{ const s = document.querySelector('input[data-name=slope]'); s.value = +s.value - 60;"
+        " s.dispatchEvent(new Event('{}', {{bubbles: true}})); }})()"
+    )
+    page.run(drag.format("input"))
+    page.until("bench.times.predict.length && bench.times.truth.length", _PATIENCE_S)
+    foretold, true = page.run("bench.times.predict[0]"), page.run("bench.times.truth[0]")
+    assert foretold < 5_000 and true < 30_000  # the bars, 100 ms and 1 s, are measured by --bench
+    page.run(drag.format("input"))
+    page.run(drag.format("change"))
+    page.until(
+        f"document.getElementById('wb-error').dataset.how !== 'foretold' && {_ERROR} !== {before}",
+        _PATIENCE_S,
+    )
+    idle(page)
+    page.click("Take back")
+    page.until(f"{_ERROR} === {before}", _PATIENCE_S)
+
+
+def test_work_can_be_cancelled(page):
+    """Its progress is shown; cancelled, nothing has changed and the next work can begin."""
+    idle(page)
+    before = page.run(_ERROR)
+    page.click("Diagnose")
+    page.click("cancel")
+    page.until("document.body.innerText.includes('cancelled, nothing was changed')", _PATIENCE_S)
+    assert page.run(_ERROR) == before
+    idle(page)
+
+
+def test_export_gives_links(page):
+    """To the report, the script and the model, which this machine serves."""
+    page.click("Export")
+    page.until("document.querySelector('a[href*=\"report.html\"]')", _PATIENCE_S)
+    assert page.run("fetch('/export/session.py').then(a => a.text())").startswith(
+        '"""What was done in the workbench'
+    )
+
+
+def test_it_ends_without_a_trace(tmp_path):
+    """An interrupted server ends at once, quietly."""
+    one = Server(tmp_path / "out")
+    began = time.monotonic()
+    assert "Traceback" not in one.close()
+    assert time.monotonic() - began < 30
+    assert not (tmp_path / "out" / "workbench.jsonl").exists()
