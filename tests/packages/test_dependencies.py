@@ -43,7 +43,7 @@ ROSDEP_KEYS = {
     "yaml": "python3-yaml",
 }
 WITHOUT_ROSDEP_KEY = {
-    "av", "distributed", "fastapi", "llvmlite", "nicegui", "plotly", "skfem", "starlette", "statsmodels", "threadpoolctl",
+    "av", "distributed", "fastapi", "llvmlite", "nicegui", "plotly", "skfem", "statsmodels", "threadpoolctl",
     "websockets",
 }  # fmt: skip
 NOT_ON_PYPI = {

@@ -10,8 +10,8 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 HEAVY = (
-    "cv2", "dask", "distributed", "jinja2", "matplotlib", "nicegui", "numba", "pandas", "plotly", "pydantic", "rich", "scipy",
-    "skimage", "statsmodels", "torch",
+    "cv2", "dask", "distributed", "jinja2", "matplotlib", "nicegui", "numba", "pandas", "plotly", "pydantic", "rich",
+    "scipy", "skimage", "statsmodels", "torch",
 )  # fmt: skip
 NODES = {
     "hasel_bringup recorder",

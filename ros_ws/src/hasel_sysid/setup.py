@@ -25,7 +25,7 @@ setup(
     ],
     extras_require={
         "adam": ["torch>=2"],
-        "workbench": ["nicegui>=3,<4", "fastapi", "starlette", "websockets"],
+        "workbench": ["nicegui>=3,<4", "fastapi", "websockets"],
         "test": ["pytest", "pytest-timeout", "statsmodels", "websockets"],
     },
     zip_safe=False,

@@ -5,6 +5,7 @@ import sys
 from collections.abc import Sequence
 from contextlib import ExitStack
 from importlib.util import find_spec
+from pathlib import Path
 
 from hasel_recording.reading import drive_of_each
 from hasel_sim.parallel import executor
@@ -38,7 +39,7 @@ def _serve(options: argparse.Namespace) -> int:
 
     paths = [*options.recordings, *options.validate]
     drives = dict(zip(map(str, paths), drive_of_each(paths, options.drive), strict=True))
-    reading = Reading(options.map, {path: drive for path, drive in drives.items() if drive is not None})
+    reading = Reading(options.map, {path: Path(drive) for path, drive in drives.items() if drive is not None})
     folder = options.output.resolve()
     jobs, rig = Jobs(), Rig()
     with ExitStack() as open_:

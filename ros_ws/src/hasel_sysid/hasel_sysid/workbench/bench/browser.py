@@ -150,7 +150,7 @@ class BrowserPage:
     def click(self, text: str, seconds: float = _PATIENCE_S) -> None:
         """Press the button of this text or label, once it can be pressed."""
         found = (
-            "[...document.querySelectorAll('button')].find(each => !each.disabled && "
+            "[...document.querySelectorAll('button')].find(each => !each.disabled && each.offsetParent && "
             f"[each.innerText.trim(), each.getAttribute('aria-label')].includes({json.dumps(text)}))"
         )
         self.until(f"!!{found}", seconds)

@@ -4,8 +4,8 @@ import asyncio
 import socket
 from pathlib import Path
 
+from fastapi.middleware.trustedhost import TrustedHostMiddleware
 from nicegui import app, background_tasks, ui
-from starlette.middleware.trustedhost import TrustedHostMiddleware
 
 from hasel_sysid.errors import SysidError
 from hasel_sysid.workbench.jobs import Jobs

@@ -36,13 +36,13 @@ def _group(
         f'aria-label="Mean error on {title}, step by step: {escape(said)}">',
         f'<text class="title" x="{_LEFT}" y="14">{title}</text>',
     ]
-    bars = [(0, errors[0], f"total {kind}", error_text(errors[0]), labels[0])]
+    bars = [(0.0, errors[0], f"total {kind}", error_text(errors[0]), labels[0])]
     for number, (before, after) in enumerate(zip(errors, errors[1:], strict=False), start=1):
         sort = "drop" if after <= before else "rise"
         tried = " tried" if falling.tried and number == len(errors) - 1 else ""
         bars.append((before, after, sort + tried, change_text(after - before), labels[number]))
     if len(errors) > 1:
-        bars.append((0, errors[-1], f"total {kind}", error_text(errors[-1]), "left over"))
+        bars.append((0.0, errors[-1], f"total {kind}", error_text(errors[-1]), "left over"))
     for number, (before, after, css, text, label) in enumerate(bars):
         left, top = _LEFT + number * pitch, y(max(before, after))
         height = max(1.0, abs(before - after) * scale)
