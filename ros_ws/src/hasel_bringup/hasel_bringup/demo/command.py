@@ -66,6 +66,13 @@ class Demo:
         self._console.print(
             f"\nDone in {minutes} min {seconds} s: open {escape(str(self.output / 'report.html'))}"
         )
+        self._console.print(f"Go on by hand, in the browser: {escape(self._workbench())}", soft_wrap=True)
+
+    def _workbench(self) -> str:
+        """The command that opens these runs in the workbench."""
+        folder = self.fitted[0].parent
+        runs = f"{folder}/fit_*.csv --validate {folder}/val_*.csv"
+        return f"bin/ros2 run hasel_sysid workbench {runs} --output {self.output / 'workbench'}"
 
     def _step(self, title: str, work: Callable[[], None]) -> None:
         self._console.rule(f"[bold]{escape(title)}", align="left")

@@ -77,6 +77,9 @@ def workbench_parser() -> argparse.ArgumentParser:
     options.add_argument("--no-browser", dest="browser", action="store_false", help="open no browser")
     options.add_argument("--no-rig", dest="rig", action="store_false", help="do not listen to a running rig")
     options.add_argument("--namespace", default="/hasel", help="of the rig (default: %(default)s)")
+    options.add_argument(
+        "--bench", action="store_true", help="measure in a browser how fast the page answers, and end"
+    )
     return options
 
 

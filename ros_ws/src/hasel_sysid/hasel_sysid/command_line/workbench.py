@@ -61,8 +61,19 @@ def _serve(options: argparse.Namespace) -> int:
         if paths:
             jobs.start("load", begin)
         open_.callback(jobs.cancel)
-        serve(session, jobs, rig, options.host, options.port, options.browser)
+        visit = _visit if options.bench else None
+        browser = options.browser and not options.bench
+        serve(session, jobs, rig, options.host, 0 if options.bench else options.port, browser, visit)
     return 0
+
+
+def _visit(address: str) -> None:
+    from hasel_sysid.workbench.bench.measure import measure
+
+    try:
+        measure(address, lambda line: print(line, flush=True))
+    except SysidError as error:
+        print(f"error: {error}", file=sys.stderr)
 
 
 if __name__ == "__main__":

@@ -49,7 +49,8 @@ class Stage:
 class ParameterRow:
     """A parameter in its SI unit; remark: an alarm such as "at its upper bound", empty when all is well.
 
-    meaning: in words; plausible: range that data sheets and literature give, with its source.
+    meaning: in words; plausible: range that data sheets and literature give, with its source; before: its value before
+    what the report is about, None where it was not there.
     """
 
     name: str
@@ -59,6 +60,7 @@ class ParameterRow:
     remark: str = ""
     meaning: str = ""
     plausible: str = ""
+    before: float | None = None
 
 
 @dataclass(frozen=True)

@@ -46,11 +46,20 @@ def improvement_content(
         noise_floor=improvement.noise_floor,
         ranking=tuple(_final(row, last.fit.model) for row in ranked_rows(improvement.diagnosis)),
         groups=improvement.diagnosis.groups_in_question,
-        parameters=parameter_rows(last.fit.model, dict.fromkeys(last.fit.at_bound, "on its bound")),
+        parameters=parameter_rows(
+            last.fit.model, dict.fromkeys(last.fit.at_bound, "on its bound"), _before(comparisons, start)
+        ),
         remains=_remains(improvement),
         messages=tuple(last.fit.sentences),
         next_runs=tuple(next_run(suggestion) for suggestion in suggestions[:_SHOWN_SUGGESTIONS]),
     )
+
+
+def _before(comparisons: Sequence[Comparison], start: Comparison | None) -> Model | None:
+    """The model to which the last one is compared: the fitted baseline, or what it was fitted from."""
+    if len(comparisons) > 1:
+        return comparisons[0].model
+    return None if start is None else start.model
 
 
 def _final(row: RankedRow, model: Model) -> RankedRow:

@@ -49,8 +49,11 @@ def overlays(comparisons: Sequence[Comparison]) -> tuple[RunOverlay, ...]:
     return tuple(shown)
 
 
-def parameter_rows(model: Model, remarks: dict[str, str] | None = None) -> tuple[ParameterRow, ...]:
-    """Every parameter of a model; remarks by name."""
+def parameter_rows(
+    model: Model, remarks: dict[str, str] | None = None, before: Model | None = None
+) -> tuple[ParameterRow, ...]:
+    """Every parameter of a model; remarks by name; before: the model that it is to be compared with."""
+    earlier = {} if before is None else before.values
     return tuple(
         ParameterRow(
             p.name,
@@ -60,6 +63,7 @@ def parameter_rows(model: Model, remarks: dict[str, str] | None = None) -> tuple
             (remarks or {}).get(p.name, ""),
             meaning(p.name, model),
             plausible(p.name, model),
+            earlier.get(p.name),
         )
         for p in model.parameters.values()
     )

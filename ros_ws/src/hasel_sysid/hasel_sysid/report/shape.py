@@ -1,4 +1,4 @@
-"""The body's shape over one swing, as it is simulated."""
+"""The body's extreme shapes, as it is simulated, and where the measured angle puts its tail."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,29 +13,34 @@ from hasel_sim.run import Run
 from hasel_sim.simulate import simulate_many
 
 from hasel_sysid.compare.run_comparison import RunComparison
+from hasel_sysid.measured_tail import measured_tail
 
-_LONGEST_S, _SHAPES = 1.5, 7
+_LONGEST_S = 1.5
 
 
 @dataclass(frozen=True)
 class Shapes:
-    """run: its name; time [s] [k]; skin: pieces of the outline [m] [k, pieces, 3, 2]; markers [m] [k, markers, 2]."""
+    """run: its name; time [s] [k]; skin: pieces of the outline [m] [k, pieces, 3, 2]; markers [m] [k, 3, 2] as
+    simulated; measured [m] [k, 3, 2]: the same with the tail in the measured direction. The first instant is the start.
+    """
 
     run: str
     time: np.ndarray
     skin: np.ndarray
     markers: np.ndarray
+    measured: np.ndarray
 
 
 def simulated_shapes(model: Model, runs: Sequence[RunComparison]) -> Shapes | None:
-    """Shapes over half a cycle, early in the most strongly driven run that repeats; None where there is none."""
+    """Of the most strongly driven run that repeats, in its first cycle; None where there is none."""
     driven = [run.series for run in runs if run.series.cycle is not None and run.series.level > 0]
     if not driven:
         return None
     series = max(driven, key=lambda each: each.level)
-    half = 0.5 * series.cycle.period
-    begin = min(half, _LONGEST_S - min(half, _LONGEST_S)) + series.drive_time[0]
-    wanted = begin + np.linspace(0.0, min(half, _LONGEST_S), _SHAPES)
+    early = series.time <= series.time[0] + min(series.cycle.period, _LONGEST_S)
+    ends = {0, int(np.argmax(series.simulated[early])), int(np.argmin(series.simulated[early]))}
+    chosen = sorted(ends)
+    wanted = series.time[chosen]
     schedule = DriveSchedule(
         series.drive_time, series.drive_values, tuple(channel.name for channel in series.channels)
     )
@@ -44,4 +49,7 @@ def simulated_shapes(model: Model, runs: Sequence[RunComparison]) -> Shapes | No
     found = simulate_many(cases, keep_shapes=True)[0]
     if isinstance(found, HaselSimError):
         return None
-    return Shapes(series.name, wanted, found.shapes[:, model_mesh(model).skin], found.markers)
+    markers = found.markers[:, :3]
+    measured = markers.copy()
+    measured[:, 2] = measured_tail(markers, (series.measured - series.offset)[chosen])
+    return Shapes(series.name, wanted, found.shapes[:, model_mesh(model).skin], markers, measured)

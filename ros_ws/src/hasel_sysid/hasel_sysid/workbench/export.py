@@ -18,7 +18,7 @@ from hasel_sysid.workbench.state import State
 from hasel_sysid.workbench.waterfall import waterfall
 
 MODEL_FILE, SCRIPT_FILE = "model.yaml", "session.py"
-_MOST_MODELS = 4
+_MOST_MODELS = 3
 """More models in one curve's picture cannot be told apart: the first and the last ones are shown."""
 
 
@@ -58,7 +58,7 @@ def report_content(state: State) -> ReportContent:
         good=None,
         stages=falling.stages,
         noise_floor=falling.noise_floor,
-        parameters=parameter_rows(current.model),
+        parameters=parameter_rows(current.model, before=state.steps[0].model),
         ranking=() if diagnosis is None else ranked_rows(diagnosis),
         groups=() if diagnosis is None else diagnosis.groups_in_question,
         remains=() if diagnosis is None else what_remains(diagnosis),

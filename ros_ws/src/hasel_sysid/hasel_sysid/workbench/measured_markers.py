@@ -4,6 +4,7 @@ import numpy as np
 from hasel_sim.model import Model
 
 from hasel_sysid.dataset import Experiment
+from hasel_sysid.measured_tail import measured_tail
 
 
 def measured_markers(
@@ -16,21 +17,17 @@ def measured_markers(
     and middle marker are laid on the simulated ones, in size as in direction, and the tail shows what differs. Where
     only the angle was recorded the tail is drawn at the simulated distance, in the measured direction.
     """
-    head, middle, tail = (simulated[:, number] for number in range(3))
+    head, middle = simulated[:, 0], simulated[:, 1]
     recorded = experiment.recording.angle_markers
     if recorded is not None and experiment.recording.marker_unit == "m" and _is_held(model):
         return recorded.copy()
-    body, fin = middle - head, tail - middle
     if recorded is None:
-        sine = np.clip(experiment.sin_theta - offset, -1.0, 1.0)
-        direction = np.stack([np.sqrt(1.0 - sine**2), sine], axis=-1)
-        ratio = np.linalg.norm(fin, axis=-1) / np.linalg.norm(body, axis=-1)
-        end = middle + _product(body, direction) * ratio[:, None]
+        end = measured_tail(simulated, experiment.sin_theta - offset)
     else:
         if experiment.recording.marker_unit == "px":
             recorded = recorded * (1.0, -1.0)
         first, second = recorded[:, 1] - recorded[:, 0], recorded[:, 2] - recorded[:, 1]
-        end = middle + _product(body, _quotient(second, first))
+        end = middle + _product(middle - head, _quotient(second, first))
     known = np.isfinite(end).all(axis=-1)[:, None]
     return np.stack([np.where(known, head, np.nan), np.where(known, middle, np.nan), end], axis=1)
 

@@ -1,4 +1,4 @@
-"""The body's outline at some instants of a swing, to scale."""
+"""The body's outline where it is bent most, with simulated and measured markers, to scale."""
 
 import numpy as np
 import plotly.graph_objects as go
@@ -6,23 +6,21 @@ import plotly.graph_objects as go
 from hasel_sysid.report.figures.style import styled
 from hasel_sysid.report.shape import Shapes
 
-_FIRST, _LAST = np.array([46, 134, 171]), np.array([209, 73, 91])
+_COLOURS = ("#8a949e", "#2e86ab", "#d1495b")
 
 
 def shapes_figure(shapes: Shapes) -> go.Figure:
-    """Blue at first, red at last; dots are the markers that give the angle."""
+    """Grey at first, then blue and red; rings are the simulated markers, dots the measured ones."""
     figure = go.Figure()
-    count = len(shapes.time)
-    for number, (time, skin, markers) in enumerate(
-        zip(shapes.time, shapes.skin, shapes.markers, strict=True)
+    for time, skin, markers, measured, colour in zip(
+        shapes.time, shapes.skin, shapes.markers, shapes.measured, _COLOURS, strict=False
     ):
-        share = number / max(1, count - 1)
-        colour = f"rgb({', '.join(str(int(c)) for c in (1 - share) * _FIRST + share * _LAST)})"
         gaps = np.full((len(skin), 1, 2), np.nan)
         x, y = (1e3 * np.concatenate([skin, gaps], axis=1)).reshape(-1, 2).T
         name = f"{time:.2f} s"
-        figure.add_trace(_lines(x, y, colour, name, number in (0, count - 1)))
-        figure.add_trace(_dots(1e3 * markers[:3], colour, name))
+        figure.add_trace(_lines(x, y, colour, name, True))
+        figure.add_trace(_dots(1e3 * markers, colour, f"simulated, {name}", "circle-open", 11))
+        figure.add_trace(_dots(1e3 * measured, colour, f"measured, {name}", "circle", 6))
     figure.update_yaxes(title_text="y [mm]", scaleanchor="x", constrain="domain")
     figure.update_xaxes(title_text="x [mm]", constrain="domain")
     return styled(figure, 320)
@@ -44,12 +42,12 @@ def _lines(x: np.ndarray, y: np.ndarray, colour: str, name: str, shown: bool) ->
     )
 
 
-def _dots(markers: np.ndarray, colour: str, name: str) -> go.Scatter:
+def _dots(markers: np.ndarray, colour: str, name: str, symbol: str, size: int) -> go.Scatter:
     return go.Scatter(
         x=_rounded(markers[:, 0]),
         y=_rounded(markers[:, 1]),
         mode="markers",
-        name=f"markers, {name}",
+        name=name,
         showlegend=False,
-        marker={"color": colour, "size": 5},
+        marker={"color": colour, "size": size, "symbol": symbol},
     )

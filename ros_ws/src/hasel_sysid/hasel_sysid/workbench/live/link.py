@@ -29,14 +29,14 @@ _STOP_S, _ANSWER_S, _LOOK_S = 1.0, 30.0, 0.05
 
 
 class RigLink:
-    """state: what the supply said last, heard_at: when, of the monotonic clock [s]."""
+    """state: what the supply said last; heard_at: when, of the monotonic clock [s]; domain: of ROS, else the user's."""
 
-    def __init__(self, stream: LiveStream, namespace: str) -> None:
+    def __init__(self, stream: LiveStream, namespace: str, domain: int | None = None) -> None:
         self.state: SupplyState | None = None
         self.heard_at = float("-inf")
         self._stream = stream
         self._context = Context()
-        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        rclpy.init(context=self._context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
         self._node = rclpy.create_node("hasel_workbench", namespace=namespace, context=self._context)
         subscription(self._node, SupplyState, STATE, self._on_state, Role.SAMPLES)
         subscription(self._node, BendingAngle, MEASURED, self._on_measured, Role.SAMPLES)

@@ -28,13 +28,13 @@ class Rig:
         """Whether a driver has said something in the last seconds."""
         return self.link is not None and time.monotonic() - self.link.heard_at < _SILENT_S
 
-    def connect(self, namespace: str) -> str:
-        """Join the graph in a thread of its own; returns why not, empty where it was done."""
+    def connect(self, namespace: str, domain: int | None = None) -> str:
+        """Join the graph in a thread of its own; returns why not, empty where it was done. domain: None: the user's."""
         try:
             from hasel_sysid.workbench.live.link import RigLink
         except ImportError as error:
             return f"no live mode: {error}"
-        self.link = RigLink(self.stream, namespace)
+        self.link = RigLink(self.stream, namespace, domain)
         return ""
 
     def close(self) -> None:

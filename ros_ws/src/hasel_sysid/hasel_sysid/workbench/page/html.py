@@ -23,7 +23,7 @@ def runs_table(runs: Sequence[RunComparison]) -> str:
         f'<td class="number">{error_text(run.mean_absolute_error)}</td></tr>'
         for run in runs
     )
-    head = "<tr><th>run</th><th>drive</th><th class=number>mean |Δ sin θ|</th></tr>"
+    head = '<tr><th>run</th><th>drive</th><th class=number title="mean |Δ sin θ|">error</th></tr>'
     return f'<table class="runs"><thead>{head}</thead><tbody>{rows}</tbody></table>'
 
 
@@ -71,7 +71,7 @@ def _slider(each: Slider) -> str:
     unit = "" if each.unit == "1" else f" {each.unit}"
     hint = " · ".join(filter(None, [each.meaning, each.plausible and f"plausible {each.plausible}"]))
     return (
-        f'<label class="tune" title="{escape(hint)}"><span>{escape(each.name)}</span>'
+        f'<label class="tune" title="{escape(hint)}"><span>{escape(each.name).replace(".", ".<wbr>")}</span>'
         f'<input type="range" min="0" max="1000" step="1" value="{_position(each)}" data-name="{escape(each.name)}" '
         f'data-low="{each.lowest!r}" data-high="{each.highest!r}" data-log="{int(each.logarithmic)}" '
         f'data-value="{each.value!r}" data-unit="{escape(unit)}" aria-label="{escape(each.name)}{escape(unit)}" '

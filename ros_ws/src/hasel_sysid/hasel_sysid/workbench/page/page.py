@@ -44,7 +44,7 @@ class Page:
                 'dense flat round aria-label="light or dark"'
             )
             self.stop = ui.button("STOP", on_click=self._stop).classes("wb-stop")
-            self.stop.props('no-caps aria-label="emergency stop: ground the high voltage"')
+            self.stop.props('color=negative no-caps aria-label="emergency stop: ground the high voltage"')
             tools = Toolbar(self)
         with ui.element("main").classes("wb-grid"):
             with ui.element("div").classes("wb-column"):

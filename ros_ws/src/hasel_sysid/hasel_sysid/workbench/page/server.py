@@ -2,10 +2,11 @@
 
 import asyncio
 import socket
+from collections.abc import Callable
 from pathlib import Path
 
 from fastapi.middleware.trustedhost import TrustedHostMiddleware
-from nicegui import app, background_tasks, ui
+from nicegui import app, background_tasks, run, ui
 
 from hasel_sysid.errors import SysidError
 from hasel_sysid.workbench.jobs import Jobs
@@ -19,8 +20,20 @@ _SCRIPTS = ("packet.js", "body.js", "curves.js", "tuning.js", "live.js", "bench.
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 
 
-def serve(session: Workbench, jobs: Jobs, rig: Rig, host: str, port: int, show: bool) -> None:
-    """Serve until interrupted; port 0: any that is free. Raises SysidError where the port is taken."""
+def serve(
+    session: Workbench,
+    jobs: Jobs,
+    rig: Rig,
+    host: str,
+    port: int,
+    show: bool,
+    visit: Callable[[str], None] | None = None,
+) -> None:
+    """Serve until interrupted; port 0: any that is free.
+
+    visit: called with the address, in a thread, once the server answers; after it the server ends. Raises SysidError
+    where the port is taken.
+    """
     port = _free_port(host, port)
     add_routes(session, rig)
     (session.folder / "export").mkdir(parents=True, exist_ok=True)
@@ -38,7 +51,17 @@ def serve(session: Workbench, jobs: Jobs, rig: Rig, host: str, port: int, show: 
 
     address = f"http://{'127.0.0.1' if host in ('0.0.0.0', '::') else host}:{port}/"
     told = f"The workbench is at {address} (Ctrl-C ends it); what is kept is in {session.folder}."
-    app.on_startup(lambda: background_tasks.create(_tell_when_open(host, port, told)))
+
+    async def opened() -> None:
+        await _until_open(host, port)
+        print(told, flush=True)
+        if visit is not None:
+            try:
+                await run.io_bound(visit, address)
+            finally:
+                app.shutdown()
+
+    app.on_startup(lambda: background_tasks.create(opened()))
     ui.run(
         host=host,
         port=port,
@@ -51,8 +74,8 @@ def serve(session: Workbench, jobs: Jobs, rig: Rig, host: str, port: int, show: 
     )
 
 
-async def _tell_when_open(host: str, port: int, sentence: str) -> None:
-    """Print a sentence once the server answers."""
+async def _until_open(host: str, port: int) -> None:
+    """Wait until the server answers."""
     while True:
         await asyncio.sleep(0.05)
         try:
@@ -60,7 +83,6 @@ async def _tell_when_open(host: str, port: int, sentence: str) -> None:
         except OSError:
             continue
         writer.close()
-        print(sentence, flush=True)
         return
 
 
