@@ -12,6 +12,6 @@ def counted(title: str, count: int) -> Iterator[Callable[[int], None]]:
     """A bar on stderr; call what it gives with how many are done."""
     console = Console(stderr=True)
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=console, transient=not console.is_terminal) as bar:
+    with Progress(*columns, console=console, disable=not console.is_terminal) as bar:
         task = bar.add_task(title, total=count)
         yield lambda done: bar.update(task, completed=done)

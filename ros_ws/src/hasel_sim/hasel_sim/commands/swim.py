@@ -124,7 +124,8 @@ def _file_name(name: str) -> str:
 
 
 def _print(console: Console, swept: Swept) -> None:
-    table = Table(title=f"{swept.model.name}: swimming speed in mm/s (work in J/(kg m))")
+    console.print(f"{swept.model.name}: swimming speed in mm/s (work in J/(kg m))", soft_wrap=True)
+    table = Table()
     table.add_column("Hz", justify="right")
     for label in swept.curves:
         table.add_column(label, justify="right")
@@ -145,7 +146,8 @@ def _print(console: Console, swept: Swept) -> None:
 
 def _print_varied(console: Console, name: str, sweeps: dict[float, Swept]) -> None:
     unit = next(iter(sweeps.values())).model.parameters[name].unit
-    table = Table(title=f"What {name} does to the optimum")
+    console.print(f"What {name} does to the optimum", soft_wrap=True)
+    table = Table()
     table.add_column(f"{name}, {unit}", justify="right")
     labels = list(next(iter(sweeps.values())).optima)
     for label in labels:
