@@ -8,7 +8,7 @@ one complex polynomial for all runs, fitted to the four in which all markers are
 
 The shape being given, the forces of the fluid decide the speed. Added mass, cross-flow drag and skin friction are
 those of theory; the one number that no theory gives, the drag of the blunt head, is fitted to two runs, and the six
-others are predicted. Depth and mass are those of the public model.
+others are predicted. The depth is the tail's height in the public model; the mass is estimated from its shape.
 
     python measured_fish.py
 """
@@ -26,7 +26,7 @@ NOSE, TAIL_BASE = -0.071, 0.27
 BEAT = np.array([2.183 + 2.021j, -1.482 - 3.641j, 0.299 + 1.621j])
 """Deflection over the last marker's: of s^2, s^3, s^4, s from 0 at the first hinge to 1 at that marker."""
 DEPTH, MASS = 0.1, 1.6
-"""Of the fish, m and kg, in the public model."""
+"""Of the fish, m and kg: tail height in the public model, and estimated from its shape."""
 FITTED = (1.0, 1.75)
 """The runs that the drag of the head is fitted to, by their named frequency [Hz]."""
 PUBLISHED = {"ellipsoids, five coefficients": 0.019, "elongated-body theory, two coefficients": 0.134}
