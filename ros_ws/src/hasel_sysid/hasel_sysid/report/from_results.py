@@ -1,17 +1,18 @@
 """The report's content from a comparison or a fit."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hasel_sim.model import Model
 
 from hasel_sysid.compare.comparison import Comparison
+from hasel_sysid.compare.run_comparison import RunComparison
 from hasel_sysid.report.content import KeyNumber, ParameterRow, ReportContent, RunOverlay
 from hasel_sysid.report.figures.overlay import driven_stretches
 from hasel_sysid.report.numbers import count_text, error_text
 from hasel_sysid.report.parameter_words import meaning, plausible
-from hasel_sysid.report.shape import simulated_shapes
+from hasel_sysid.report.shape import Shapes, simulated_shapes
 
 if TYPE_CHECKING:
     from hasel_sysid.fit.result import FitResult
@@ -82,11 +83,14 @@ def never_fitted(label: str, model: Model) -> str:
 
 
 def comparison_content(
-    comparisons: Sequence[Comparison], first_of_all: Sequence[str] = (), detailed: int = 0
+    comparisons: Sequence[Comparison],
+    first_of_all: Sequence[str] = (),
+    detailed: int = 0,
+    shapes_of: Callable[[Model, Sequence[RunComparison]], Shapes | None] = simulated_shapes,
 ) -> ReportContent:
     """Report of one or several models against the same recordings; one of them in detail.
 
-    first_of_all: what must be known before any number is read.
+    first_of_all: what must be known before any number is read; shapes_of: who simulates the body's extreme shapes.
     """
     first = comparisons[0]
     labels = ", ".join(c.label for c in comparisons)
@@ -100,7 +104,7 @@ def comparison_content(
         runs=overlays(comparisons),
         comparisons=tuple(comparisons),
         detailed=detailed,
-        shapes=simulated_shapes(comparisons[detailed].model, first.runs),
+        shapes=shapes_of(comparisons[detailed].model, first.runs),
         first_of_all=tuple(f"{sentence[:1].upper()}{sentence[1:]}." for sentence in first_of_all if sentence),
         recordings=tuple(f"{run.name}{' (unseen)' if run.unseen else ''}" for run in first.runs),
         parameters=parameter_rows(first.model),

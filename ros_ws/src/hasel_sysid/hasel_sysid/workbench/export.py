@@ -1,5 +1,6 @@
 """A session as files: model, report, figures and a script."""
 
+from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from hasel_sysid.report.content import ReportContent
 from hasel_sysid.report.from_diagnosis import ranked_rows, what_remains
 from hasel_sysid.report.from_improvement import next_run
 from hasel_sysid.report.from_results import comparison_content, parameter_rows
+from hasel_sysid.report.shape import simulated_shapes
 from hasel_sysid.report.write import write_report
 from hasel_sysid.workbench.evaluate import Progress
 from hasel_sysid.workbench.recordings import Reading
@@ -22,8 +24,11 @@ _MOST_MODELS = 3
 """More models in one curve's picture cannot be told apart: the first and the last ones are shown."""
 
 
-def export(state: State, folder: Path, reading: Reading, progress: Progress) -> list[Path]:
-    """Write the kept steps; what is being tried is not among them. Returns what was written."""
+def export(state: State, folder: Path, reading: Reading, pool: Executor, progress: Progress) -> list[Path]:
+    """Write the kept steps; what is being tried is not among them. Returns what was written.
+
+    pool: what is simulated is simulated there.
+    """
     from hasel_sysid.report.pictures import overlay_picture, stages_picture, waterfall_picture
 
     state = replace(state, trial=None)
@@ -33,7 +38,7 @@ def export(state: State, folder: Path, reading: Reading, progress: Progress) -> 
     save_model(state.current.model, written[1])
     written[2].write_text(script(state, reading), encoding="utf-8")
     progress("figures", 0.1)
-    content = report_content(state)
+    content = report_content(state, pool)
     for kind in ("svg", "png"):
         written.append(waterfall_picture(content.stages, content.noise_floor, folder / f"waterfall.{kind}"))
         written.append(stages_picture(content.stages, content.noise_floor, folder / f"error_by_step.{kind}"))
@@ -44,11 +49,13 @@ def export(state: State, folder: Path, reading: Reading, progress: Progress) -> 
     return written
 
 
-def report_content(state: State) -> ReportContent:
+def report_content(state: State, pool: Executor) -> ReportContent:
     """What the report shows of a session."""
     comparisons = _shown(state)
     falling = waterfall(state)
-    content = comparison_content(comparisons, detailed=-1)
+    content = comparison_content(
+        comparisons, detailed=-1, shapes_of=lambda *given: pool.submit(simulated_shapes, *given).result()
+    )
     diagnosis = state.diagnosis
     current = state.current
     return replace(

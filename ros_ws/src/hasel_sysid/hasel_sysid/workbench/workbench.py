@@ -133,7 +133,7 @@ class Workbench:
     def export(self, folder: Path | None = None, progress: Progress = silent) -> list[Path]:
         """Write model, report, figures and the script that does it all again; returns their paths."""
         with self._change() as state:
-            return export(state, folder or self.folder / "export", self.reading, progress)
+            return export(state, folder or self.folder / "export", self.reading, self.pool, progress)
 
     def model_file(self) -> Path:
         """A file with the model that is shown, for the running simulator."""
