@@ -59,6 +59,11 @@ class Observer(Node):
             assert time.monotonic() < end, "the tracker did not get there in time"
             rclpy.spin_once(self, timeout_sec=0.05)
 
+    def wait_for_reports(self, count: int) -> None:
+        """Spin until so many more reports of the tracker's health have come."""
+        wanted = len(self.reports) + count
+        self.wait(lambda: len(self.reports) >= wanted)
+
     def call(self, kind: type, name: str, request: object) -> object:
         """Call a service and return its response."""
         client = self.create_client(kind, name)
@@ -160,9 +165,10 @@ def test_the_lifecycle_stops_and_starts_the_tracking(observer, start, long_video
         assert change(Transition.TRANSITION_ACTIVATE)
         observer.wait(lambda before=before: len(observer.angles) > before + 20)
         assert change(Transition.TRANSITION_DEACTIVATE)
-        observer.wait(lambda: "Not active" in observer.reports[-1].status[0].message)
-        resting, reported = len(observer.angles), len(observer.reports)
-        observer.wait(lambda reported=reported: len(observer.reports) > reported + 1)
+        observer.wait_for_reports(2)  # meanwhile what was under way arrives
+        resting = len(observer.angles)
+        observer.wait_for_reports(2)
+        assert "Not active" in observer.reports[-1].status[0].message
         assert len(observer.angles) == resting
     assert "Traceback" not in stopped(process)
     assert process.returncode == 0

@@ -4,9 +4,9 @@ from hasel_sysid.command_line import workbench
 
 
 def test_without_nicegui_it_says_what_to_install(monkeypatch, capsys):
-    """One sentence, and exit code 1."""
+    """One sentence, and an exit code."""
     monkeypatch.setattr(workbench, "find_spec", lambda name: None)
-    assert workbench.main([]) == 1
+    assert workbench.main([]) != 0
     said = capsys.readouterr().err
     assert said.count("\n") == 1
     assert "pip install 'nicegui>=3,<4'" in said
