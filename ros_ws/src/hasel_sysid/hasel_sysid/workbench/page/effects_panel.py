@@ -74,6 +74,6 @@ class EffectsPanel:
                 button.props(f'dense no-caps outline size=sm aria-label="{word} {card.effect}"')
                 button.set_enabled(session.state.trial is None)
             ui.html(
-                f"<details><summary>{card.place}: what it is</summary>{card_text(card)}</details>",
+                f"<details><summary>{card.place}: equation, values, sources</summary>{card_text(card)}</details>",
                 sanitize=False,
             )
