@@ -41,15 +41,28 @@ def show_mesh_parser() -> argparse.ArgumentParser:
     return options
 
 
+def _of_swimmer(options: argparse.ArgumentParser) -> None:
+    """What every command about a free swimmer takes."""
+    options.add_argument(
+        "--model", default="swimmer_in_oil", metavar="NAME|FILE", help="default: swimmer_in_oil"
+    )
+    options.add_argument(
+        "--set",
+        type=assignment,
+        action="append",
+        default=[],
+        metavar="PARAMETER=VALUE",
+        help="another value of a parameter or of a constant of the model",
+    )
+
+
 def swim_parser() -> argparse.ArgumentParser:
     """Options of `swim`."""
     options = argparse.ArgumentParser(
         prog="swim",
         description="How fast a free body swims, by voltage and frequency: a table, a picture and the optimum.",
     )
-    options.add_argument(
-        "--model", default="swimmer_in_oil", metavar="NAME|FILE", help="default: swimmer_in_oil"
-    )
+    _of_swimmer(options)
     options.add_argument(
         "--voltage",
         type=voltages,
@@ -74,14 +87,6 @@ def swim_parser() -> argparse.ArgumentParser:
         default=[],
         metavar="PARAMETER=LOW:HIGH[:COUNT]",
         help="repeat the sweep with a parameter or constant at values of a range (3 of them): what decides the optimum",
-    )
-    options.add_argument(
-        "--set",
-        type=assignment,
-        action="append",
-        default=[],
-        metavar="PARAMETER=VALUE",
-        help="another value of a parameter or of a constant of the model",
     )
     options.add_argument(
         "--output",
@@ -172,9 +177,7 @@ def optimise_parser() -> argparse.ArgumentParser:
         description="Find the waveform of the two muscles with which a free body swims best, and write it as a file "
         "that an experiment can play.",
     )
-    options.add_argument(
-        "--model", default="swimmer_in_oil", metavar="NAME|FILE", help="default: swimmer_in_oil"
-    )
+    _of_swimmer(options)
     options.add_argument("--frequency", type=positive, default=2.0, metavar="HZ", help="default: 2")
     options.add_argument(
         "--goal",
@@ -206,14 +209,6 @@ def optimise_parser() -> argparse.ArgumentParser:
     options.add_argument("--phase", type=positive, default=0.5, help="to start from (default: 0.5)")
     options.add_argument(
         "--largest", type=positive, default=5500.0, metavar="V", help="largest voltage (default: 5500)"
-    )
-    options.add_argument(
-        "--set",
-        type=assignment,
-        action="append",
-        default=[],
-        metavar="PARAMETER=VALUE",
-        help="another value of a parameter or of a constant of the model",
     )
     options.add_argument(
         "--duration", type=positive, default=4.0, metavar="S", help="of the swims that are tried (default: 4)"
