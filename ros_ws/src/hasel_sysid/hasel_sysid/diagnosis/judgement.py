@@ -18,14 +18,13 @@ from hasel_sysid.projection import orthonormal
 
 _MATTERS = 0.4
 """An effect that removes less than this share of the error above the noise is not what is missing."""
-_RULED_OUT = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
+RULED_OUT = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
 _DETECTION = 3.3
 """Standard errors at which an effect is seen with 95 % certainty at a 5 % false-alarm rate."""
 
 
 def judged(context: Context) -> Diagnosis:
     """What is said of all effects of a context."""
-    base = context.fit.evaluation
     chances, none = probabilities(context)
     findings = [
         replace(finding(context, effect), probability=chances.get(effect.id, 0.0))
@@ -34,9 +33,16 @@ def judged(context: Context) -> Diagnosis:
     alike = groups(context)
     findings = [_one_answer(finding, context.winner, alike) for finding in findings]
     findings.sort(key=lambda one: (-one.probability, context.squares.get(one.effect, np.inf)))
-    best = context.winner or min(context.finals, key=context.squares.get, default=None)
-    columns = np.column_stack([base.jacobian, regressors(base)])
-    learned = unexplained_by(columns, base.residual)
+    return as_diagnosis(context, findings, alike, none)
+
+
+def as_diagnosis(
+    context: Context, findings: list[Finding], alike: list[tuple[str, ...]], none: float
+) -> Diagnosis:
+    """Findings in their order, groups and the probability of none, with what else a context tells."""
+    base = context.fit.evaluation
+    best = context.winner or min(context.finals, key=context.squares.__getitem__, default=None)
+    learned = unexplained_by(np.column_stack([base.jacobian, regressors(base)]), base.residual)
     return Diagnosis(
         findings,
         alike,
@@ -53,7 +59,7 @@ def judged(context: Context) -> Diagnosis:
 def _one_answer(found: Finding, winner: str | None, alike: Sequence[tuple[str, ...]]) -> Finding:
     """What cannot be told from the winner is not called absent: it could stand in its place."""
     in_doubt = winner is not None and any(winner in group and found.effect in group for group in alike)
-    if in_doubt and found.effect != winner and found.verdict in _RULED_OUT:
+    if in_doubt and found.effect != winner and found.verdict in RULED_OUT:
         return replace(found, verdict=Verdict.MISSING_IF_SIZE_MATTERS)
     return found
 

@@ -46,15 +46,15 @@ def search(
             done = min(1.0, (begin + _BATCH) / len(every))
             progress(f"tried {len(first)} of {len(every)} starts", 0.5 * done)
     if not decades:
-        first += _nearer(trials, every, first)
+        first += nearer(trials, every, first)
     best = _steps(trials, _best_of_each(first), progress)
     return best, [trial for trial in first if not decades or id(trial.start) in usual]
 
 
-def _nearer(trials: Trials, tried: Sequence[Start], found: Sequence[Trial]) -> list[Trial]:
+def nearer(trials: Trials, tried: Sequence[Start], found: Sequence[Trial]) -> list[Trial]:
     """Trials from half the size, or a quarter, of what could not be simulated or made the sum of squares far worse."""
     squares = trials.fitted.sum_of_squares
-    nearer: list[Trial] = []
+    every: list[Trial] = []
     for _ in range(_HALVINGS):
         done = {
             id(t.start)
@@ -66,8 +66,8 @@ def _nearer(trials: Trials, tried: Sequence[Start], found: Sequence[Trial]) -> l
         if not tried or trials.time_is_over():
             break
         found = trials.first(tried)
-        nearer += found
-    return nearer
+        every += found
+    return every
 
 
 def search_from_larger(

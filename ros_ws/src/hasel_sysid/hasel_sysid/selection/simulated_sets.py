@@ -11,6 +11,7 @@ from hasel_sim.model import Model
 from hasel_sysid.diagnosis.candidates import Start, decade_starts, resized, starts
 from hasel_sysid.diagnosis.context import on_own_bound
 from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
+from hasel_sysid.diagnosis.search import nearer
 from hasel_sysid.diagnosis.trial import MOST_CHANGE, Trial, Trials, limited
 from hasel_sysid.fit import FitResult, fit_least_squares
 from hasel_sysid.noise import NoiseModel, estimate_noise
@@ -21,10 +22,6 @@ from hasel_sysid.projection import orthonormal
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect
 
 _BATCH = 8
-_HALVINGS = 2
-"""How often what cannot be simulated, or is far worse, is tried again from half of its size."""
-_FAR, _SOME_HOPE = 2.0, 0.2
-"""What makes the sum of squares so many times worse is too far off, unless it could never lower it by such a share."""
 _RIVAL = 0.5
 """What could take away less than this share of what the best one could gets no further steps."""
 _SIZES = (0.1, 2.0)
@@ -166,26 +163,7 @@ class SimulatedSets:
             if begin > 0 and self.out_of_time():
                 break
             found += trials.first(every[begin : begin + _BATCH])
-        return found if self.decades else found + self._nearer(trials, every, found)
-
-    def _nearer(self, trials: Trials, begun: Sequence[Start], found: Sequence[Trial]) -> list[Trial]:
-        """From half the size, or a quarter, of what could not be simulated or is too far off to be believed."""
-        squares = trials.fitted.sum_of_squares
-        nearer: list[Trial] = []
-        begun = [start for start in begun if start.effect.id in trials.tried]
-        for _ in range(_HALVINGS):
-            done = {
-                id(trial.start)
-                for trial in found
-                if trial.sum_of_squares <= _FAR * squares or trial.promised < _SOME_HOPE * squares
-            }
-            halved = [(start, resized(start, 0.5)) for start in begun if id(start) not in done]
-            begun = [half for start, half in halved if half.values != start.values]
-            if not begun or self.out_of_time():
-                break
-            found = trials.first(begun)
-            nearer += found
-        return nearer
+        return found if self.decades else found + nearer(trials, every, found)
 
     def fit(self, effects: EffectSet, near: FittedSet, added: Collection[Prospect]) -> FittedSet | None:
         """Least squares of the model itself, from where the drafts have led."""

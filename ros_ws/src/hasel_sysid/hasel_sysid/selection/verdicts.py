@@ -10,17 +10,14 @@ from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict
 from hasel_sysid.diagnosis.context import Context, expected_squares
 from hasel_sysid.diagnosis.explained import share_left
 from hasel_sysid.diagnosis.finals import allowed_noise
-from hasel_sysid.diagnosis.judgement import finding
-from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
+from hasel_sysid.diagnosis.judgement import RULED_OUT, as_diagnosis, finding
+from hasel_sysid.diagnosis.reached import squares_reached
 from hasel_sysid.diagnosis.signature import signature
-from hasel_sysid.diagnosis.suspects import numerical_suspects
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.selection.choice import Choice
 from hasel_sysid.selection.search import Searched
 from hasel_sysid.selection.sets import NOTHING
 from hasel_sysid.selection.simulated_sets import SimulatedSets
-
-_RULED_OUT = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
 
 
 @dataclass(frozen=True)
@@ -40,7 +37,6 @@ def diagnosis(
 ) -> Diagnosis:
     """Of the baseline: every effect by the weight of the sets that hold it; changes: by finer numerics [frames]."""
     context = _context(sets, found, choice, changes)
-    base = context.fit.evaluation
     left = _left(found, choice, context.noise)
     none = left if found.first.chance < found.level else 1.0
     groups = choice.groups
@@ -50,19 +46,7 @@ def diagnosis(
     ]
     findings = [_one_answer(one, choice, groups) for one in findings]
     findings.sort(key=lambda one: (-_order(one, choice), context.squares.get(one.effect, np.inf)))
-    learned = unexplained_by(np.column_stack([base.jacobian, regressors(base)]), base.residual)
-    best = context.named or min(context.finals, key=context.squares.__getitem__, default=None)
-    return Diagnosis(
-        findings,
-        groups,
-        context.noise,
-        context.chance,
-        0.0 if best is None else context.error_removed(best),
-        float(np.clip((context.base - learned @ learned) / context.excess, 0, 1)),
-        none,
-        numerical_suspects(context.fit, context.changes, context.excess),
-        context,
-    )
+    return as_diagnosis(context, findings, groups, none)
 
 
 def _context(
@@ -70,10 +54,8 @@ def _context(
 ) -> ChosenContext:
     fit = sets.fitted
     finals = {next(iter(s)): f.fit for s, f in found.known.items() if len(s) == 1}
-    squares = {
-        effect: min(p.start.predicted, p.start.sum_of_squares) for effect, p in found.prospects.items()
-    }
-    squares.update({effect: final.evaluation.sum_of_squares for effect, final in finals.items()})
+    of_effect = {effect: prospect.start for effect, prospect in found.prospects.items()}
+    squares = squares_reached(list(of_effect.values()), finals, fit.evaluation.sum_of_squares, hurried=False)
     signatures = {
         t.start.effect.id: signature(t, fit.evaluation.residual, sets.trials.base.jacobian, t.start.typical)
         for t in reversed(sets.first)
@@ -92,7 +74,7 @@ def _context(
         found.first.chance,
         dict(changes),
         measured,
-        {effect: p.start for effect, p in found.prospects.items()},
+        of_effect,
         frozenset(sets.effects) - sets.tried,
         named=named,
     )
@@ -117,6 +99,6 @@ def _order(one: Finding, choice: Choice) -> float:
 def _one_answer(one: Finding, choice: Choice, groups: Sequence[tuple[str, ...]]) -> Finding:
     """What cannot be told from a chosen effect is not called absent: it could stand in its place."""
     in_doubt = any(one.effect in group for group in groups) and one.effect not in choice.chosen
-    if in_doubt and one.verdict in _RULED_OUT:
+    if in_doubt and one.verdict in RULED_OUT:
         return replace(one, verdict=Verdict.MISSING_IF_SIZE_MATTERS)
     return one
