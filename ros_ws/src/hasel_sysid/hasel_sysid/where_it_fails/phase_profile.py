@@ -13,8 +13,8 @@ BINS = 20
 class PhaseProfile:
     """phase: centre of every bin, 0 to 1, [bins]; mean, absolute: mean and mean magnitude of the residual [bins].
 
-    repeats: correlation of the residual between one cycle and the next, NaN with less than two cycles: 1 when the drive
-    determines it, 0 when it is noise.
+    repeats: correlation of the residual between one cycle and the next: 1 when the drive determines it, 0 when it is
+    noise; NaN with less than two cycles, or where the residual does not change, as that of a perfect model.
     """
 
     phase: np.ndarray
@@ -50,5 +50,7 @@ def _repeats(time: np.ndarray, residual: np.ndarray, period: float) -> float:
     earlier = time + period <= time[-1]
     if time[-1] - time[0] < 1.9 * period or np.count_nonzero(earlier) < 8:
         return float("nan")
-    later = np.interp(time[earlier] + period, time, residual)
-    return float(np.corrcoef(residual[earlier], later)[0, 1])
+    now, later = residual[earlier], np.interp(time[earlier] + period, time, residual)
+    if np.ptp(now) == 0 or np.ptp(later) == 0:
+        return float("nan")
+    return float(np.corrcoef(now, later)[0, 1])
