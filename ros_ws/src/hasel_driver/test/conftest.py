@@ -127,7 +127,7 @@ def board(rig, converse) -> Conversation:
     return converse(rig)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def ros():
     """A ROS client."""
     pytest.importorskip("rclpy", reason="ROS 2 is not there")

@@ -1,6 +1,5 @@
 """What comes by topic reaches the driver whole."""
 
-import itertools
 import math
 import time
 
@@ -9,9 +8,18 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
 
 import rclpy
+from hasel_driver.testing.ros_client import RosClient
 from hasel_driver.urgent_inputs import UrgentInputs
 
 MANY = 50
+
+
+@pytest.fixture
+def ros():
+    """A client of the test's own: if the test is repeated, nothing of the failed attempt is left."""
+    client = RosClient()
+    yield client
+    client.close()
 
 
 @pytest.fixture
@@ -56,12 +64,15 @@ def test_every_watch_runs_on_a_steady_clock(tmp_path):
 
 def greet_until_heard(ros, commands: list) -> None:
     """Until the two ends know each other, and no greeting is under way any more: each has its own voltage."""
-    for greeting in itertools.count(1):
+    for greeting in range(1, 300):
         ros.command((float(greeting), 0.0))
         time.sleep(0.1)
         if commands:
             ros.wait(lambda last=greeting: commands[-1][0] == last)
             break
+    else:
+        known = ros.commands.get_subscription_count()
+        pytest.fail(f"no greeting was heard within 30 s; the publisher knows of {known} subscriptions")
     commands.clear()
 
 

@@ -33,7 +33,7 @@ COMMAND_PERIOD_S = 0.02
 
 
 class RosClient:
-    """One for a whole test run; `states` collects `/hasel/state` and may be cleared, `heard` keeps the last."""
+    """For some tests; `states` collects `/hasel/state` and may be cleared, `heard` keeps the last."""
 
     def __init__(self) -> None:
         # A context of its own: other tests of the same process make theirs. The signal handlers are the test runner's.

@@ -3,6 +3,7 @@
 import threading
 import time
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from hasel_sim.model import load_model, save_model
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 from hasel_sim.simulator_messages import angle_message, to_nanoseconds, to_time
+from hasel_sysid import sysid_node
 from hasel_sysid.sysid_node import SysidNode
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.parameter import Parameter
@@ -126,18 +128,36 @@ def test_the_error_is_published_for_every_frame(talk, recording):
     assert talk.errors[-1].count == 61
 
 
-def test_what_was_heard_is_fitted_while_the_node_goes_on(talk, recording):
+@pytest.fixture
+def held_fit(monkeypatch):
+    """The events that a fit has `begun`, and that it may be `answered`; until then it is held back."""
+    events = SimpleNamespace(begun=threading.Event(), answered=threading.Event())
+    fit = sysid_node.fit_recordings
+
+    def held_back(*arguments):
+        events.begun.set()
+        result = fit(*arguments)
+        events.answered.wait(60.0)
+        return result
+
+    monkeypatch.setattr(sysid_node, "fit_recordings", held_back)
+    yield events
+    events.answered.set()
+
+
+def test_what_was_heard_is_fitted_while_the_node_goes_on(talk, recording, held_fit):
     """The truth is found, published and written; meanwhile errors are still summed up and a second fit is refused."""
     talk.say(recording, recording.sin_theta)
     talk.until(lambda: len(talk.errors) == 61)
     answer = talk.fit()
-    time.sleep(0.3)
+    talk.until(held_fit.begun.is_set)
     second = talk.fit()
     talk.say(recording, recording.sin_theta)
     talk.until(lambda: len(talk.errors) == 122)
-    assert not answer.done(), "the fit was over too soon to tell whether the node responds"
     talk.until(second.done)
     assert (second.result().success, "busy" in second.result().message) == (False, True)
+    assert not answer.done()
+    held_fit.answered.set()
     talk.until(lambda: answer.done() and talk.fits)
     assert answer.result().success, answer.result().message
     found = {p.name: p.value for p in talk.fits[0].parameters}
