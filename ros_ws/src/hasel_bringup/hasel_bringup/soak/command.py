@@ -28,6 +28,8 @@ NODES = {
 }  # fmt: skip
 KILLED = ("simulator", "sysid", "virtual_rig", "driver_node")
 MOST_GROWTH = 0.05  # of a process's memory, from the first to the last fifth of its life
+FRAME_RATE = 120.0  # of the virtual camera
+MOST_OFF = 0.005  # of the frame rate
 _RECOVERY_S = 60.0
 _MEMORY_PERIOD_S = 5.0
 
@@ -108,6 +110,9 @@ class Soak:
         self._compare(when, "measured angles without an error", within[MEASURED], within[ERROR])
         gaps = np.diff(within[STATE]) * 1e-9
         print(f"{when}: longest distance of two states {gaps.max():.3f} s, median {np.median(gaps):.4f} s")
+        rate = counts[MEASURED] / span_s
+        if abs(rate / FRAME_RATE - 1) > MOST_OFF:
+            self.problems.append(f"{when}: {rate:.2f} measured angles a second, expected {FRAME_RATE:g}")
 
     def _compare(self, when: str, what: str, sent: np.ndarray, answered: np.ndarray) -> None:
         missing = len(np.setdiff1d(sent, answered))

@@ -7,7 +7,6 @@ from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_recording.endpoints import Role, frame_of, publisher, subscription
 from hasel_recording.topics import MEASURED, NAMESPACE, STATE
 from hasel_sim.live.live_model import live_model
-from hasel_sim.live.live_simulator import LiveSimulator
 from hasel_sim.live.repeated_warnings import RepeatedWarnings
 from hasel_sim.node_parameters import declare, words
 from hasel_sim.simulator_messages import angle_message, rig_voltage, to_nanoseconds
@@ -16,6 +15,7 @@ from rclpy.node import Node
 from hasel_bringup.virtual_rig.body_parameters import PARAMETERS
 from hasel_bringup.virtual_rig.camera_noise import CameraNoise
 from hasel_bringup.virtual_rig.hidden import with_hidden
+from hasel_bringup.virtual_rig.seen_body import SeenBody
 
 
 class VirtualBodyNode(Node):
@@ -28,11 +28,9 @@ class VirtualBodyNode(Node):
         self._warnings = RepeatedWarnings()
         model, warning = live_model(self._value("model"))
         self._warn(warning)
-        self._live = LiveSimulator(with_hidden(model, words(self, "hidden")))
+        self._body = SeenBody(with_hidden(model, words(self, "hidden")), self._value("frame_rate"))
         noise = (self._value(name) for name in ("white_noise", "coloured_noise", "correlation", "seed"))
         self._noise, self._offset = CameraNoise(*noise), self._value("offset")
-        self._spacing_ns = int(0.99e9 / self._value("frame_rate"))
-        self._last_ns = -(10**18)
         self._angles = publisher(self, BendingAngle, MEASURED, Role.SAMPLES)
         subscription(self, SupplyState, STATE, self._on_state, Role.EVERY_SAMPLE)
 
@@ -45,12 +43,9 @@ class VirtualBodyNode(Node):
             self.get_logger().warning(sentence)
 
     def _on_state(self, state: SupplyState) -> None:
-        answer = self._live.receive(to_nanoseconds(state.header.stamp), rig_voltage(state))
-        self._warn(answer.sentence)
-        for angle in answer.angles:
-            if 0 <= angle.stamp_ns - self._last_ns < self._spacing_ns:
-                continue
-            self._last_ns = angle.stamp_ns
+        angles, sentence = self._body.state(to_nanoseconds(state.header.stamp), rig_voltage(state))
+        self._warn(sentence)
+        for angle in angles:
             seen = angle.sin_theta + self._offset + self._noise.next()
             message = angle_message(angle.stamp_ns, float(np.clip(seen, -1.0, 1.0)), self._frame_id)
             self._angles.publish(message)

@@ -14,5 +14,5 @@ PARAMETERS = (
     NodeParameter("correlation", 0.9, "of the coloured noise from frame to frame", "1", 0.0, 0.999),
     NodeParameter("offset", 0.0, "what the camera reads on a straight body, as sin theta", "1", -1.0, 1.0),
     NodeParameter("seed", 1, "of the noise", "1", 0, 2**31 - 1),
-    NodeParameter("frame_rate", 120.0, "most frames per second", "1/s", 1.0, 1000.0),
+    NodeParameter("frame_rate", 120.0, "of the camera, which has a clock of its own", "1/s", 1.0, 1000.0),
 )
