@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from hasel_driver.waveform_file import read_waveform
-from hasel_sim.swimming.best_waveform import waveform_rows
-from hasel_sim.swimming.boxes import Boxes
+from hasel_sim.swimming.boxes import Boxes, waveform_rows
 
 
 def test_the_driver_plays_what_was_found(tmp_path):

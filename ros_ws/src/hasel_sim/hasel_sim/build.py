@@ -39,12 +39,10 @@ from hasel_sim.mesh.sites import (
 )
 from hasel_sim.model import Model
 from hasel_sim.model.body import Body
-from hasel_sim.model.constants import REST_CONTRACTION, constants
+from hasel_sim.model.constants import REST_CONTRACTION, constants, outline_names
 from hasel_sim.model.description import Description
+from hasel_sim.model.moved import moved_points
 from hasel_sim.observation import MarkerRows
-
-_OUTLINE_STEP = 3e-6
-"""Step [1] of the central differences by an outline coefficient."""
 
 
 @lru_cache(maxsize=16)
@@ -55,36 +53,34 @@ def _strip(shape: StripShape, density: float, layers: int) -> Mesh:
 def body_mesh(description: Description) -> Mesh:
     """The mesh of a described body. Raises ModelError when the outline crosses the spine or itself."""
     body, numerics = description.body, description.numerics
-    _check_outline(body, np.array(body.coefficients))
+    _check_shape(body)
     shape = body.shape(tuple(muscle.stretch for muscle in description.muscles))
     return _strip(shape, numerics.mesh_density, numerics.layers)
 
 
-def moved_nodes(model: Model, outline: np.ndarray) -> np.ndarray:
-    """Nodes [m] [nodes, 2] of the model's mesh moved to an outline with other coefficients.
-
-    Elements and columns stay, so that what is computed on them can be differentiated by the outline. Raises ModelError
-    when that outline crosses the spine or itself.
-    """
-    body, mesh = model.description.body, model_mesh(model)
-    _check_outline(body, outline)
-    return mesh.nodes + np.tensordot(outline - np.array(body.coefficients), mesh.outline_slope, 1)
-
-
-def _check_outline(body: Body, coefficients: np.ndarray) -> None:
+def _check_shape(body: Body) -> None:
+    coefficients = np.array(body.coefficients)
     fault = outline_fault(coefficients, body.largest_half_height_m, body.spine_thickness_m, body.length_m)
     if fault:
         raise ModelError(fault)
 
 
 def model_mesh(model: Model) -> Mesh:
-    """The mesh of a model."""
-    return body_mesh(model.description)
+    """The mesh of a model: that of the file's shape, its nodes moved where numbers of the shape have other values."""
+    mesh, before, after = body_mesh(model.description), model.description.body, model.described.body
+    if after is before:
+        return mesh
+    for name in ("body.spine.thickness_m", "body.spine.fin_length_m"):
+        value = model.values.get(name, 1.0)
+        if value <= 0:
+            raise ModelError(f"{name} is {value:g}; expected more than 0: choose another value")
+    _check_shape(after)
+    return replace(mesh, nodes=moved_points(mesh.nodes, before, after))
 
 
 def marker_points(model: Model) -> np.ndarray:
     """Reference positions [m] of head, middle and tail marker and of all others, [markers, 2]."""
-    markers, names = model.description.markers, model.description.marker_names()
+    markers, names = model.described.markers, model.described.marker_names()
     return np.array([[markers[name].x_m, markers[name].y_m] for name in names])
 
 
@@ -119,12 +115,12 @@ def _material(description: Description, mesh: Mesh, nodes: np.ndarray) -> tuple[
 
 
 class Builder:
-    """Builds the system of a model at its parameter values, on the model's mesh or on moved nodes [m] [nodes, 2]."""
+    """Builds the system of a model at its parameter values."""
 
-    def __init__(self, model: Model, nodes: np.ndarray | None = None) -> None:
+    def __init__(self, model: Model) -> None:
         announce_compilation()
         self.model = model
-        self.mesh = model_mesh(model) if nodes is None else replace(model_mesh(model), nodes=nodes)
+        self.mesh = model_mesh(model)
         self.nodes = self.mesh.nodes
         self._described = model.described
         coefficients, self._density = _material(self._described, self.mesh, self.nodes)
@@ -217,16 +213,13 @@ class Builder:
             names = [muscle.name for muscle in self.model.description.muscles]
             return ContractionSlope(names.index(name.split(".")[1]))
         more, less, width = difference_points(constant_parameter(self.model, name), self.model.values[name])
-        above, below = (
-            Builder(self.model.with_values({name: value}), self.nodes).system() for value in (more, less)
-        )
+        above, below = (Builder(self.model.with_values({name: value})).system() for value in (more, less))
         return SystemSlope(above, below, width)
 
     def outline_slope(self, index: int) -> ResidualSlope:
         """The derivative of the residual by one outline coefficient, which moves nodes, masses, skin and all."""
-        shift = _OUTLINE_STEP * self.mesh.outline_slope[index]
-        above, below = (Builder(self.model, self.nodes + sign * shift).system() for sign in (1.0, -1.0))
-        return SystemSlope(above, below, 2 * _OUTLINE_STEP)
+        name = outline_names(self.model.description.body)[index]
+        return Builder(self.model.with_freed(name)).residual_slope(name)
 
 
 def difference_points(parameter: EffectParameter, value: float) -> tuple[float, float, float]:

@@ -21,9 +21,8 @@ from hasel_sim.run import Run
 class PreparedRun:
     """One run with one model; `names` are the parameters by which it will be differentiated.
 
-    nodes: moved nodes [m] [nodes, 2] in place of the model's mesh; like: another run with this very model and these
-    names, whose mesh and system it shares. Raises SimulationError for a run without frames
-    after its start, ModelError for an unknown parameter.
+    like: another run with this very model and these names, whose mesh and system it shares. Raises SimulationError for
+    a run without frames after its start, ModelError for an unknown parameter.
     """
 
     def __init__(
@@ -31,7 +30,6 @@ class PreparedRun:
         model: Model,
         run: Run,
         names: tuple[str, ...] = (),
-        nodes: np.ndarray | None = None,
         like: "PreparedRun | None" = None,
     ) -> None:
         self.model, self.run, self.names = model, run, names
@@ -57,7 +55,7 @@ class PreparedRun:
             frames, numerics.steps_per_second, numerics.spectral_radius, run.start, frames[-1] + ahead
         )
         if like is None:
-            self.builder = Builder(model, nodes)
+            self.builder = Builder(model)
             self.stepper = Stepper(self.builder.system(), numerics.tolerance_m)
             self.rows = marker_rows(model, self.builder.mesh)
             self.residual_slopes = [self.builder.residual_slope(name) for name in names]

@@ -11,6 +11,7 @@ from hasel_sim.lanes import Lane, moving_columns, step_together
 from hasel_sim.mechanics.seen import Seen
 from hasel_sim.mechanics.simd import LANES
 from hasel_sim.model import Model
+from hasel_sim.model.constants import shape_constants
 from hasel_sim.observation import observe
 from hasel_sim.prepared_run import PreparedRun
 from hasel_sim.run import Run, Simulation
@@ -65,7 +66,8 @@ def simulate_many(
 def _kind(model: Model) -> tuple:
     """What models must have in common to be simulated side by side; their parameters' values may differ."""
     effects = tuple(sorted(effect.source or effect.id for effect in model.effects))
-    return model.description.model_dump_json(exclude={"name"}), effects
+    shape = tuple(shape_constants(model.described).values())
+    return model.description.model_dump_json(exclude={"name"}), shape, effects
 
 
 def _simulate_beside(prepared: Sequence[PreparedRun], keep_shapes: bool) -> list[Simulation | HaselSimError]:

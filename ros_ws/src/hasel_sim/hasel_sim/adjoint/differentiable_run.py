@@ -7,10 +7,10 @@ import torch
 
 from hasel_sim.adjoint.gradient import gradient, gradient_of_shapes
 from hasel_sim.adjoint.trajectory import Trajectory, follow
-from hasel_sim.build import moved_nodes
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
+from hasel_sim.model.constants import outline_names
 from hasel_sim.prepared_run import PreparedRun
 from hasel_sim.run import Run
 
@@ -36,7 +36,7 @@ class DifferentiableRun:
 
     def outline(self) -> torch.Tensor:
         """The model's own outline coefficients; empty for a body without."""
-        body = self.model.description.body
+        body = self.model.described.body
         return torch.tensor(() if body.outline is None else body.coefficients, dtype=torch.float64)
 
     def contraction(self, values: torch.Tensor | None = None) -> torch.Tensor:
@@ -82,21 +82,24 @@ class DifferentiableRun:
         outline = self.outline() if outline is None else outline
         return _Shapes.apply(self, contraction, values, outline)
 
-    def _at(self, values: torch.Tensor) -> Model:
+    def at(self, values: torch.Tensor) -> Model:
+        """The model at these values of the parameters."""
         return self.model.with_values(dict(zip(self.parameters, values.tolist(), strict=True)))
 
     def prepared(self, values: torch.Tensor, outline: torch.Tensor) -> PreparedRun:
         """The run at these parameter values and outline coefficients."""
-        nodes = None
+        model = self.at(values)
         if not torch.equal(outline, self.outline()):
-            nodes = moved_nodes(self.model, outline.numpy())
-        return PreparedRun(self._at(values), self.run, self.parameters, nodes)
+            names = outline_names(model.description.body)
+            model = model.with_freed(*names).with_values(dict(zip(names, outline.tolist(), strict=True)))
+        return PreparedRun(model, self.run, self.parameters)
 
     def voltages(self, values: torch.Tensor, schedule: DriveSchedule | None = None) -> PreparedRun:
         """The run with another voltage, for its drive alone."""
-        prepared = PreparedRun(self._at(values), self.run, self.parameters)
-        if schedule is not None:
-            prepared.schedule = schedule.of(self.model.channels, self.run.name)
+        if schedule is None:
+            return PreparedRun(self.at(values), self.run, self.parameters)
+        prepared = PreparedRun(self.at(values), self.run)
+        prepared.schedule = schedule.of(self.model.channels, self.run.name)
         return prepared
 
 

@@ -10,6 +10,7 @@ from hasel_sim.adjoint.reverse import reverse_start, reverse_step
 from hasel_sim.adjoint.trajectory import Trajectory
 from hasel_sim.adjoint.weights import no_weights
 from hasel_sim.mechanics.residual_slopes import ResidualSlope
+from hasel_sim.model.constants import outline_names
 from hasel_sim.simulate import slope_by_observation
 
 
@@ -62,7 +63,7 @@ def _reversed(
     """
     prepared = trajectory.prepared
     names, builder = prepared.names, prepared.builder
-    coefficients = len(builder.mesh.outline_slope) if with_outline else 0
+    coefficients = len(outline_names(prepared.model.description.body)) if with_outline else 0
     slopes: list[ResidualSlope] = list(prepared.residual_slopes)
     slopes += [builder.outline_slope(index) for index in range(coefficients)]
     totals = np.concatenate([direct, np.zeros(coefficients)])

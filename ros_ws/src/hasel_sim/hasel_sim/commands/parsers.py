@@ -170,12 +170,29 @@ def free_range(text: str) -> tuple[str, tuple[float, ...]]:
     return name.strip(), tuple(first + (last - first) * n / pieces for n in range(pieces + 1))
 
 
+def varied(text: str) -> dict[str, tuple[float, float] | None]:
+    """Names with their ranges, None for the usual one, from "name,name=low:high". Raises ArgumentTypeError."""
+    found: dict[str, tuple[float, float] | None] = {}
+    for part in text.split(","):
+        name, given, values = part.strip().partition("=")
+        try:
+            low, high = map(float, values.split(":")) if given else (0.0, 1.0)
+            if not low < high:
+                raise ValueError
+        except ValueError:
+            raise argparse.ArgumentTypeError(
+                f"'{part}' is no range; expected NAME or NAME=LOW:HIGH, such as body.depth_m=0.03:0.06"
+            ) from None
+        found[name] = (low, high) if given else None
+    return found
+
+
 def optimise_parser() -> argparse.ArgumentParser:
     """Options of `optimise`."""
     options = argparse.ArgumentParser(
         prog="optimise",
-        description="Find the waveform of the two muscles with which a free body swims best, and write it as a file "
-        "that an experiment can play.",
+        description="Find with which waveform of its two muscles, or with which outline and fin, a free body swims "
+        "best. A waveform is written as a file that an experiment can play, a body as a model file.",
     )
     _of_swimmer(options)
     options.add_argument("--frequency", type=positive, default=2.0, metavar="HZ", help="default: 2")
@@ -183,7 +200,7 @@ def optimise_parser() -> argparse.ArgumentParser:
         "--goal",
         choices=("speed", "cost"),
         default="speed",
-        help="the fastest swim, or the least work per distance (default: speed)",
+        help="the fastest swim, or the least work per mass and distance (default: speed)",
     )
     options.add_argument(
         "--turning",
@@ -192,11 +209,19 @@ def optimise_parser() -> argparse.ArgumentParser:
         help="the rate at which it is to turn to the left: 0 swims straight (default: whatever comes)",
     )
     options.add_argument(
+        "--heading",
+        type=float,
+        metavar="DEG",
+        help="where it is to point at the end of --duration, to the left of its start (default: wherever it comes to)",
+    )
+    options.add_argument(
         "--vary",
-        type=lambda text: tuple(text.split(",")),
-        default=("first", "second"),
-        metavar="NAME,…",
-        help="what may change, of first and second (the voltages), duty and phase (default: first,second)",
+        type=varied,
+        default=varied("first,second"),
+        metavar="NAME[=LOW:HIGH],…",
+        help="what may change: first and second (the voltages), duty, phase, outline, and constants of the model file "
+        "by their path, such as body.spine.fin_length_m=0.02:0.06, between half and double without a range (default: "
+        "first,second)",
     )
     options.add_argument(
         "--start",
@@ -229,7 +254,14 @@ def optimise_parser() -> argparse.ArgumentParser:
         type=Path,
         default=Path("best_waveform.csv"),
         metavar="FILE",
-        help="default: best_waveform.csv",
+        help="the waveform (default: best_waveform.csv)",
+    )
+    options.add_argument(
+        "--body",
+        type=Path,
+        default=Path("best_body.yaml"),
+        metavar="FILE",
+        help="the model file, where something of the body varies (default: best_body.yaml)",
     )
     options.add_argument("--json", type=Path, metavar="FILE", help="write all numbers here")
     return options

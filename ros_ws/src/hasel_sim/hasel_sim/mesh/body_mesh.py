@@ -74,19 +74,16 @@ def _stations(shape: StripShape, density: float) -> np.ndarray:
 
 def _body(strip: StripBuilder, shape: StripShape, x: np.ndarray, layers: int) -> list[np.ndarray]:
     """Add the columns and elements of the body; the columns' node numbers come back."""
-    half_spine, powers = 0.5 * shape.spine, np.arange(len(shape.outline))
+    half_spine = 0.5 * shape.spine
     names = ["lower"] * layers + (["spine"] if shape.spine else []) + ["upper"] * layers
     counts = [layers, 1, layers] if shape.spine else [layers, layers]
-    centre, still = ([-half_spine, half_spine], [0.0, 0.0]) if shape.spine else ([0.0], [0.0])
+    centre = [-half_spine, half_spine] if shape.spine else [0.0]
     columns = []
     for index, position in enumerate(x):
         s = position / shape.length
         height = float(half_height(np.array(shape.outline), shape.largest_half_height, s))
-        full = index % 2 == 0
-        levels = levels_between(np.array([-height, *centre, height]), counts, full)
-        growth = levels_between(np.array([-1.0, *still, 1.0]), counts, full)
-        slopes = shape.largest_half_height * s ** powers[:, None] * growth
-        columns.append(strip.column(position, levels, slopes))
+        levels = levels_between(np.array([-height, *centre, height]), counts, index % 2 == 0)
+        columns.append(strip.column(position, levels))
     for index in range(0, len(x) - 1, 2):
         labels = [_label(shape, x[index + 1], name) for name in names]
         strip.add_elements(columns[index], columns[index + 1], columns[index + 2], labels)
@@ -110,7 +107,7 @@ def _fin(strip: StripBuilder, shape: StripShape, root: np.ndarray, density: floa
     columns = [root]
     for index, position in enumerate(x[1:], start=1):
         levels = np.linspace(-0.5 * shape.spine, 0.5 * shape.spine, 3 if index % 2 == 0 else 2)
-        columns.append(strip.column(position, levels, np.zeros((len(shape.outline), len(levels)))))
+        columns.append(strip.column(position, levels))
     for index in range(0, len(x) - 1, 2):
         label = (Region.SPINE, 0, _label(shape, x[index + 1], "spine")[2])
         strip.add_elements(columns[index], columns[index + 1], columns[index + 2], [label])

@@ -27,7 +27,6 @@ class Mesh:
     of the region of other material it lies in, from 1, or 0; tip: nodes of the face at the far end, from bottom to top;
     skin: node numbers of the outline's edges, shape [edges, 3], with the body to
     the left of the edge's direction; clamped: numbers of the nodes held fixed.
-    outline_slope: change of the node positions per unit of each outline coefficient, [coefficients, nodes, 2].
     """
 
     nodes: np.ndarray
@@ -38,7 +37,6 @@ class Mesh:
     tip: np.ndarray
     skin: np.ndarray
     clamped: np.ndarray
-    outline_slope: np.ndarray
 
     @cached_property
     def reach(self) -> np.ndarray:

@@ -14,17 +14,15 @@ class StripBuilder:
 
     def __init__(self) -> None:
         self.nodes: list[tuple[float, float]] = []
-        self.slopes: list[np.ndarray] = []
         self.elements: list[list[int]] = []
         self.labels: list[tuple[int, int, int]] = []
         self.upper: list[list[int]] = []
         self.lower: list[list[int]] = []
 
-    def column(self, x: float, levels: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-        """Add nodes at height `levels` [m] [n] whose outline slopes are [coefficients, n]; return their numbers."""
+    def column(self, x: float, levels: np.ndarray) -> np.ndarray:
+        """Add nodes at height `levels` [m] [n]; return their numbers."""
         first = len(self.nodes)
         self.nodes += [(x, y) for y in levels]
-        self.slopes += list(np.asarray(slopes).T)
         return np.arange(first, len(self.nodes))
 
     def add_elements(
@@ -58,9 +56,6 @@ class StripBuilder:
 
     def finish(self, clamped: np.ndarray, tip: np.ndarray) -> Mesh:
         """Return the mesh; clamped: nodes held fixed; tip: nodes of the far end's face."""
-        slopes = np.array(self.slopes)
-        outline_slope = np.zeros((slopes.shape[1], len(self.nodes), 2))
-        outline_slope[:, :, 1] = slopes.T
         region, muscle, material = np.array(self.labels, dtype=np.int64).T
         return Mesh(
             nodes=np.array(self.nodes),
@@ -71,7 +66,6 @@ class StripBuilder:
             tip=np.asarray(tip, dtype=np.int64),
             skin=np.array(self.lower + self.upper, dtype=np.int64),
             clamped=np.asarray(clamped, dtype=np.int64),
-            outline_slope=outline_slope,
         )
 
 

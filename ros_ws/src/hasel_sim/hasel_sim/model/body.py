@@ -109,6 +109,10 @@ class Body(Section):
         """From x = 0 to the end of the body or its fin [m]."""
         return self.length_m + (self.spine.fin_length_m if self.spine else 0.0)
 
+    def half_heights(self, s: np.ndarray) -> np.ndarray:
+        """Half the height [m] of the body, without its fin, at s = x / length [n]."""
+        return half_height(np.array(self.coefficients), self.largest_half_height_m, s)
+
     def with_outline(self, coefficients: tuple[float, ...]) -> "Body":
         """The same body with other outline coefficients, not checked."""
         return self.model_copy(

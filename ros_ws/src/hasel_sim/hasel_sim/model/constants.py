@@ -1,12 +1,20 @@
-"""Numbers of a model file that may be freed: named by their path, such as `material.soft.youngs_modulus_pa`."""
+"""Numbers of a model file that may be freed: named by their path, such as `material.soft.youngs_modulus_pa`.
+
+Among them are those of the body's shape. They move the nodes of the mesh that the file's own shape has, and with them
+markers and whatever else lies on the fin: a simulation can then be differentiated by them.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, TypeVar
 
+import numpy as np
 from pydantic import BaseModel
 
+from hasel_sim.model.moved import moved_points
+
 if TYPE_CHECKING:
+    from hasel_sim.model.body import Body
     from hasel_sim.model.description import Description
 
 _UNITS = {
@@ -22,8 +30,8 @@ REST_CONTRACTION = "rest_contraction"
 
 
 def constants(description: Description) -> dict[str, float]:
-    """Every number that may be freed, by its path: of materials, regions, muscles, the tip plate and the medium."""
-    found: dict[str, float] = {}
+    """Every number that may be freed, by its path: of shape, materials, regions, muscles, tip plate and medium."""
+    found = shape_constants(description)
     for name in ("soft", "spine"):
         _collect(getattr(description.material, name), f"material.{name}", found)
     for region in description.body.regions:
@@ -37,6 +45,27 @@ def constants(description: Description) -> dict[str, float]:
         for key in ("fibre_stiffness_pa", REST_CONTRACTION):
             found[f"muscles.{muscle.name}.{key}"] = getattr(muscle, key)
     return found
+
+
+def shape_constants(description: Description) -> dict[str, float]:
+    """Those of the body's outline or height, and of its spine and fin."""
+    body, found = description.body, {}
+    if body.outline is None:
+        found["body.height_m"] = float(body.height_m or 0.0)
+    else:
+        found["body.outline.largest_half_height_m"] = body.outline.largest_half_height_m
+        found |= dict(zip(outline_names(body), body.coefficients, strict=True))
+    if body.spine is not None:
+        found["body.spine.thickness_m"] = body.spine.thickness_m
+        if body.spine.fin_length_m > 0:
+            found["body.spine.fin_length_m"] = body.spine.fin_length_m
+    return found
+
+
+def outline_names(body: Body) -> tuple[str, ...]:
+    """How the outline's coefficients are called; none for a body of one height."""
+    count = 0 if body.outline is None else len(body.coefficients)
+    return tuple(f"body.outline.coefficients.{index}" for index in range(count))
 
 
 def _collect(section: BaseModel | None, path: str, found: dict[str, float]) -> None:
@@ -53,10 +82,32 @@ _Section = TypeVar("_Section", bound=BaseModel)
 
 
 def with_constants(description: Description, values: dict[str, float]) -> Description:
-    """The description with other values at some paths, not validated again."""
+    """The description with other values at some paths, not validated again; what lies on the body moves with it."""
+    body, known = description.body, shape_constants(description)
     for path, value in values.items():
         description = _changed(description, path.split("."), value)
+    if any(values.get(path, value) != value for path, value in known.items()):
+        return _carried(description, body)
     return description
+
+
+def _carried(description: Description, before: Body) -> Description:
+    """The description with markers, and regions along the fin, at the same places of a body of another shape."""
+    after = description.body
+    markers = {}
+    for name, marker in description.markers.items():
+        if not marker.fixed:
+            ((x, y),) = moved_points(np.array([[marker.x_m, marker.y_m]]), before, after).tolist()
+            marker = marker.model_copy(update={"x_m": x, "y_m": y})
+        markers[name] = marker
+    regions = []
+    for region in after.regions:
+        ends = moved_points(np.array([[region.from_m, 0.0], [region.to_m, 0.0]]), before, after)[
+            :, 0
+        ].tolist()
+        regions.append(region.model_copy(update={"from_m": ends[0], "to_m": ends[1]}))
+    body = after.model_copy(update={"regions": tuple(regions)})
+    return description.model_copy(update={"markers": markers, "body": body})
 
 
 def _changed(section: _Section, path: list[str], value: float) -> _Section:
@@ -64,6 +115,8 @@ def _changed(section: _Section, path: list[str], value: float) -> _Section:
     old = getattr(section, head)
     if not rest:
         new = value
+    elif isinstance(old, tuple) and len(rest) == 1:
+        new = (*old[: int(rest[0])], value, *old[int(rest[0]) + 1 :])
     elif isinstance(old, tuple):
         new = tuple(_changed(part, rest[1:], value) if part.name == rest[0] else part for part in old)
     else:

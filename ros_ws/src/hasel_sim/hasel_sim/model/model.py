@@ -159,6 +159,19 @@ class Model:
             freed[name] = Parameter(name, known[name], unit_of(name), -float("inf"), float("inf"))
         return replace(self, parameters=freed)
 
+    def with_constants_settled(self, *names: str) -> "Model":
+        """A copy whose file itself has these constants at their values, which are then no parameters any more.
+
+        Its mesh is made for its shape as it is then. Raises ModelError where that does not fit together.
+        """
+        settled = with_constants(self.description, {name: self.parameter(name).value for name in names})
+        try:
+            description = Description.model_validate(settled.model_dump())
+        except ValidationError as error:
+            raise ModelError(sentence_for(error)) from None
+        parameters = {name: p for name, p in self.parameters.items() if name not in names}
+        return replace(self, description=description, parameters=parameters)
+
     def with_levels(self, levels: np.ndarray | Sequence[float] | Mapping[str, np.ndarray]) -> "Model":
         """A copy with an amplitude for each of these levels; known ones keep their value, others are dropped.
 

@@ -63,3 +63,15 @@ class Boxes:
             )
         frames = np.arange(round(duration * FRAMES_PER_SECOND) + 1) / FRAMES_PER_SECOND
         return Run(str(self), frames, self.schedule(duration, model.channels))
+
+
+def waveform_rows(drive: Boxes, duration: float, channels: tuple[str, ...]) -> str:
+    """A drive as CSV, each row holding until the next, that ends with both channels at rest at the duration [s]."""
+    schedule = drive.schedule(duration, channels)
+    lines = ["time_s," + ",".join(f"voltage_{name}_v" for name in channels)]
+    lines += [
+        ",".join(f"{number:.6f}".rstrip("0").rstrip(".") for number in (time, *row))
+        for time, row in zip(schedule.time, schedule.signal, strict=True)
+        if time < duration
+    ]
+    return "\n".join([*lines, ",".join([f"{duration:g}", *["0"] * len(channels)])]) + "\n"

@@ -44,6 +44,11 @@ class FreeSwim:
         """Where the body points at the end, from where it pointed at the start, to the left [rad]."""
         return float(self.turned[-1])
 
+    def mean_heading(self, frequency: float) -> float:
+        """The same as a mean over the last period of a drive [Hz], which its swinging has no part in [rad]."""
+        ends = self.time[-1] - np.array([1 / frequency, 0.0])
+        return float(_means(self.time, self.turned[:, None], ends, frequency)[1, 0])
+
     @property
     def cost_of_transport(self) -> float:
         """Work of the muscles per mass and distance [J/(kg m)]; infinite for a body that does not get forward."""

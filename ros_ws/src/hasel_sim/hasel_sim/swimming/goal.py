@@ -1,29 +1,80 @@
 """Speed, heading and power of a free body as differentiable functions of PyTorch, in the sense of `free_swim`."""
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 import torch
 
 from hasel_sim.adjoint import DifferentiableRun
-from hasel_sim.build import Builder
+from hasel_sim.build import Builder, constant_parameter, difference_points
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
+from hasel_sim.model.constants import constants
 from hasel_sim.run import Run
 from hasel_sim.swimming.free_swim import check_swimmer
 
 
 @dataclass(frozen=True)
 class SwimOf:
-    """speed: settled, forwards [m/s]; turning: to the left [rad/s]; power: mean, of the muscles [W]; each a scalar."""
+    """What a swim came to, each a scalar.
+
+    speed: settled, forwards [m/s]; turning: to the left [rad/s]; heading: mean over the last period, to the left of
+    that at rest [rad]; power: mean, of the muscles [W]; mass: of the body [kg].
+    """
 
     speed: torch.Tensor
     turning: torch.Tensor
+    heading: torch.Tensor
     power: torch.Tensor
+    mass: torch.Tensor
+
+    @property
+    def cost_of_transport(self) -> torch.Tensor:
+        """Work of the muscles per mass and distance [J/(kg m)]."""
+        return self.power / (self.mass * self.speed)
+
+
+@dataclass(frozen=True)
+class _Fibres:
+    """A muscle's: gradients along them [elements, points, 8], volumes per depth [elements, points], stiffness [Pa]."""
+
+    along: np.ndarray
+    volume: np.ndarray
+    stiffness: np.ndarray
+
+
+@dataclass(frozen=True)
+class _Body:
+    """What of a body enters its work beside its motion: depth [m], mass [kg] and its muscles' fibres."""
+
+    depth: np.ndarray
+    mass: np.ndarray
+    fibres: tuple[_Fibres, ...]
+
+    @staticmethod
+    def of(model: Model) -> "_Body":
+        builder, depth = Builder(model), model.described.body.depth_m or 0.0
+        solid, fibres = builder.system().solid, []
+        for number, muscle in enumerate(model.described.muscles):
+            within = builder.mesh.muscle == number + 1
+            stretch = solid.stretch[within, :, 0]
+            along = solid.gradients[within, :, :, 0] / stretch[..., None]
+            fibres.append(_Fibres(along, solid.areas[within] * stretch, np.array(muscle.fibre_stiffness_pa)))
+        return _Body(np.array(depth), np.array(depth * _nodal_mass(builder).sum()), tuple(fibres))
+
+    @property
+    def arrays(self) -> list[np.ndarray]:
+        """All its numbers, in one order."""
+        return [self.depth, self.mass, *(array for each in self.fibres for array in astuple(each))]
+
+
+def _nodal_mass(builder: Builder) -> np.ndarray:
+    """Mass per depth that goes with each node [kg/m] [nodes]."""
+    return builder.mass.product(np.ones((1, *builder.nodes.shape, 1)))[0, :, 0, 0]
 
 
 class DifferentiableSwim:
-    """A swim of one run as a function of its contraction and of named parameters.
+    """A swim of one run as a function of its contraction and of named parameters, those of the shape among them.
 
     frequency [Hz] and periods: of the drive, and over how many of them at the end is measured. The place of the body is
     a mean over its nodes with the masses of the model as it stands, which swims as fast as any other mean.
@@ -36,12 +87,13 @@ class DifferentiableSwim:
         self.model, self.frequency, self.periods = model, frequency, periods
         self.differentiable = DifferentiableRun(model, run, parameters)
         builder = Builder(model)
-        nodal = builder.mass.product(np.ones((1, *builder.nodes.shape, 1)))[0, :, 0, 0]
-        self._depth = model.described.body.depth_m or 0.0
-        self.mass = float(nodal.sum()) * self._depth
+        nodal = _nodal_mass(builder)
         self._share = torch.from_numpy(nodal / nodal.sum())
         self._rest = torch.from_numpy(builder.nodes - nodal @ builder.nodes / nodal.sum())
-        self._muscles = self._fibres(builder)
+        self._muscles = [
+            torch.from_numpy(builder.mesh.elements[builder.mesh.muscle == number + 1])
+            for number in range(len(model.description.muscles))
+        ]
         time = self.differentiable.boundaries
         if (time[-1] - time[0]) * frequency < periods + 1:
             raise SimulationError(
@@ -50,21 +102,11 @@ class DifferentiableSwim:
             )
         self._means = torch.from_numpy(period_means(time, frequency, periods))
 
-    def _fibres(self, builder: Builder) -> list[tuple[torch.Tensor, torch.Tensor, torch.Tensor, float]]:
-        """Of every muscle: nodes [e, 8], gradients along the fibres, volumes per depth [e, points], stiffness."""
-        solid, out = builder.system().solid, []
-        for number, muscle in enumerate(self.model.described.muscles):
-            within = builder.mesh.muscle == number + 1
-            stretch = solid.stretch[within, :, 0]
-            along = solid.gradients[within, :, :, 0] / stretch[..., None]
-            volume = torch.from_numpy(solid.areas[within] * stretch)
-            nodes = torch.from_numpy(builder.mesh.elements[within])
-            out.append((nodes, torch.from_numpy(along), volume, muscle.fibre_stiffness_pa))
-        return out
-
     def __call__(self, contraction: torch.Tensor, values: torch.Tensor | None = None) -> SwimOf:
         """How the body swims with a contraction [steps, muscles] at the differentiable run's balance times."""
+        values = self.differentiable.values() if values is None else values
         shapes = self.differentiable.shapes(contraction, values)
+        depth, mass, *fibres = self._body(values)
         place = torch.einsum("n,tnd->td", self._share, shapes)
         arms = shapes - place[:, None]
         sine = torch.einsum("n,tn->t", self._share, self._cross(arms))
@@ -76,19 +118,40 @@ class DifferentiableSwim:
         ahead = 0.5 * (heading[1:] + heading[:-1])
         gained = -(torch.diff(x) * torch.cos(ahead) + torch.diff(y) * torch.sin(ahead))
         rate = self.frequency / (self.periods - 1)
-        work = self._depth * self._work(shapes, contraction)
-        return SwimOf(gained.sum() * rate, (heading[-1] - heading[0]) * rate, work)
+        power = depth * self._work(shapes, contraction, fibres)
+        return SwimOf(gained.sum() * rate, (heading[-1] - heading[0]) * rate, heading[-1], power, mass)
+
+    def _body(self, values: torch.Tensor) -> list[torch.Tensor]:
+        """The numbers of `_Body` with their derivatives by those of the values that are constants of the file."""
+        run = self.differentiable
+        model = run.at(values)
+        found = [torch.from_numpy(array) for array in _Body.of(model).arrays]
+        known = constants(model.description)
+        for place, name in enumerate(run.parameters):
+            if name not in known or not values.requires_grad:
+                continue
+            more, less, width = difference_points(constant_parameter(model, name), model.values[name])
+            ends = [_Body.of(model.with_values({name: value})).arrays for value in (more, less)]
+            step = values[place] - values[place].detach()
+            found = [
+                one + step * torch.as_tensor((above - below) / width)
+                for one, above, below in zip(found, *ends, strict=True)
+            ]
+        return found
 
     def _cross(self, arms: torch.Tensor) -> torch.Tensor:
         return self._rest[:, 0] * arms[..., 1] - self._rest[:, 1] * arms[..., 0]
 
-    def _work(self, shapes: torch.Tensor, contraction: torch.Tensor) -> torch.Tensor:
+    def _work(
+        self, shapes: torch.Tensor, contraction: torch.Tensor, fibres: list[torch.Tensor]
+    ) -> torch.Tensor:
         """Mean power of the muscles per depth over the last periods [W/m]."""
         boundaries = self.differentiable.boundaries
         window = self.periods / self.frequency
         late = torch.from_numpy(boundaries[1:-1] > boundaries[-1] - window)
         total = torch.zeros((), dtype=torch.float64)
-        for number, (nodes, along, volume, stiffness) in enumerate(self._muscles):
+        for number, nodes in enumerate(self._muscles):
+            along, volume, stiffness = fibres[3 * number : 3 * number + 3]
             fibre = torch.einsum("epk,tekd->tepd", along, shapes[1:-1][late][:, nodes])
             own = contraction[:, number]
             short = 1.0 - 0.5 * (own[1:] + own[:-1])[late]

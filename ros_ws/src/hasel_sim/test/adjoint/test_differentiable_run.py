@@ -99,6 +99,31 @@ def test_gradient_by_the_outline_agrees_with_differences(effects, swimmer, boxes
         assert float(outline.grad[index]) == pytest.approx(expected, rel=1e-6)
 
 
+def test_gradient_by_numbers_of_the_shape_agrees_with_differences_and_forward(swimmer, boxes):
+    """Spine, fin and outline as parameters: to 1e-6 of differences, the adjoint's and along with the steps."""
+    names = (
+        "body.spine.thickness_m",
+        "body.spine.fin_length_m",
+        "body.outline.largest_half_height_m",
+        "body.outline.coefficients.1",
+    )
+    model, run = _model(swimmer, ("quadratic_drag",)).with_freed(*names), boxes(duration=0.3)
+    differentiable = DifferentiableRun(model, run, names)
+    values = differentiable.values().requires_grad_()
+    weights = _weights(len(run.time))
+    (differentiable.angle(values=values) * weights).sum().backward()
+    forward = weights.numpy() @ simulate(model, run, names).slopes
+    for index in range(len(names)):
+        expected = _central_difference(
+            lambda v: (differentiable.angle(values=v) * weights).sum(),
+            values.detach(),
+            index,
+            1e-4 * float(values[index]),
+        )
+        assert float(values.grad[index]) == pytest.approx(expected, rel=2e-6)
+        assert forward[index] == pytest.approx(expected, rel=2e-6)
+
+
 def test_the_start_in_equilibrium_is_differentiated_too(rectangle, tip_force):
     """A beam let go from a load: gradient by the load's size, against differences."""
     from hasel_sim.run import Run

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_sim.build import body_mesh, model_mesh
+from hasel_sim.build import body_mesh, marker_points, model_mesh
 from hasel_sim.errors import ModelError
 from hasel_sim.mesh.body_mesh import Stretch, StripShape, strip_mesh
 from hasel_sim.mesh.mesh import Region
@@ -97,16 +97,43 @@ def test_the_skin_runs_around_the_body_with_the_body_to_its_left(swimmer):
     assert sorted(mesh.skin[:, 0]) == sorted(mesh.skin[:, 2])
 
 
-def test_the_outline_slope_is_how_nodes_move_with_a_coefficient(swimmer):
-    """Against a mesh of a changed outline."""
-    description = swimmer.description
-    mesh = body_mesh(description)
-    for index in range(len(description.body.coefficients)):
-        changed = list(description.body.coefficients)
-        changed[index] += 1e-3
-        body = description.body.with_outline(tuple(changed))
-        moved = body_mesh(description.model_copy(update={"body": body}))
-        assert (moved.nodes - mesh.nodes) / 1e-3 == pytest.approx(mesh.outline_slope[index], abs=1e-12)
+def test_a_changed_outline_moves_the_nodes_where_a_new_mesh_has_them(swimmer):
+    """Coefficient by coefficient, and the largest half height."""
+    described = swimmer.description.body
+    for index, coefficient in enumerate(described.coefficients):
+        changed = list(described.coefficients)
+        changed[index] = coefficient + 1e-3
+        fresh = body_mesh(
+            swimmer.description.model_copy(update={"body": described.with_outline(tuple(changed))})
+        )
+        name = f"body.outline.coefficients.{index}"
+        moved = model_mesh(swimmer.with_freed(name).with_values({name: changed[index]}))
+        assert moved.nodes == pytest.approx(fresh.nodes, abs=1e-12)
+    name = "body.outline.largest_half_height_m"
+    taller = model_mesh(swimmer.with_freed(name).with_values({name: 0.0076})).nodes
+    assert taller[:, 1].max() / model_mesh(swimmer).nodes[:, 1].max() == pytest.approx(0.0076 / 0.0075)
+    assert taller[:, 0] == pytest.approx(model_mesh(swimmer).nodes[:, 0])
+
+
+def test_spine_and_fin_move_the_nodes_and_what_lies_on_them(swimmer):
+    """The area of a new mesh; the tail marker stays at the fin's tip, and the file that is written holds together."""
+    values = {"body.spine.thickness_m": 0.0015, "body.spine.fin_length_m": 0.042}
+    moved = swimmer.with_freed(*values).with_values(values)
+    fresh = swimmer.description.body.spine.model_copy(
+        update={"thickness_m": 0.0015, "fin_length_m": 0.042},
+    )
+    body = swimmer.description.body.model_copy(update={"spine": fresh})
+    expected = body_mesh(swimmer.description.model_copy(update={"body": body}))
+    assert _areas(model_mesh(moved)).sum() == pytest.approx(_areas(expected).sum(), rel=1e-5)
+    spine = model_mesh(moved).region == Region.SPINE
+    assert _areas(model_mesh(moved))[spine].sum() == pytest.approx(0.0015 * 0.202)
+    assert marker_points(moved)[2] == pytest.approx([0.202, 0.0])
+    assert marker_points(moved)[:2] == pytest.approx(marker_points(swimmer)[:2])
+    for value in (0.0, -0.01):
+        with pytest.raises(ModelError, match=r"body.spine.fin_length_m is .*; expected more than 0"):
+            model_mesh(moved.with_values({"body.spine.fin_length_m": value}))
+    with pytest.raises(ModelError, match="crosses the spine"):
+        model_mesh(moved.with_values({"body.spine.thickness_m": 0.005}))
 
 
 def test_the_outline_has_the_given_largest_height(swimmer):

@@ -43,6 +43,35 @@ def test_gradients_agree_with_differences_of_whole_swims(fish):
             )
 
 
+def test_gradients_by_the_shape_agree_with_differences_of_whole_swims(fish):
+    """By outline, spine, fin and depth: speed, heading, power and mass, whose muscles and fluid change with them."""
+    names = (
+        "body.outline.coefficients.2",
+        "body.spine.thickness_m",
+        "body.spine.fin_length_m",
+        "body.depth_m",
+    )
+    model = fish.with_freed(*names).with_numerics(tolerance_m=1e-12)
+    swim = DifferentiableSwim(model, DRIVE.run(model, DURATION), 2.5, 2, names)
+    contraction = swim.differentiable.contraction().detach()
+
+    def found(x: torch.Tensor) -> list[torch.Tensor]:
+        of = swim(contraction, x)
+        return [of.speed, of.turning, of.heading, of.power, of.mass, of.cost_of_transport]
+
+    start = swim.differentiable.values()
+    numbers = start.clone().requires_grad_()
+    slopes = [
+        torch.autograd.grad(part, numbers, retain_graph=True)[0].numpy() for part in found(numbers)
+    ] * start.numpy()
+    for place in range(len(names)):
+        step = torch.zeros_like(start)
+        step[place] = 1e-6 * start[place]
+        above, below = (found(start + sign * step) for sign in (1.0, -1.0))
+        expected = np.array([(a - b).item() / 2e-6 for a, b in zip(above, below, strict=True)])
+        assert slopes[:, place] == pytest.approx(expected, rel=1e-4, abs=1e-5)
+
+
 def test_it_is_the_swim_that_is_measured(fish):
     """The same speed, turning and power as from the shapes of a simulation."""
     run = DRIVE.run(fish, DURATION)
@@ -51,6 +80,8 @@ def test_it_is_the_swim_that_is_measured(fish):
     assert found.speed.item() == pytest.approx(measured.speed, rel=0.03)
     assert found.turning.item() == pytest.approx(measured.turning, rel=0.1, abs=2e-3)
     assert found.power.item() == pytest.approx(measured.power, rel=0.05)
+    assert found.mass.item() == pytest.approx(measured.mass)
+    assert found.heading.item() == pytest.approx(measured.mean_heading(2.5), rel=0.02, abs=1e-4)
     with pytest.raises(SimulationError, match="expected more than 9"):
         DifferentiableSwim(fish, run, 2.5, 9)
 
