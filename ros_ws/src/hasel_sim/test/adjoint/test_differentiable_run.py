@@ -118,7 +118,7 @@ def test_gradient_by_numbers_of_the_shape_agrees_with_differences_and_forward(sw
             lambda v: (differentiable.angle(values=v) * weights).sum(),
             values.detach(),
             index,
-            1e-4 * float(values[index]),
+            1e-4 * values[index].item(),
         )
         assert float(values.grad[index]) == pytest.approx(expected, rel=2e-6)
         assert forward[index] == pytest.approx(expected, rel=2e-6)
