@@ -16,15 +16,16 @@ _RATIOS = np.arange(0.3, 3.0, 0.01)
 def check_drive_frequency(recording: Recording) -> list[Finding]:
     """A response that repeats, but neither with the drive's period nor a whole part of it.
 
-    A body that is driven periodically answers, once it has settled, with the drive's period. The first half of the run
-    is left out.
+    A body that is driven periodically answers, once it has settled, with the drive's period. Left out are the first half
+    of what is driven, and how the body swings by itself once the drive has ended.
     """
     if not recording.driven:
         return []
     drive_time, values = recording.drive()
     cycle = drive_cycle(drive_time, comparable(values, recording.channels))
     valid = recording.valid
-    time, sin_theta = recording.time_s[valid], recording.sin_theta[valid]
+    driven = valid & (recording.time_s <= _end(drive_time, values))
+    time, sin_theta = recording.time_s[driven], recording.sin_theta[driven]
     if cycle is None or len(time) < 32 or not _repeats(cycle):
         return []
     late = time > 0.5 * (max(cycle.start, time[0]) + time[-1])
@@ -45,6 +46,12 @@ def check_drive_frequency(recording: Recording) -> list[Finding]:
     )
     advice = "check the recorded drive's clock, gear and name, or record the drive that acted"
     return [error("frequency of the drive", ratio, evidence, advice)]
+
+
+def _end(time: np.ndarray, values: np.ndarray) -> float:
+    """When the drive ends for good [s]; infinity where it does not."""
+    after = int(np.flatnonzero(values.any(axis=1))[-1]) + 1
+    return float(time[after]) if after < len(time) else np.inf
 
 
 def _repeats(cycle: DriveCycle) -> bool:

@@ -1,6 +1,8 @@
 """What was heard, as recordings to fit."""
 
 from collections import deque
+from datetime import datetime
+from typing import NamedTuple
 
 import numpy as np
 from hasel_recording import Recording
@@ -12,10 +14,16 @@ _FEWEST_FRAMES = 20
 _MOST_MESSAGES = 400_000
 """Of one topic in one run; about an hour. Older ones are forgotten."""
 
+_A_CLOCKS = 1e9
+"""Stamps [s] below are counted from the start of something, not from 1970."""
+
 
 class _Series:
+    """unknown_from: the stamp [ns] since which nothing is known, None where the last value still holds."""
+
     def __init__(self, epoch: int) -> None:
         self.epoch = epoch
+        self.unknown_from: int | None = None
         self.stamps: list[int] = []
         self.values: list = []
 
@@ -23,8 +31,14 @@ class _Series:
         if not self.stamps or stamp_ns > self.stamps[-1]:
             self.stamps.append(stamp_ns)
             self.values.append(value)
+            self.unknown_from = None
         if len(self.stamps) > _MOST_MESSAGES:
             del self.stamps[: _MOST_MESSAGES // 10], self.values[: _MOST_MESSAGES // 10]
+
+
+class _Run(NamedTuple):
+    recording: Recording
+    has_ended: bool
 
 
 class Heard:
@@ -39,9 +53,11 @@ class Heard:
         self._angles: deque[_Series] = deque(maxlen=runs)
 
     def state(self, epoch: int, stamp_ns: int, voltage: tuple[float, float]) -> None:
-        """A commanded voltage [V] that holds from its stamp [ns] on; one that is not known (NaN) is left out."""
+        """A commanded voltage [V] that holds from its stamp [ns] on; one that is not known for a moment (NaN), too."""
         if np.isfinite(voltage).all():
             self._series(self._states, epoch, stamp_ns).add(stamp_ns, voltage)
+        elif self._states and self._states[-1].unknown_from is None:
+            self._states[-1].unknown_from = stamp_ns
 
     def measured(self, epoch: int, stamp_ns: int, sin_theta: float) -> None:
         """A measured angle; NaN in a frame without."""
@@ -52,16 +68,23 @@ class Heard:
         self._states.clear()
         self._angles.clear()
 
-    def recordings(self) -> list[Recording]:
+    def recordings(self, ended: bool = False) -> list[Recording]:
         """One per run that was both driven and measured, oldest first, each beginning at 0 s.
 
-        A run is cut where nothing is driven for long (`driven_parts`). Raises SysidError when there is none.
+        A run is cut where nothing is driven for long (`driven_parts`). ended: without one that is going on. Raises
+        SysidError when there is none.
         """
-        complete = [recording for angles in self._angles for recording in self._recordings(angles)]
-        if not complete:
+        runs = [run for angles in self._angles for run in self._runs(angles)]
+        runs = [run for run in runs if len(run.recording.time_s) >= _FEWEST_FRAMES]
+        if not runs:
             raise SysidError(
                 f"no run was heard so far, expected states and at least {_FEWEST_FRAMES} measured angles: replay or "
                 "measure one first, or name recordings"
+            )
+        complete = [run.recording for run in runs if run.has_ended or not ended]
+        if not complete:
+            raise SysidError(
+                "no run that was heard has ended so far, expected one that was driven: it ends a second after the drive"
             )
         return complete
 
@@ -71,26 +94,32 @@ class Heard:
             kept.append(_Series(epoch))
         return kept[-1]
 
-    def _recordings(self, angles: _Series) -> list[Recording]:
-        """The runs of some angles, with the states that overlap them most."""
+    def _runs(self, angles: _Series) -> list[_Run]:
+        """What was driven while some angles came; where nothing was at all, the body by itself.
 
-        def overlap(states: _Series) -> int:
-            return min(states.stamps[-1], angles.stamps[-1]) - max(states.stamps[0], angles.stamps[0])
-
-        same = [states for states in self._states if states.epoch == angles.epoch]
-        states = max(same, key=overlap, default=None)
-        if states is None or overlap(states) <= 0:
-            return []
-        origin = min(states.stamps[0], angles.stamps[0])
-        drive = _seconds(states.stamps, origin), np.array(states.values, dtype=float)
-        measured = _seconds(angles.stamps, origin), np.array(angles.values, dtype=float)
-        end = max(drive[0][-1], measured[0][-1])
-        parts = [_part(origin, drive, measured, begin, stop) for begin, stop in driven_parts(*drive, end)]
-        return [part for part in parts if len(part.time_s) >= _FEWEST_FRAMES]
+        The states may have ceased meanwhile, as they do while a supply does not know its voltage.
+        """
+        met = [run for states in self._states for run in _met(states, angles, self._reset_ns)]
+        return [run for run in met if run.recording.driven] or met
 
 
 def _seconds(stamps: list[int], origin: int) -> np.ndarray:
     return (np.array(stamps) - origin) * 1e-9
+
+
+def _met(states: _Series, angles: _Series, reset_ns: float) -> list[_Run]:
+    """The runs in the time that states and angles share; a state holds no longer than `reset_ns`."""
+    known_until = states.stamps[-1] + reset_ns if states.unknown_from is None else states.unknown_from
+    if states.epoch != angles.epoch or known_until <= angles.stamps[0] or angles.stamps[-1] <= states.stamps[0]:
+        return []
+    origin = min(states.stamps[0], angles.stamps[0])
+    drive = _seconds(states.stamps, origin), np.array(states.values, dtype=float)
+    measured = _seconds(angles.stamps, origin), np.array(angles.values, dtype=float)
+    end = min(max(drive[0][-1], measured[0][-1]), (known_until - origin) * 1e-9)
+    return [
+        _Run(_part(origin, drive, measured, begin, stop), stop < end or states.unknown_from is not None)
+        for begin, stop in driven_parts(*drive, end)
+    ]
 
 
 def _part(origin: int, drive: tuple, measured: tuple, begin: float, stop: float) -> Recording:
@@ -101,10 +130,17 @@ def _part(origin: int, drive: tuple, measured: tuple, begin: float, stop: float)
     voltage = np.where(in_force[:, None] >= 0, drive_voltage[np.maximum(in_force, 0)], 0.0)
     passive = not drive_voltage[driven].any()
     return Recording(
-        f"heard_{origin * 1e-9 + begin:.1f}s",
+        _name(origin * 1e-9 + begin),
         time[seen] - begin,
         sin_theta[seen],
         None if passive else voltage,
         drive_time_s=None if passive else drive_time[driven] - begin,
         drive_values=None if passive else drive_voltage[driven],
     )
+
+
+def _name(stamp: float) -> str:
+    """Of a run that begins at a stamp [s]: in local time, as the driver names its recordings, unless no clock ran."""
+    if stamp < _A_CLOCKS:
+        return f"heard_{stamp:.1f}s"
+    return f"heard_{datetime.fromtimestamp(stamp):%Y-%m-%d_%H-%M-%S}"

@@ -54,6 +54,16 @@ def test_a_response_with_the_drives_period_is_left_in_peace(long_run):
     assert check_drive_frequency(few) == []
 
 
+def test_swinging_out_is_no_other_frequency(long_run):
+    """After the end of a short drive a body swings as it likes, for nearly as long as it was driven."""
+    time = long_run.time_s[:420]
+    ringing = 0.2 * np.sin(4 * np.pi * time) * np.where(time < 2.0, 1.0, 0.0)
+    ringing += 0.2 * np.sin(2.4 * np.pi * (time - 2.0)) * (time >= 2.0)
+    drive = np.where(time[:, None] < 2.0, long_run.drive_signal[:420], 0.0)
+    short = replace(long_run, time_s=time, sin_theta=ringing, drive_signal=drive)
+    assert check_drive_frequency(short) == []
+
+
 def test_explained_variance():
     """All of a square wave's first harmonics at its frequency, little beside it."""
     time = np.arange(0.0, 6.0, 1 / 100)

@@ -55,6 +55,45 @@ def test_a_body_at_zero_volt_is_passive():
     assert heard.recordings()[0].voltage is None
 
 
+def test_a_run_after_a_fault_is_not_lost():
+    """While the supply does not know its voltage the camera goes on: all runs before and after are given back."""
+    heard = Heard(reset=2.0)
+    for n in range(1200):
+        stamp = _EPOCH_NS + n * _FRAME
+        driven = 4000.0 if 120 <= n < 180 else 5000.0 if 900 <= n < 960 else 0.0
+        known = not 300 <= n < 700
+        heard.state(0, stamp, (driven, 0.0) if known else (np.nan, np.nan))
+        heard.measured(0, stamp, 0.01)
+    runs = heard.recordings(ended=True)
+    assert [run.voltage.max() for run in runs] == [4000.0, 5000.0]
+    assert all(0.25 < np.argmax(run.voltage[:, 0]) * _FRAME * 1e-9 + 0.01 < 0.27 for run in runs)
+    assert len({run.name for run in runs}) == 2
+
+
+def test_a_drive_that_is_no_longer_known_is_not_held():
+    """The run ends where the supply lost sight of its voltage, though the camera goes on."""
+    heard = Heard(reset=2.0)
+    for n in range(600):
+        stamp = _EPOCH_NS + n * _FRAME
+        heard.state(0, stamp, (5000.0, 0.0) if n < 60 else (np.nan, np.nan))
+        heard.measured(0, stamp, 0.01)
+    (run,) = heard.recordings(ended=True)
+    assert run.time_s[-1] == pytest.approx(60 * _FRAME * 1e-9)
+
+
+def test_a_run_that_is_going_on_can_be_waited_for():
+    """It is given back once a second has passed after its drive; before that, with the others only."""
+    heard = Heard(reset=2.0)
+    for n in range(150):
+        if n == 100:
+            with pytest.raises(SysidError, match="no run that was heard has ended"):
+                heard.recordings(ended=True)
+            assert len(heard.recordings()) == 1
+        heard.state(0, n * _FRAME, (5000.0 if n < 20 else 0.0, 0.0))
+        heard.measured(0, n * _FRAME, 0.01 * n)
+    assert heard.recordings(ended=True)[0].time_s[-1] == pytest.approx(20 * _FRAME * 1e-9 + 1.0, abs=0.01)
+
+
 def test_nothing_heard_is_said():
     """Also when only one of the two topics spoke."""
     heard = Heard(reset=2.0)
