@@ -15,7 +15,6 @@ from hasel_recording.topics import ERROR, MEASURED, NAMESPACE, SIMULATED, STATE,
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState
 from rcl_interfaces.srv import SetParameters
-from rclpy._rclpy_pybind11 import InvalidHandle
 from rclpy.action import ActionClient
 from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
@@ -26,7 +25,7 @@ from std_srvs.srv import Trigger
 from hasel_bringup.errors import BringupError
 
 _START_S = 120.0
-_ANSWER_S = 60.0
+_ANSWER_S, _IDLE_S = 60.0, 0.5
 _TO_REST = {
     "hasel_driver": (Transition.TRANSITION_DEACTIVATE, Transition.TRANSITION_CLEANUP),
     "hasel_simulator": (Transition.TRANSITION_DEACTIVATE,),
@@ -67,6 +66,7 @@ class Rig:
         self._clients: dict[str, Any] = {}
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
+        self._closing = threading.Event()
         self._thread = threading.Thread(target=self._spin, name="rig", daemon=True)
         self._thread.start()
 
@@ -77,8 +77,10 @@ class Rig:
 
     def close(self) -> None:
         """Leave the graph."""
-        self._executor.shutdown()
+        self._closing.set()
+        self._executor.wake()
         self._thread.join(timeout=5.0)
+        self._executor.shutdown()
         self.node.destroy_node()
         rclpy.try_shutdown(context=self._context)
 
@@ -197,7 +199,6 @@ class Rig:
         self.state = state
 
     def _spin(self) -> None:
-        with suppress(
-            ExternalShutdownException, InvalidHandle
-        ):  # the end may come in the middle of a callback
-            self._executor.spin()
+        with suppress(ExternalShutdownException):
+            while not self._closing.is_set():
+                self._executor.spin_once(timeout_sec=_IDLE_S)

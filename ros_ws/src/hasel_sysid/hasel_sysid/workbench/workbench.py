@@ -62,9 +62,16 @@ class Workbench:
     def take(
         self, recordings: Sequence[Recording], unseen: bool = False, progress: Progress = silent
     ) -> None:
-        """The same with recordings that were read already."""
-        with self._change():
-            self._take(recordings, unseen, progress)
+        """The same with recordings that were read already; those that were taken before are left out.
+
+        Raises SysidError where none is new.
+        """
+        with self._change() as state:
+            known = [each.name for each in state.every]
+            new = [each for each in recordings if each.name not in known]
+            if not new:
+                raise SysidError(f"nothing new: all {len(recordings)} runs are loaded already")
+            self._take(new, unseen, progress)
 
     def fit(self, progress: Progress = silent) -> None:
         """Fit what is being tried, which goes on being tried; else the current model, as a new step."""
@@ -136,10 +143,11 @@ class Workbench:
             return export(state, folder or self.folder / "export", self.reading, self.pool, progress)
 
     def model_file(self) -> Path:
-        """A file with the model that is shown, for the running simulator."""
+        """A file with the model that is shown, for the running simulator; before any run, the one to begin with."""
         path = self.folder / "shown.yaml"
         self.folder.mkdir(parents=True, exist_ok=True)
-        save_model(self.state.shown.model, path)
+        state = self.state
+        save_model(state.shown.model if state.steps else load_model(chosen_name(self._asked, ())), path)
         return path
 
     def dismiss(self) -> None:

@@ -62,6 +62,14 @@ def server(tmp_path_factory, unseen_rig) -> Iterator[Server]:
     one.close()
 
 
+@pytest.fixture
+def server_without_runs(tmp_path) -> Iterator[Server]:
+    """A workbench that nothing was given to."""
+    one = Server(tmp_path / "empty")
+    yield one
+    one.close()
+
+
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     """One for all tests."""
@@ -136,6 +144,23 @@ def test_a_truncated_file_is_a_banner(page, tmp_path):
     page.click("I have read these")
     page.until("!document.querySelector('.wb-banner')", _PATIENCE_S)
     assert page.run("bench.runs.length") == 3
+
+
+def test_a_dropped_file_is_loaded(server_without_runs, browser, unseen_rig, tmp_path):
+    """Dragged from outside onto where runs to fit, and where unseen ones, are dropped; two files at once, too."""
+    one = browser.open(server_without_runs.address)
+    one.until("document.querySelector('.wb-upload-fitted') && document.body.matches('.wb-empty')", _PATIENCE_S)
+    rig = unseen_rig / "quadratic_drag"
+    fitted = [rig / "fit_4500V_3.5Hz.csv", rig / "fit_5500V_3.5Hz.csv"]
+    one.drop_files(".wb-upload-fitted .q-uploader__list", fitted)
+    one.until("window.bench && bench.shown > 0", _PATIENCE_S)
+    assert one.run("bench.runs") == [path.stem for path in fitted]
+    idle(one)
+    one.drop_files(".wb-upload-unseen .q-uploader__list", [rig / "val_5200V_2.5Hz.csv"])
+    one.until("document.getElementById('wb-error-unseen')", _PATIENCE_S)
+    one.until("bench.runs.length === 3", _PATIENCE_S)
+    assert one.run("document.querySelectorAll('tr[data-row] .chip').length") == 1
+    assert one.errors == []
 
 
 def test_the_four_steps(page, server, browser, tmp_path):

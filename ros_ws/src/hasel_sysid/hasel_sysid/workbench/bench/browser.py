@@ -162,6 +162,29 @@ class BrowserPage:
         node = self.send("DOM.querySelector", nodeId=root, selector=selector)["nodeId"]
         self.send("DOM.setFileInputFiles", nodeId=node, files=[str(path) for path in paths])
 
+    def drop_files(self, selector: str, paths: Sequence[Path]) -> None:
+        """Drag files from outside onto an element and let go, as from a file manager."""
+        self.run(f"document.querySelector({json.dumps(selector)}).scrollIntoView({{block: 'center'}})")
+        x, y = self.middle(f"document.querySelector({json.dumps(selector)})")
+        data = {"items": [], "files": [str(path) for path in paths], "dragOperationsMask": 1}
+        for kind in ("dragEnter", "dragOver", "drop"):
+            self.send("Input.dispatchDragEvent", type=kind, x=x, y=y, data=data)
+
+    def press_mouse(self, element: str) -> None:
+        """Press the mouse in the middle of what an expression finds, whatever lies there on top."""
+        x, y = self.middle(element)
+        for kind in ("mousePressed", "mouseReleased"):
+            self.send("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
+
+    def middle(self, element: str) -> tuple[float, float]:
+        """Of an element, in pixels of the window."""
+        return tuple(
+            self.run(
+                f"(() => {{ const r = ({element}).getBoundingClientRect(); "
+                "return [r.x + r.width / 2, r.y + r.height / 2]; })()"
+            )
+        )
+
     def press(self, key: str) -> None:
         """A key, such as ArrowRight."""
         text = {"text": " "} if key == " " else {}

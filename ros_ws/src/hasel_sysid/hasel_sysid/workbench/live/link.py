@@ -23,17 +23,19 @@ from std_srvs.srv import Trigger
 
 from hasel_sysid.errors import SysidError
 from hasel_sysid.workbench.evaluate import Progress
-from hasel_sysid.workbench.live.stream import LiveStream
+from hasel_sysid.workbench.live.stream import KINDS, LiveStream
 
-_STOP_S, _ANSWER_S, _LOOK_S = 1.0, 30.0, 0.05
+_STOP_S, _ANSWER_S, _LOOK_S, _IDLE_S = 1.0, 30.0, 0.05, 0.5
 
 
 class RigLink:
-    """state: what the supply said last; heard_at: when, of the monotonic clock [s]; domain: of ROS, else the user's."""
+    """state: what the supply said last; heard_at: when each kind of sample came last, of the monotonic clock [s];
+    domain: of ROS, else the user's.
+    """
 
     def __init__(self, stream: LiveStream, namespace: str, domain: int | None = None) -> None:
         self.state: SupplyState | None = None
-        self.heard_at = float("-inf")
+        self.heard_at = dict.fromkeys(KINDS, float("-inf"))
         self._stream = stream
         self._context = Context()
         rclpy.init(context=self._context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
@@ -46,15 +48,23 @@ class RigLink:
         self._experiments = ActionClient(self._node, RunExperiment, "run_experiment")
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
+        self._closing = threading.Event()
         self._thread = threading.Thread(target=self._spin, name="rig", daemon=True)
         self._thread.start()
 
     def close(self) -> None:
         """Leave the graph."""
-        self._executor.shutdown()
+        self._closing.set()
+        self._executor.wake()
         self._thread.join(timeout=5.0)
+        self._executor.shutdown()
         self._node.destroy_node()
         rclpy.try_shutdown(context=self._context)
+
+    @property
+    def has_simulator(self) -> bool:
+        """Whether somebody offers to load a model."""
+        return self._load.service_is_ready()
 
     async def stop(self) -> str:
         """Ask for the emergency stop; what the driver answered."""
@@ -70,8 +80,6 @@ class RigLink:
 
     def load(self, model: Path) -> str:
         """Let the simulator take a model file. Raises SysidError."""
-        if not self._load.service_is_ready():
-            raise SysidError(f"nobody offers {self._load.srv_name}; start the simulator first")
         answer = self._answer(self._load.call_async(LoadModel.Request(model=str(model.resolve()))), _ANSWER_S)
         if not answer.success:
             raise SysidError(answer.message)
@@ -116,16 +124,19 @@ class RigLink:
         return future.result()
 
     def _on_state(self, message: SupplyState) -> None:
-        self.state, self.heard_at = message, time.monotonic()
+        self.state, self.heard_at["voltage"] = message, time.monotonic()
         self._stream.voltage(to_nanoseconds(message.header.stamp), tuple(rig_voltage(message)))
 
     def _on_measured(self, message: BendingAngle) -> None:
+        self.heard_at["measured"] = time.monotonic()
         sine = message.sin_theta if message.valid else float("nan")
         self._stream.measured(to_nanoseconds(message.header.stamp), sine)
 
     def _on_simulated(self, message: BendingAngle) -> None:
+        self.heard_at["simulated"] = time.monotonic()
         self._stream.simulated(to_nanoseconds(message.header.stamp), message.sin_theta)
 
     def _spin(self) -> None:
         with suppress(ExternalShutdownException):
-            self._executor.spin()
+            while not self._closing.is_set():
+                self._executor.spin_once(timeout_sec=_IDLE_S)

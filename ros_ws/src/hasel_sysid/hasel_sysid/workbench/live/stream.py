@@ -2,6 +2,7 @@
 
 import threading
 from collections import deque
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,9 @@ from hasel_sysid.live.heard import Heard
 from hasel_sysid.live.pairing import Pairing
 from hasel_sysid.live.running_error import DriveStarts, RunningError, RunningErrors
 
-_LATE_S, _GAP_S, _RESET_S, _WINDOW_S = 0.5, 0.1, 2.0, 5.0
+_LATE_S, _GAP_S, _RESET_S = 0.5, 0.1, 2.0
+WINDOW_S = 5.0
+"""Of the recent error."""
 _KEPT = 20_000
 """Samples of each kind that wait to be drawn; some minutes."""
 KINDS = ("measured", "simulated", "voltage")
@@ -31,7 +34,7 @@ class LiveStream:
         }
         self.count = dict.fromkeys(KINDS, 0)
         self._pairing, self._heard = Pairing(_GAP_S), Heard(_RESET_S)
-        self._errors, self._starts = RunningErrors(_RESET_S, _WINDOW_S), DriveStarts()
+        self._errors, self._starts = RunningErrors(_RESET_S, WINDOW_S), DriveStarts()
         self._origin: int | None = None
         self._lock = threading.Lock()
         self.error: RunningError | None = None
@@ -65,17 +68,20 @@ class LiveStream:
         with self._lock:
             return {kind: self._after(kind, seen.get(kind, 0)) for kind in KINDS}
 
-    def recordings(self, folder: Path) -> list[Recording]:
-        """The runs heard so far, each written to a file of its own. Raises SysidError where there is none."""
+    def recordings(self, folder: Path, ended: bool = False) -> list[Recording]:
+        """The runs heard so far, each written to a file of its own. Raises SysidError where there is none.
+
+        ended: without one that is going on.
+        """
         with self._lock:
-            found = self._heard.recordings()
+            found = self._heard.recordings(ended)
         folder.mkdir(parents=True, exist_ok=True)
         out = []
         for recording in found:
             path = folder / f"{recording.name}.mcap"
             if not path.exists():
                 write_recording(recording, path)
-            out.append(_from(recording, path))
+            out.append(replace(recording, path=path))
         return out
 
     def _add(self, kind: str, stamp_ns: int, value: float, second: float = 0.0) -> None:
@@ -92,9 +98,3 @@ class LiveStream:
     def _paired(self, pairs) -> None:
         for pair in pairs:
             self.error = self._errors.add(pair)
-
-
-def _from(recording: Recording, path: Path) -> Recording:
-    from dataclasses import replace
-
-    return replace(recording, path=path)

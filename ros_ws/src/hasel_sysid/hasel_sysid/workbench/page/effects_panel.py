@@ -15,11 +15,11 @@ class EffectsPanel:
 
     def __init__(self, page: Any) -> None:
         self._page = page
-        with ui.element("section").classes("wb-card").props('aria-label="values"'):
+        with ui.element("section").classes("wb-card wb-of-runs").props('aria-label="values"'):
             ui.html("<h2>Values</h2>", sanitize=False)
             ui.html("<p>Drag: the curve follows at once, the true simulation behind it.</p>", sanitize=False)
             self._values()
-        with ui.element("section").classes("wb-card").props('aria-label="effects"'):
+        with ui.element("section").classes("wb-card wb-of-runs").props('aria-label="effects"'):
             ui.html("<h2>Effects</h2>", sanitize=False)
             self._effects()
 

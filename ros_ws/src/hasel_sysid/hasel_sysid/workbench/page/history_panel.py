@@ -17,10 +17,11 @@ class HistoryPanel:
 
     def __init__(self, page: Any) -> None:
         self._page = page
-        with ui.element("section").classes("wb-card").props('aria-label="the error, step by step"'):
+        self._start: ui.button | None = None
+        with ui.element("section").classes("wb-card wb-of-runs").props('aria-label="the error, step by step"'):
             ui.html("<h2>The error, step by step</h2>", sanitize=False)
             self._steps()
-        with ui.element("section").classes("wb-card").props('aria-label="next run and export"'):
+        with ui.element("section").classes("wb-card wb-of-runs").props('aria-label="next run and export"'):
             ui.html("<h2>Next run, export</h2>", sanitize=False)
             self._next()
 
@@ -28,6 +29,11 @@ class HistoryPanel:
         """Draw it again."""
         self._steps.refresh()
         self._next.refresh()
+
+    def look(self) -> None:
+        """Follow whether there is a rig to make the proposed run."""
+        if self._start is not None:
+            self._start.set_enabled(self._page.rig.is_there)
 
     @ui.refreshable_method
     def _steps(self) -> None:
@@ -62,6 +68,7 @@ class HistoryPanel:
             suggest.props("dense no-caps outline").set_enabled(state.diagnosis is not None)
             export = ui.button("Export", on_click=self._export).props("dense no-caps outline")
             export.set_enabled(bool(state.steps))
+        self._start = None
         for suggestion in state.suggestions[:1]:
             self._suggestion(suggestion)
         for file in ("report.html", "session.py", "model.yaml", "waterfall.svg"):
@@ -79,8 +86,8 @@ class HistoryPanel:
         def work(progress) -> None:
             page.jobs.say("positive", page.rig.run(suggestion.manoeuvre, progress))
 
-        start = ui.button("Start it on the rig", on_click=lambda: page.do("run on the rig", work))
-        start.props("dense no-caps outline").set_enabled(page.rig.is_there)
+        self._start = ui.button("Start it on the rig", on_click=lambda: page.do("run on the rig", work))
+        self._start.props("dense no-caps outline").set_enabled(page.rig.is_there)
 
     def _export(self) -> None:
         session = self._page.session

@@ -38,7 +38,7 @@ def failure_map_table(rows: Sequence[MapRow]) -> str:
         return "<p>No run has a cycle, so there is no phase to sort its error by.</p>"
     largest = max(float(np.nanmax(np.abs(row.mean))) for row in rows) or 1.0
     lines = "".join(
-        f'<tr><th scope="row">{escape(row.run)}</th>'
+        f'<tr><th scope="row" title="{escape(row.run)}"><bdi>{escape(row.run)}</bdi></th>'
         + "".join(_cell(row, number, value, largest) for number, value in enumerate(row.mean))
         + "</tr>"
         for row in rows

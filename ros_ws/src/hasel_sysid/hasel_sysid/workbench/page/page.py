@@ -51,13 +51,13 @@ class Page:
                 self.banners()
                 runs = RunsPanel(self)
             with ui.element("div").classes("wb-column middle"):
+                live = LivePanel(self)
                 view_panel()
                 history = HistoryPanel(self)
-                live = LivePanel(self)
             with ui.element("div").classes("wb-column"):
                 effects = EffectsPanel(self)
         self._panels = (tools, runs, history, effects)
-        self._live, self._tools = live, tools
+        self._live, self._tools, self._history = live, tools, history
         ui.on("wb-values", self._let_go)
         ui.timer(_LOOK_S, self._look)
 
@@ -90,7 +90,7 @@ class Page:
     def _numbers(self) -> None:
         state = self.session.state
         if not state.steps:
-            ui.html("<p>Drop recordings to begin.</p>", sanitize=False)
+            ui.html("<p>Drop recordings to begin, or open Live beside a running rig.</p>", sanitize=False)
             return
         shown = state.shown
         unseen = (
@@ -140,7 +140,8 @@ class Page:
             values, self._values = self._values, {}
             self.do("simulate all runs", lambda progress: self.session.set_values(values, progress))
         self._live.look()
-        self.stop.set_enabled(self.rig.is_there)
+        self._history.look()
+        self.stop.set_enabled(self.rig.link is not None)  # a rig that is silent for a while can be stopped, too
 
     def _let_go(self, event: GenericEventArguments) -> None:
         self._values |= {name: float(value) for name, value in event.args.items()}

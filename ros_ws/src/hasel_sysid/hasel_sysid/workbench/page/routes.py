@@ -99,7 +99,6 @@ def _heard(rig: Rig, seen: dict[str, int]) -> bytes:
         "counts": {kind: len(rows[kind]) for kind in KINDS},
         "error": None if error is None else error.mean_absolute,
         "recent": None if error is None else error.recent,
-        "window": None if error is None else error.window,
     }
     return packet(header, np.concatenate([rows[kind] for kind in KINDS]))
 

@@ -25,6 +25,7 @@ const bench = {
     if (!this.ready) this.begin();
     this.version = version;
     this.runs = runs;
+    document.body.classList.toggle("wb-empty", !runs.length);
     if (!runs.length) return;
     await this.select(runs.includes(this.run) ? this.run : runs[0], true);
   },
