@@ -16,8 +16,8 @@ _RATIOS = np.arange(0.3, 3.0, 0.01)
 def check_drive_frequency(recording: Recording) -> list[Finding]:
     """A response that repeats, but neither with the drive's period nor a whole part of it.
 
-    A body that is driven periodically answers, once it has settled, with the drive's period. Left out are the first half
-    of what is driven, and how the body swings by itself once the drive has ended.
+    A body that is driven periodically answers, once it has settled, with the drive's period. The first half of what is
+    driven is left out, and so is how the body swings by itself after it.
     """
     if not recording.driven:
         return []

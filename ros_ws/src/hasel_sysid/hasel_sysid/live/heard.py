@@ -110,7 +110,11 @@ def _seconds(stamps: list[int], origin: int) -> np.ndarray:
 def _met(states: _Series, angles: _Series, reset_ns: float) -> list[_Run]:
     """The runs in the time that states and angles share; a state holds no longer than `reset_ns`."""
     known_until = states.stamps[-1] + reset_ns if states.unknown_from is None else states.unknown_from
-    if states.epoch != angles.epoch or known_until <= angles.stamps[0] or angles.stamps[-1] <= states.stamps[0]:
+    if (
+        states.epoch != angles.epoch
+        or known_until <= angles.stamps[0]
+        or angles.stamps[-1] <= states.stamps[0]
+    ):
         return []
     origin = min(states.stamps[0], angles.stamps[0])
     drive = _seconds(states.stamps, origin), np.array(states.values, dtype=float)

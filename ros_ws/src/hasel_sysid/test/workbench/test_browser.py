@@ -147,18 +147,23 @@ def test_a_truncated_file_is_a_banner(page, tmp_path):
 
 
 def test_a_dropped_file_is_loaded(server_without_runs, browser, unseen_rig, tmp_path):
-    """Dragged from outside onto where runs to fit, and where unseen ones, are dropped; two files at once, too."""
+    """Dragged onto where runs to fit, and where unseen ones, are dropped, or anywhere on the page; two at once, too."""
     one = browser.open(server_without_runs.address)
-    one.until("document.querySelector('.wb-upload-fitted') && document.body.matches('.wb-empty')", _PATIENCE_S)
+    one.until(
+        "document.querySelector('.wb-upload-fitted') && document.body.matches('.wb-empty')", _PATIENCE_S
+    )
     rig = unseen_rig / "quadratic_drag"
     fitted = [rig / "fit_4500V_3.5Hz.csv", rig / "fit_5500V_3.5Hz.csv"]
-    one.drop_files(".wb-upload-fitted .q-uploader__list", fitted)
+    one.drop_files(".wb-upload-fitted", fitted)
     one.until("window.bench && bench.shown > 0", _PATIENCE_S)
     assert one.run("bench.runs") == [path.stem for path in fitted]
     idle(one)
-    one.drop_files(".wb-upload-unseen .q-uploader__list", [rig / "val_5200V_2.5Hz.csv"])
+    one.drop_files(".wb-upload-unseen", [rig / "val_5200V_2.5Hz.csv"])
     one.until("document.getElementById('wb-error-unseen')", _PATIENCE_S)
     one.until("bench.runs.length === 3", _PATIENCE_S)
+    idle(one)
+    one.drop_files("#wb-curve", [rig / "fit_3500V_3.5Hz.csv"])
+    one.until("bench.runs.includes('fit_3500V_3.5Hz')", _PATIENCE_S)
     assert one.run("document.querySelectorAll('tr[data-row] .chip').length") == 1
     assert one.errors == []
 

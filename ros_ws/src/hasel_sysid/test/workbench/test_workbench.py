@@ -7,6 +7,7 @@ from importlib import import_module
 
 import numpy as np
 import pytest
+from hasel_recording import read_recording
 from hasel_sim.model import load_model
 from hasel_sysid.errors import SysidError
 from hasel_sysid.suggest import Manoeuvre
@@ -134,6 +135,28 @@ def test_what_cannot_be_read_is_a_banner(loaded, unseen_rig, tmp_path):
     assert loaded.state.steps == steps
     loaded.dismiss()
     assert loaded.state.banners == ()
+
+
+def test_what_was_taken_is_not_taken_twice(new_session, short_runs):
+    """Of what a rig was heard to do only the new runs are added, without a word about the others."""
+    session = new_session()
+    first, second = (read_recording(path) for path in short_runs[0])
+    session.take([first])
+    session.take([first, second])
+    assert [each.name for each in session.state.experiments] == [first.name, second.name]
+    assert session.state.banners == ()
+    with pytest.raises(SysidError, match="nothing new: all 2 runs are loaded already"):
+        session.take([first, second])
+
+
+def test_there_is_a_model_for_the_simulator_before_any_run(new_session, short_runs):
+    """The one that was asked for; later, the one that is shown."""
+    session = new_session(model="beam")
+    assert load_model(session.model_file()).name == "beam"
+    session = new_session()
+    session.load(short_runs[0][:1])
+    session.set_values({"slope": 0.3})
+    assert load_model(session.model_file()).values == pytest.approx(session.state.trial.model.values)
 
 
 def test_more_runs_judge_every_step_anew(loaded, unseen_rig):

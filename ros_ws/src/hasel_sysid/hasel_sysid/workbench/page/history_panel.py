@@ -18,7 +18,9 @@ class HistoryPanel:
     def __init__(self, page: Any) -> None:
         self._page = page
         self._start: ui.button | None = None
-        with ui.element("section").classes("wb-card wb-of-runs").props('aria-label="the error, step by step"'):
+        with (
+            ui.element("section").classes("wb-card wb-of-runs").props('aria-label="the error, step by step"')
+        ):
             ui.html("<h2>The error, step by step</h2>", sanitize=False)
             self._steps()
         with ui.element("section").classes("wb-card wb-of-runs").props('aria-label="next run and export"'):

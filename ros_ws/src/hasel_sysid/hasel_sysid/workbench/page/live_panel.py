@@ -31,7 +31,7 @@ class LivePanel:
             self._said = page.rig.said()
             self._open = ui.expansion("Live: a running rig", caption=self._said).classes("w-full")
             with self._open.props("dense"):
-                ui.html(_CANVAS.format(window=WINDOW_S), sanitize=False)
+                ui.html(_CANVAS.format(window=WINDOW_S), sanitize=False).classes("w-full")
                 with ui.element("div").classes("wb-buttons"):
                     self._heard = ui.button("Take what was heard as runs", on_click=self._take)
                     self._send = ui.button(_TAKE, on_click=self._model)

@@ -39,12 +39,11 @@ class Page:
         with ui.element("header").classes("wb-head"):
             ui.html("<h1>HASEL workbench</h1>", sanitize=False)
             self._numbers()
-            ui.element("div").classes("grow")
-            ui.button(icon="dark_mode", on_click=self._darker).props(
-                'dense flat round aria-label="light or dark"'
-            )
-            self.stop = ui.button("STOP", on_click=self._stop).classes("wb-stop")
-            self.stop.props('color=negative no-caps aria-label="emergency stop: ground the high voltage"')
+            with ui.element("div").classes("wb-corner"):
+                darker = ui.button(icon="dark_mode", on_click=self._darker)
+                darker.props('dense flat round aria-label="light or dark"')
+                self.stop = ui.button("STOP", on_click=self._stop).classes("wb-stop")
+                self.stop.props('color=negative no-caps aria-label="emergency stop: ground the high voltage"')
             tools = Toolbar(self)
         with ui.element("main").classes("wb-grid"):
             with ui.element("div").classes("wb-column"):
@@ -141,7 +140,7 @@ class Page:
             self.do("simulate all runs", lambda progress: self.session.set_values(values, progress))
         self._live.look()
         self._history.look()
-        self.stop.set_enabled(self.rig.link is not None)  # a rig that is silent for a while can be stopped, too
+        self.stop.set_enabled(self.rig.link is not None)  # also while the rig is silent
 
     def _let_go(self, event: GenericEventArguments) -> None:
         self._values |= {name: float(value) for name, value in event.args.items()}

@@ -15,7 +15,17 @@ const bench = {
     document.addEventListener("keydown", event => this.pressed(event));
     document.addEventListener("input", event => this.moved(event.target));
     document.addEventListener("change", event => this.chosen(event.target));
+    document.addEventListener("dragover", event => event.preventDefault());
+    document.addEventListener("drop", event => this.dropped(event));
     this.ready = true;
+  },
+  // Files let go of anywhere: else the browser would leave the page for them.
+  dropped(event) {
+    event.preventDefault();
+    const files = event.dataTransfer.files, input = document.querySelector(".wb-upload-fitted input[type=file]");
+    if (!files.length || event.target.closest(".q-uploader")) return;
+    input.files = files;
+    input.dispatchEvent(new Event("change", {bubbles: true}));
   },
   dress() {
     this.body.dress(); this.curve.dress(); this.draw();
