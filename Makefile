@@ -39,8 +39,8 @@ docs: build ## write the reference from the docstrings, build/docs/index.html
 	@$(ENVIRONMENT) && python -m pdoc --no-show-source -o build/docs $(PACKAGES)
 	@echo "Written: build/docs/index.html"
 
-demo: build ## fit the swimmer, compare on unseen runs, replay one, write report.html (BODY=DIR, MUSCLE=DIR: measured ones too)
-	@bin/ros2-run hasel_bringup demo $(foreach folder,$(BODY) $(BEAM),--body $(folder)) $(foreach folder,$(MUSCLE),--muscle $(folder))
+demo: build ## fit the swimmer, compare on unseen runs, replay one, write report.html (BODY=DIR, MUSCLE=DIR, FISHSIM=DIR: measured ones too)
+	@bin/ros2-run hasel_bringup demo $(foreach folder,$(BODY) $(BEAM),--body $(folder)) $(foreach folder,$(MUSCLE),--muscle $(folder)) $(foreach folder,$(FISHSIM),--fish $(folder))
 
 bench: build ## measure the speeds that the README states
 	@bin/ros2-run hasel_bringup bench

@@ -43,6 +43,7 @@ setup(
             "improve = hasel_sysid.command_line.entry:improve",
             "suggest = hasel_sysid.command_line.entry:suggest",
             "bench_muscle = hasel_sysid.command_line.entry:bench_muscle",
+            "measured_fish = hasel_sysid.command_line.entry:measured_fish",
             "workbench = hasel_sysid.command_line.entry:workbench",
             "add = hasel_sysid.command_line.entry:add",
             "remove = hasel_sysid.command_line.entry:remove",

@@ -9,8 +9,10 @@ from functools import partial
 from pathlib import Path
 
 from hasel_recording import RecordingError, read_recording
-from hasel_sysid.command_line import bench_muscle, fit, improve
+from hasel_sysid.command_line import bench_muscle, fit, improve, measured_fish
 from hasel_sysid.command_line.running import MISLEADING
+from hasel_sysid.errors import SysidError
+from hasel_sysid.measured_fish.reading import filmed_runs
 from rich.console import Console
 from rich.markup import escape
 
@@ -25,11 +27,21 @@ _REPLAYED = "val_5200V_2.5Hz.csv"
 class Demo:
     """The steps in order; each tells what it does and how long it took."""
 
-    def __init__(self, data: Path, bodies: Sequence[Path], output: Path, muscle: Path | None = None) -> None:
+    def __init__(
+        self,
+        data: Path,
+        bodies: Sequence[Path],
+        output: Path,
+        muscle: Path | None = None,
+        fish: Path | None = None,
+    ) -> None:
         self.fitted, self.unseen = _files(data, "fit_*.csv"), _files(data, "val_*.csv")
         self.replayed = data / _REPLAYED if (data / _REPLAYED) in self.unseen else self.unseen[-1]
         self.bodies = found_in(list(bodies))
         self.lifts = [] if muscle is None else steps_in(muscle)
+        self.fish = fish
+        if fish is not None:
+            filmed_runs(fish)  # refuses a folder without films before anything takes time
         self.output = output
         output.mkdir(parents=True, exist_ok=True)
         self._console = Console(highlight=False)
@@ -62,6 +74,8 @@ class Demo:
             )
         if self.lifts:
             self._step("A measured muscle on its bench, judged on voltages that were not fitted", self._bench)
+        if self.fish is not None:
+            self._step("A filmed fish: its drive, and its speeds by the forces of the fluid", self._filmed)
         minutes, seconds = divmod(round(time.monotonic() - begun), 60)
         self._console.print(
             f"\nDone in {minutes} min {seconds} s: open {escape(str(self.output / 'report.html'))}"
@@ -100,6 +114,9 @@ class Demo:
         unseen = ["--unseen-voltages", ",".join(map(str, UNSEEN_VOLTAGES))]
         _call(bench_muscle, [*map(str, self.lifts), *unseen, "--output", str(self.output / "muscle")])
 
+    def _filmed(self) -> None:
+        _call(measured_fish, [str(self.fish), "--output", str(self.output / "fish")])
+
 
 def _runs(paths: Sequence[Path]) -> str:
     return "one run" if len(paths) == 1 else f"{len(paths)} runs"
@@ -129,8 +146,8 @@ def _call(command, arguments: Sequence[str]) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run the command with these options; returns its exit code."""
     try:
-        Demo(options.data, options.body, options.output, options.muscle).run()
-    except (BringupError, RecordingError) as error:
+        Demo(options.data, options.body, options.output, options.muscle, options.fish).run()
+    except (BringupError, RecordingError, SysidError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:

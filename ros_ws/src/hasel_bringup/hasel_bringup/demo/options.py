@@ -32,6 +32,12 @@ def parser() -> argparse.ArgumentParser:
         help="also the measured muscle in this clone of the public repository MadhavL/PH-HASEL-Python",
     )
     options.add_argument(
+        "--fish",
+        type=Path,
+        metavar="DIR",
+        help="also the filmed fish in this clone of the public repository srl-ethz/fishsim",
+    )
+    options.add_argument(
         "--output", type=Path, default=Path("output") / "demo", metavar="DIR", help="(default: %(default)s)"
     )
     return options

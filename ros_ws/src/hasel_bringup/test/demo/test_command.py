@@ -7,6 +7,7 @@ import pytest
 from hasel_bringup.demo.command import Demo, _call
 from hasel_bringup.errors import BringupError
 from hasel_sysid.command_line.running import MISLEADING
+from hasel_sysid.errors import SysidError
 
 ROOT = Path(__file__).resolve().parents[5]
 DATA = ROOT / "data" / "unseen_rig" / "quadratic_drag"
@@ -24,6 +25,12 @@ def test_a_folder_without_a_measured_body_is_refused(tmp_path):
     """Before anything is computed."""
     with pytest.raises(BringupError, match=r"gravity_a\.csv"):
         Demo(DATA, [tmp_path], tmp_path / "out")
+
+
+def test_a_folder_without_films_of_the_fish_is_refused(tmp_path):
+    """Likewise."""
+    with pytest.raises(SysidError, match="srl-ethz/fishsim"):
+        Demo(DATA, [], tmp_path / "out", fish=tmp_path)
 
 
 @pytest.mark.parametrize(("code", "goes_on"), [(0, True), (MISLEADING, True), (2, False), (130, False)])

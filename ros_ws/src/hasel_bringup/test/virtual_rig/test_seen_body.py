@@ -22,7 +22,9 @@ def states(count: int = 60) -> list[tuple[int, np.ndarray]]:
     """States some 95 times a second, not evenly: one muscle, then the other."""
     rng = np.random.default_rng(4)
     stamps = FIRST_NS + np.concatenate([[0], np.cumsum(rng.integers(8_000_000, 13_000_000, count - 1))])
-    return [(int(stamp), np.array([4500.0, 0.0] if n < 30 else [0.0, 4500.0])) for n, stamp in enumerate(stamps)]
+    return [
+        (int(stamp), np.array([4500.0, 0.0] if n < 30 else [0.0, 4500.0])) for n, stamp in enumerate(stamps)
+    ]
 
 
 def seen(body: SeenBody, taken) -> list:
@@ -72,6 +74,8 @@ def test_after_a_jump_of_the_stamps_a_new_run_begins(model):
 
 def test_an_effect_that_looks_ahead_delays_the_frames_only(model):
     """A camera whose clock is early answers later, with every frame."""
-    early = model.with_effects("camera_latency").with_values({**model.values, "camera_latency.latency": -0.02})
+    early = model.with_effects("camera_latency").with_values(
+        {**model.values, "camera_latency.latency": -0.02}
+    )
     stamps = [angle.stamp_ns for angle in seen(SeenBody(early, 120.0), states())]
     assert stamps[:20] == [FIRST_NS + n * FRAME_NS for n in range(20)]

@@ -11,22 +11,24 @@ those of theory; the one number that no theory gives, the drag of the blunt head
 others are predicted. The depth is the tail's height in the public model; the mass is estimated from its shape.
 
     python measured_fish.py
+
+The same from the files themselves: `ros2 run hasel_sysid measured_fish DIR`, with DIR a clone of that repository.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_sim.effects.base import ForceEffect, Surroundings
-from hasel_sim.effects.registry import find_effects
-from hasel_sim.swimming.given_shape import Shape, Swimmer, swim
-from scipy.optimize import brentq
+from hasel_sim.swimming.beating_fish import Beat, Fish, fitted_form_drag, settled_speed
 
-NOSE, TAIL_BASE = -0.071, 0.27
-"""Places along the head's axis [m], from the middle between the two head markers: front marker, first hinge."""
-BEAT = np.array([2.183 + 2.021j, -1.482 - 3.641j, 0.299 + 1.621j])
-"""Deflection over the last marker's: of s^2, s^3, s^4, s from 0 at the first hinge to 1 at that marker."""
-DEPTH, MASS = 0.1, 1.6
-"""Of the fish, m and kg: tail height in the public model, and estimated from its shape."""
+FISH = Fish(
+    nose=-0.071,
+    tail_base=0.27,
+    beat=np.array([2.183 + 2.021j, -1.482 - 3.641j, 0.299 + 1.621j]),
+    depth=0.1,
+    mass=1.6,
+)
+"""Places along the head's axis from the middle between the two head markers: front marker, first hinge; the shape of
+the beat; the depth is the tail's height in the public model, the mass is estimated from its shape."""
 FITTED = (1.0, 1.75)
 """The runs that the drag of the head is fitted to, by their named frequency [Hz]."""
 PUBLISHED = {"ellipsoids, five coefficients": 0.019, "elongated-body theory, two coefficients": 0.134}
@@ -43,6 +45,11 @@ class MeasuredRun:
     place: float
     speed: float
 
+    @property
+    def beat(self) -> Beat:
+        """As the simulator takes it."""
+        return Beat(self.frequency, self.amplitude, self.place, self.speed)
+
 
 RUNS = (
     MeasuredRun(0.50, 0.376, 0.1005, 0.456, 0.0229),
@@ -56,60 +63,14 @@ RUNS = (
 )
 
 
-def fish(run: MeasuredRun, form_drag: float, points: int = 32) -> Swimmer:
-    """The fish of a run with a drag of its head."""
-    places, weights = np.polynomial.legendre.leggauss(points)
-    length = run.place - NOSE
-    x = np.append(NOSE + 0.5 * length * (1 + places), run.place)
-    lengths = np.append(0.5 * length * weights, 0.0)
-    s = np.clip((x - TAIL_BASE) / (run.place - TAIL_BASE), 0.0, None)
-    powers = np.array([2, 3, 4])[:, None]
-    beat = run.amplitude * BEAT @ s**powers
-    slope = run.amplitude * BEAT @ (powers * s ** (powers - 1)) / (run.place - TAIL_BASE)
-    omega = 2 * np.pi * run.frequency
-
-    def shape(time: float) -> Shape:
-        turn = np.exp(1j * omega * time)
-
-        def across(values: np.ndarray, along: np.ndarray | float = 0.0) -> np.ndarray:
-            return np.stack([np.broadcast_to(along, x.shape), (values * turn).real], axis=1)
-
-        return Shape(
-            across(beat, x), across(1j * omega * beat), across(-(omega**2) * beat),
-            across(slope, 1.0), across(1j * omega * slope),
-        )  # fmt: skip
-
-    names = ("form_drag", "normal_drag", "skin_friction", "reactive_force")
-    values: tuple[dict[str, float], ...] = (
-        {"coefficient": form_drag},
-        {"coefficient": 2.0, "boundary_layer": 4.0},
-        {"along": 1.0, "thinning": 2.7},
-        {"coefficient": 1.0},
-    )
-    water = Surroundings(998.0, 1.0e-3, DEPTH, length)
-    pairs = zip(find_effects(names), values, strict=True)
-    effects = [(effect, own) for effect, own in pairs if isinstance(effect, ForceEffect)]
-    return Swimmer(lengths, MASS / DEPTH * lengths / length, shape, effects, water)
-
-
-def speed(run: MeasuredRun, form_drag: float, periods: int = 5) -> float:
-    """Settled speed forwards [m/s], from the measured one on."""
-    steps = 24
-    times = np.linspace(0.0, periods / run.frequency, steps * periods + 1)
-    way = swim(fish(run, form_drag), times, (-run.speed, 0.0), tolerance=1e-4)
-    late = slice(-2 * steps - 1, None)
-    ahead = -np.array([np.cos(way.turned[late].mean()), np.sin(way.turned[late].mean())])
-    return float(way.mean_velocity(times[-2 * steps - 1], times[-1]) @ ahead)
+def speed(run: MeasuredRun, form_drag: float) -> float:
+    """Settled speed forwards [m/s]."""
+    return settled_speed(FISH, run.beat, form_drag)
 
 
 def fitted_drag() -> float:
     """The drag of the head with which the two runs are met in the mean."""
-    chosen = [run for run in RUNS if run.named in FITTED]
-
-    def excess(drag: float) -> float:
-        return sum(speed(run, drag) - run.speed for run in chosen)
-
-    return float(brentq(excess, 0.15, 1.0, xtol=0.005))
+    return fitted_form_drag(FISH, [run.beat for run in RUNS if run.named in FITTED])
 
 
 def main() -> None:

@@ -44,6 +44,11 @@ def bench_muscle() -> int:
     return _run(parsers.bench_muscle_parser, "bench_muscle")
 
 
+def measured_fish() -> int:
+    """`measured_fish DIR`."""
+    return _run(parsers.measured_fish_parser, "measured_fish")
+
+
 def workbench() -> int:
     """`workbench [RECORDING…]`."""
     return _run(parsers.workbench_parser, "workbench")

@@ -7,7 +7,8 @@ from hasel_sysid.data_gate.finding import Finding, error
 from hasel_sysid.where_it_fails.drive_cycle import DriveCycle, comparable, drive_cycle
 
 _HARMONICS = 6
-_LEAST_CYCLES = 4.0
+_MANY_CYCLES, _LEAST_CYCLES = 8.0, 3.0
+"""Cycles of the drive of which half may be left out, and without which nothing can be told."""
 _PERIODIC, _NOT_AT_THE_DRIVES = 0.8, 0.5
 """Share of the variance that a response explains at its own frequency, and at the drive's at most, to be another."""
 _RATIOS = np.arange(0.3, 3.0, 0.01)
@@ -17,20 +18,23 @@ def check_drive_frequency(recording: Recording) -> list[Finding]:
     """A response that repeats, but neither with the drive's period nor a whole part of it.
 
     A body that is driven periodically answers, once it has settled, with the drive's period. The first half of what is
-    driven is left out, and so is how the body swings by itself after it.
+    driven is left out, of a short run only the first cycle, and so is how the body swings by itself after it.
     """
     if not recording.driven:
         return []
     drive_time, values = recording.drive()
     cycle = drive_cycle(drive_time, comparable(values, recording.channels))
-    valid = recording.valid
-    driven = valid & (recording.time_s <= _end(drive_time, values))
-    time, sin_theta = recording.time_s[driven], recording.sin_theta[driven]
-    if cycle is None or len(time) < 32 or not _repeats(cycle):
+    if cycle is None or not _repeats(cycle):
         return []
-    late = time > 0.5 * (max(cycle.start, time[0]) + time[-1])
+    driven = recording.valid & (recording.time_s <= _end(drive_time, values))
+    time, sin_theta = recording.time_s[driven], recording.sin_theta[driven]
+    if len(time) < 32:
+        return []
+    cycles = cycle.count(time)
+    left_out = 0.5 * cycles if cycles >= _MANY_CYCLES else 1.0
+    late = time >= max(cycle.start, time[0]) + left_out * cycle.period
     time, sin_theta = time[late], sin_theta[late]
-    if len(time) < 32 or cycle.count(time) < _LEAST_CYCLES / 2 or np.ptp(sin_theta) == 0:
+    if len(time) < 32 or cycles < _LEAST_CYCLES or np.ptp(sin_theta) == 0:
         return []
     frequency = 1.0 / cycle.period
     at_the_drives = explained(time, sin_theta, frequency)
@@ -61,8 +65,10 @@ def _repeats(cycle: DriveCycle) -> bool:
 
 
 def _fundamental(shares: np.ndarray) -> int:
-    """The highest frequency that explains nearly as much as any: its parts explain it just as well."""
-    return int(np.flatnonzero(shares >= shares.max() - 0.02)[-1])
+    """The highest peak's that explains nearly as much as any: parts of its frequency explain it just as well."""
+    padded = np.concatenate([[-np.inf], shares, [-np.inf]])
+    peaks = (shares >= padded[:-2]) & (shares >= padded[2:])
+    return int(np.flatnonzero(peaks & (shares >= shares.max() - 0.02))[-1])
 
 
 def explained(time: np.ndarray, series: np.ndarray, frequency: float) -> float:

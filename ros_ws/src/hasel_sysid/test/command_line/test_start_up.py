@@ -33,7 +33,11 @@ def test_help_needs_neither_simulator_nor_scipy():
 
 
 @pytest.mark.parametrize(
-    "name", ["check", "compare", "fit", "diagnose", "improve", "suggest", "bench_muscle", "add", "remove"]
+    "name",
+    [
+        *("check", "compare", "fit", "diagnose", "improve", "suggest"),
+        *("bench_muscle", "measured_fish", "add", "remove"),
+    ],
 )
 def test_every_executable_has_its_options(name, monkeypatch, capsys):
     """Each entry point answers --help by its own name."""

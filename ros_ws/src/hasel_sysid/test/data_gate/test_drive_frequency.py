@@ -36,6 +36,17 @@ def test_a_response_at_another_frequency_is_an_error_with_its_ratio(long_run, ra
     assert found.fault in {f.fault for f in check_recording(_slower(long_run, ratio))}
 
 
+@pytest.mark.parametrize("cycles", [3.75, 4.5, 9.0])
+def test_a_few_cycles_are_enough_and_the_ratio_is_exact(long_run, cycles):
+    """Of a film of five seconds: less than three beats."""
+    keep = long_run.time_s < 0.5 * cycles
+    short = replace(long_run, time_s=long_run.time_s[keep], drive_signal=long_run.drive_signal[keep])
+    slower = replace(short, sin_theta=_slower(long_run, 0.75).sin_theta[keep])
+    (found,) = check_drive_frequency(slower)
+    assert found.number == pytest.approx(0.75, abs=0.011)
+    assert check_drive_frequency(replace(short, sin_theta=long_run.sin_theta[keep])) == []
+
+
 def test_a_response_with_the_drives_period_is_left_in_peace(long_run):
     """Also where its double dominates, where it is mostly noise, or too short to tell."""
     assert check_drive_frequency(long_run) == []
@@ -62,6 +73,11 @@ def test_swinging_out_is_no_other_frequency(long_run):
     drive = np.where(time[:, None] < 2.0, long_run.drive_signal[:420], 0.0)
     short = replace(long_run, time_s=time, sin_theta=ringing, drive_signal=drive)
     assert check_drive_frequency(short) == []
+
+
+def test_a_drive_that_never_acts_is_left_in_peace(long_run):
+    """Voltages that are zero throughout."""
+    assert check_drive_frequency(replace(long_run, drive_signal=0.0 * long_run.drive_signal)) == []
 
 
 def test_explained_variance():
