@@ -78,6 +78,8 @@ class Comparison:
             ("on unseen runs", self.mean_absolute_error_unseen),
         ):
             parts += [] if error is None else [f"{name} = {error:.5f}"]
+        if self.mean_speed_error is not None:
+            parts += [f"mean |Δ speed| = {1e3 * self.mean_speed_error:.3g} mm/s"]
         return f"{self.label}: {', '.join(parts)}."
 
 

@@ -53,7 +53,8 @@ def speed_table(comparisons: Sequence[Comparison]) -> Table | None:
         if run.speed is not None:
             found = [comparison.runs[index].speed for comparison in comparisons]
             cells = ["-" if speed is None else f"{1e3 * speed.simulated:.2f}" for speed in found]
-            table.add_row(run.name, f"{1e3 * run.speed.measured:.2f}", *cells)
+            label = f"{run.name} (unseen)" if run.unseen else run.name
+            table.add_row(label, f"{1e3 * run.speed.measured:.2f}", *cells)
     table.add_section()
     errors = [comparison.mean_speed_error for comparison in comparisons]
     table.add_row("mean |Δ speed|", "", *("-" if e is None else f"{1e3 * e:.2f}" for e in errors))

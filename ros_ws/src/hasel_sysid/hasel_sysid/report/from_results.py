@@ -112,7 +112,7 @@ def comparison_content(
 
 
 def key_numbers(comparison: Comparison) -> tuple[KeyNumber, ...]:
-    """Error on fitted and unseen runs, and the noise."""
+    """Error on fitted and unseen runs, of the speed where a body swims, and the noise."""
     numbers = []
     if comparison.mean_absolute_error is not None:
         fitted = sum(not run.unseen for run in comparison.runs)
@@ -126,6 +126,15 @@ def key_numbers(comparison: Comparison) -> tuple[KeyNumber, ...]:
                 error_text(comparison.mean_absolute_error_unseen),
                 "on unseen runs",
                 f"{count_text(unseen, 'run')}, never fitted",
+            )
+        )
+    if comparison.mean_speed_error is not None:
+        swimming = sum(run.speed is not None for run in comparison.runs)
+        numbers.append(
+            KeyNumber(
+                f"{1e3 * comparison.mean_speed_error:.3g} mm/s",
+                "mean |Δ speed|",
+                f"swimming, {count_text(swimming, 'run')}",
             )
         )
     noise = _RMS_TO_MEAN * comparison.where.noise

@@ -1,14 +1,18 @@
 """Recordings of a body that swims are compared in speed too."""
 
+import json
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hasel_recording import Recording
 from hasel_recording.csv_writer import write_csv
-from hasel_sim.model import load_model
+from hasel_sim.model import load_model, save_model
 from hasel_sim.parallel import SerialExecutor
 from hasel_sim.simulate import simulate
 from hasel_sim.swimming.boxes import Boxes
 from hasel_sim.swimming.free_swim import free_swim
+from hasel_sysid.command_line.fit import main
 from hasel_sysid.compare import compare
 from hasel_sysid.compare.swimming_speed import forward_speed
 from hasel_sysid.compare.table import speed_table
@@ -67,6 +71,26 @@ def test_models_are_compared_in_speed(fish, swum, tmp_path):
     with console.capture() as shown:
         console.print(speed_table(found))
     assert "swum" in shown.get() and "mean |Δ speed|" in shown.get()
+
+
+def test_a_fit_says_measured_and_simulated_speeds(fish, swum, tmp_path, capsys):
+    """On the terminal, for other programs, in the sentence and in the report; before and after are told apart."""
+    write_csv(swum, tmp_path / "swum.csv")
+    draggy = fish.with_values({"skin_friction.along": 2.0})
+    others = [replace(p, free=p.name == "skin_friction.along") for p in draggy.parameters.values()]
+    save_model(replace(draggy, parameters={p.name: p for p in others}), tmp_path / "draggy.yaml")
+    out = ["--output", str(tmp_path), "--json", str(tmp_path / "fit.json"), "--jobs", "1"]
+    assert main([str(tmp_path / "swum.csv"), "--model", str(tmp_path / "draggy.yaml"), *out]) == 0
+    said = capsys.readouterr().out
+    assert "swimming speed of the head marker" in said and "mean |Δ speed|" in said
+    found = json.loads((tmp_path / "fit.json").read_text())
+    run = found["runs"][0]
+    assert run["simulated_speed_m_per_s"] == pytest.approx(run["speed_m_per_s"], rel=0.03)
+    assert found["parameters"]["skin_friction.along"]["value"] == pytest.approx(1.0, abs=0.1)
+    report = (tmp_path / "report.html").read_text()
+    assert '<table class="cards" id="speeds">' in report
+    for key in ("speed_m_per_s", "simulated_speed_m_per_s"):
+        assert f"{1e3 * run[key]:.2f} mm/s" in report
 
 
 def test_a_dry_body_has_no_speed(swum):
