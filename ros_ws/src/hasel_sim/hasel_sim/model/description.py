@@ -57,6 +57,7 @@ class ParameterEntry(Section):
     upper: Finite | None = None
     free: bool = True
     standard_error: NotNegative | None = None
+    correlations: dict[str, Annotated[float, Field(ge=-1, le=1)]] = Field(default_factory=dict)
 
 
 class Description(Section):

@@ -1,6 +1,6 @@
 """The model: a validated description, its effects and its parameters; never changed, only copied with changes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import SimpleNamespace
@@ -134,13 +134,43 @@ class Model:
     ) -> "Model":
         """A copy with other parameter values. Raises ModelError for an unknown name.
 
-        standard_errors: None for a parameter that is not determined; those not named keep theirs.
+        standard_errors: None for a parameter that is not determined; those not named keep theirs and its correlations.
         """
         parameters = dict(self.parameters)
         for name, value in values.items():
             error = (standard_errors or {}).get(name, self.parameter(name).standard_error)
             parameters[name] = replace(self.parameter(name), value=float(value), standard_error=error)
+        return replace(self, parameters=_uncorrelated(parameters, standard_errors or ()))
+
+    def with_covariance(self, names: Sequence[str], covariance: np.ndarray) -> "Model":
+        """A copy in which the errors of these parameters have this covariance [n, n], infinite where not determined."""
+        errors = np.sqrt(np.diag(covariance))
+        parameters = _uncorrelated(self.parameters, names)
+        for row, name in enumerate(names):
+            known = bool(np.isfinite(errors[row]))
+            beside = [column for column in range(row) if known and 0 < errors[row] * errors[column] < np.inf]
+            correlations = {
+                names[column]: round(float(covariance[row, column] / (errors[row] * errors[column])), 6)
+                for column in beside
+            }
+            parameters[name] = replace(
+                self.parameter(name),
+                standard_error=float(errors[row]) if known else None,
+                correlations={other: min(max(value, -1.0), 1.0) for other, value in correlations.items()},
+            )
         return replace(self, parameters=parameters)
+
+    def covariance(self, names: Sequence[str]) -> np.ndarray:
+        """Covariance [n, n] of the errors of these parameters; infinite where one has none."""
+        own = [self.parameter(name) for name in names]
+        errors = np.array([np.inf if p.standard_error is None else p.standard_error for p in own])
+        out = np.diag(errors**2)
+        for row, p in enumerate(own):
+            for column, other in enumerate(own):
+                between = p.correlations.get(other.name, other.correlations.get(p.name, 0.0))
+                if row != column and between and np.isfinite(errors[row] * errors[column]):
+                    out[row, column] = between * errors[row] * errors[column]
+        return out
 
     def with_freed(self, *names: str) -> "Model":
         """A copy in which these constants of the file are parameters, at the file's values.
@@ -254,6 +284,19 @@ class Model:
                 f"numerics.{problem['loc'][0]} is {problem['input']!r}; {problem['msg'].lower()}: correct it"
             ) from None
         return replace(self, description=self.description.model_copy(update={"numerics": numerics}))
+
+
+def _uncorrelated(parameters: Mapping[str, Parameter], names: Iterable[str]) -> dict[str, Parameter]:
+    """The parameters without what is known of correlations with these."""
+    gone = set(names)
+    return {
+        name: replace(p, correlations={})
+        if name in gone
+        else replace(p, correlations={o: v for o, v in p.correlations.items() if o not in gone})
+        if gone & set(p.correlations)
+        else p
+        for name, p in parameters.items()
+    }
 
 
 def check_together(effects: tuple[Effect, ...], model: Model) -> None:

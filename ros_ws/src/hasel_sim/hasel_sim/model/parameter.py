@@ -1,13 +1,16 @@
 """A named number of a model, with unit and bounds."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from hasel_sim.model.value_text import value_with_error
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """value and bounds in `unit`; free: a fit may change it; standard_error: of the last fit, None if not fitted."""
+    """value and bounds in `unit`; free: a fit may change it; standard_error: of the last fit, None if not fitted.
+
+    correlations: of that error with those of other parameters, by their names; each pair stands at one of its two.
+    """
 
     name: str
     value: float
@@ -16,6 +19,7 @@ class Parameter:
     upper: float
     free: bool = True
     standard_error: float | None = None
+    correlations: dict[str, float] = field(default_factory=dict, hash=False)
 
     def __str__(self) -> str:
         return f"{self.name} = {value_with_error(self.value, self.standard_error, self.unit)}"

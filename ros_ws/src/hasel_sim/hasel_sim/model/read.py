@@ -86,6 +86,13 @@ def _parse(text: str, source: str, folder: Path) -> Model:
         if known is None:
             raise ModelError(f"{source}: unknown parameter '{name}'; {_nearest(name, model, freed)}")
         given[name] = _parameter(known, entry, freed.get(name), source)
+    for name, entry in description.parameters.items():
+        for other in entry.correlations:
+            if other == name or other not in given:
+                raise ModelError(
+                    f"{source}: parameters.{name}.correlations names '{other}'; expected another of the file's "
+                    f"parameters, {nearest_name(other, given)}"
+                )
     return replace(model, parameters={**model.parameters, **given})
 
 
@@ -126,7 +133,8 @@ def _parameter(known: Parameter, entry: ParameterEntry, constant: float | None, 
             f"{source}: {known.name} is {value:g}; expected a value between its bounds {lower:g} and {upper:g}: "
             "correct value or bounds"
         )
-    return Parameter(known.name, value, known.unit, lower, upper, entry.free, entry.standard_error)
+    error, correlations = entry.standard_error, dict(entry.correlations)
+    return Parameter(known.name, value, known.unit, lower, upper, entry.free, error, correlations)
 
 
 def _located(effect: str, folder: Path) -> str:
@@ -161,11 +169,13 @@ def model_text(model: Model, description: Description) -> str:
 def _content(model: Model, description: Description, folder: Path) -> dict:
     content = json.loads(description.model_dump_json(exclude_none=True))
     content["effects"] = [_named_from(folder, effect) for effect in model.effects]
-    content["parameters"] = {name: _entry(parameter) for name, parameter in model.parameters.items()}
+    content["parameters"] = {
+        name: _entry(parameter, model.parameters) for name, parameter in model.parameters.items()
+    }
     return content
 
 
-def _entry(parameter: Parameter) -> dict:
+def _entry(parameter: Parameter, names: Iterable[str]) -> dict:
     entry: dict = {"value": parameter.value, "unit": parameter.unit}
     if parameter.lower > -float("inf"):
         entry["lower"] = parameter.lower
@@ -174,4 +184,7 @@ def _entry(parameter: Parameter) -> dict:
     entry["free"] = parameter.free
     if parameter.standard_error is not None:
         entry["standard_error"] = parameter.standard_error
+    correlations = {other: value for other, value in parameter.correlations.items() if other in names}
+    if correlations:
+        entry["correlations"] = correlations
     return entry

@@ -73,10 +73,10 @@ def uncertain(model: Model) -> dict[str, float]:
 def standard_error_of(
     model: Model, found: Optimum, step: float, speeds: Callable[[list[tuple[Model, float]]], list[float]]
 ) -> float | None:
-    """Standard error of the top's frequency [Hz] by the delta method, from the parameters' standard errors.
+    """Standard error of the top's frequency [Hz] by the delta method, from the parameters' covariance.
 
     speeds: what a list of (model, frequency) swims at; step: distance [Hz] of the three frequencies around the top.
-    Errors of different parameters count as independent, since a model file keeps no more of their covariance.
+    Errors whose correlation the model does not know, such as those of data sheets, count as independent.
     """
     names = uncertain(model)
     if not names or found.at_edge:
@@ -91,4 +91,5 @@ def standard_error_of(
     swum = np.array(speeds([(m, x) for m in models for x in f])).reshape(len(names), 2, 3)
     tops = np.array([[vertex_of(f, u)[0] for u in pair] for pair in swum])
     widths = np.array([above - below for above, below in ends])
-    return float(np.linalg.norm((tops[:, 0] - tops[:, 1]) / widths * np.array(list(names.values()))))
+    slopes = (tops[:, 0] - tops[:, 1]) / widths
+    return float(np.sqrt(max(slopes @ model.covariance(tuple(names)) @ slopes, 0.0)))

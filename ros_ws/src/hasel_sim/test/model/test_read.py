@@ -253,3 +253,21 @@ def test_a_wrong_medium_is_refused(refusal, content, medium, depth, said):
     if depth is not None:
         content["body"]["depth_m"] = depth
     assert said in refusal(content)
+
+
+@pytest.mark.parametrize(
+    ("correlations", "said"),
+    [
+        ("{slop: 0.5}", "the nearest known one is 'slope'"),
+        ("{amplitude_5500: 0.5}", "expected another of the file's parameters"),
+        ("{slope: 1.5}", "less than or equal to 1"),
+    ],
+)
+def test_correlations_that_make_no_sense_are_refused(tmp_path, correlations, said):
+    """With a name that is none, with itself, beyond 1."""
+    text = (resources.files("hasel_sim") / "models" / "swimmer_in_oil.yaml").read_text()
+    line = 'amplitude_5500: {value: 0.0624, unit: "1",'
+    assert line in text
+    (tmp_path / "m.yaml").write_text(text.replace(line, f"{line} correlations: {correlations},"))
+    with pytest.raises(ModelError, match=said):
+        load_model(tmp_path / "m.yaml")

@@ -41,3 +41,8 @@ def test_the_interval_follows_from_the_parameters(fish):
     error = standard_error_of(model, found, 0.5, speeds)
     assert error == pytest.approx(np.hypot(5.0 * 0.01, 3.0 * 0.05))
     assert standard_error_of(fish, found, 0.5, speeds) is None
+    names = ("slope", "reactive_force.coefficient")
+    # both errors move the top by 0.05 and 0.15 Hz, and what one adds the other takes away
+    both = np.array([[1e-4, 0.6 * 0.01 * 0.05], [0.6 * 0.01 * 0.05, 0.05**2]])
+    error = standard_error_of(model.with_covariance(names, both), found, 0.5, speeds)
+    assert error == pytest.approx(np.sqrt(0.05**2 + 0.15**2 - 2 * 0.6 * 0.05 * 0.15))

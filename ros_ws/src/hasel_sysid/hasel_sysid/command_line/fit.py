@@ -76,6 +76,7 @@ def _fit_json(result: FitResult) -> dict:
         name: {
             "value": result.model.parameters[name].value,
             "std": result.model.parameters[name].standard_error,
+            "correlations": result.model.parameters[name].correlations,
             "unit": result.model.parameters[name].unit,
             "at_bound": name in result.at_bound,
             "determined": name not in result.undetermined,

@@ -136,13 +136,13 @@ def fitted_result(evaluation: Evaluation, count: int) -> FitResult:
     covariance, undetermined = parameter_covariance(evaluation.jacobian, noise, evaluation.runs)
     by_noise = np.sqrt(np.diag(covariance))
     errors = wider_where_runs_disagree(by_noise, evaluation.jacobian, evaluation.residual, evaluation.runs)
-    errors = {
-        name: float(error) if np.isfinite(error) else None for name, error in zip(names, errors, strict=True)
-    }
+    with np.errstate(invalid="ignore", divide="ignore"):
+        wider = np.where(by_noise > 0, errors / by_noise, 1.0)
+        covariance = np.where(np.isfinite(covariance), covariance * np.outer(wider, wider), np.inf)
     parameters = [model.parameters[name] for name in names]
     at_bound = tuple(p.name for p in parameters if _on(p.value, p.lower, p) or _on(p.value, p.upper, p))
     return FitResult(
-        model.with_values(model.values, errors),
+        model.with_covariance(names, covariance),
         evaluation,
         at_bound,
         tuple(name for name, hidden in zip(names, undetermined, strict=True) if hidden),

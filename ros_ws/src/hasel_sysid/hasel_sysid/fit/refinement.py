@@ -39,11 +39,8 @@ def with_numerical_error(fit: FitResult, changes: Mapping[str, np.ndarray]) -> F
     combines numerical and measurement uncertainty likewise). changes: as from `changes_by_refinement`.
     """
     names, seen = fit.evaluation.names, seen_directions(fit.evaluation.jacobian)
-    squares = sum((seen.estimate(change) ** 2 for change in changes.values()), start=np.zeros(len(names)))
-    before = {name: fit.model.parameters[name].standard_error for name in names}
-    errors = {
-        name: float(np.sqrt(before[name] ** 2 + square))
-        for name, square in zip(names, squares, strict=True)
-        if before[name] is not None
-    }
-    return replace(fit, model=fit.model.with_values(fit.model.values, errors))
+    shifts = [seen.estimate(change) for change in changes.values()]
+    covariance = fit.model.covariance(names) + sum(
+        (np.outer(shift, shift) for shift in shifts), start=np.zeros((len(names), len(names)))
+    )
+    return replace(fit, model=fit.model.with_covariance(names, covariance))

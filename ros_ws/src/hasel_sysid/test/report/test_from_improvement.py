@@ -60,6 +60,7 @@ def _comparison(model, label: str, error: float, unseen: float) -> SimpleNamespa
         set_up=(),
         mean_absolute_error=error,
         mean_absolute_error_unseen=unseen,
+        mean_speed_error=None,
         by_level=(),
         by_frequency=(),
     )
