@@ -83,6 +83,19 @@ def test_the_exported_script_does_it_all_again(new_session, short_runs, tmp_path
     assert again == pytest.approx(load_model(tmp_path / "export" / "model.yaml").values, rel=1e-3)
 
 
+def test_the_report_of_twelve_runs_stays_small(new_session, unseen_rig, tmp_path):
+    """Two megabytes at most, with three steps."""
+    session, rig = new_session(), unseen_rig / "quadratic_drag"
+    session.load(sorted(rig.glob("val_*.csv")), unseen=True)
+    session.load(sorted(rig.glob("fit_*.csv")))
+    for effect in ("quadratic_drag", "linear_drag"):
+        session.switch_on(effect)
+        session.keep()
+    assert (len(session.state.every), len(session.state.kept)) == (12, 3)
+    session.export(tmp_path / "export")
+    assert (tmp_path / "export" / "report.html").stat().st_size < 2_000_000
+
+
 def test_a_small_change_is_foretold_by_the_derivatives(loaded):
     """Curve and errors of the linear prediction are those of the true simulation, to second order."""
     state = loaded.state
