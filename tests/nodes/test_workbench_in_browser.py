@@ -108,6 +108,7 @@ class Desk:
         for width in (1400, 800, 400):
             self.page.resize(width, 900)
             self.page.until(_STOP_IS_IN_SIGHT, 30.0)
+            assert self.page.run("document.documentElement.scrollWidth") <= width
         self.page.press_mouse(_STOP)
         self.page.until(f"{_SAID}.startsWith('FAULT') && {_SAID}.includes('mergency stop')", _PATIENCE_S)
 

@@ -4,7 +4,7 @@ import numpy as np
 
 REST_S = 2.0
 """After this long at 0 V the body is at rest."""
-_BEFORE_S, _AFTER_S = 0.25, 1.0
+_BEFORE_S, AFTER_S = 0.25, 1.0
 """Of the rest, so much is kept around what is driven: the start, and the ringing."""
 
 
@@ -26,4 +26,4 @@ def driven_parts(time: np.ndarray, voltage: np.ndarray, end: float) -> list[tupl
         else:
             parts[-1][1] = stop
     first = float(time[0])
-    return [(max(first, begin - _BEFORE_S), min(end, stop + _AFTER_S)) for begin, stop in parts]
+    return [(max(first, begin - _BEFORE_S), min(end, stop + AFTER_S)) for begin, stop in parts]

@@ -40,6 +40,23 @@ def test_the_running_error_is_that_of_the_samples():
     assert _fed(gain=1.0).error.mean_absolute == pytest.approx(0.0, abs=1e-9)
 
 
+def test_rest_does_not_make_the_error_smaller():
+    """A second after its drive the run is over: its error stays until the next one begins."""
+    stream = LiveStream()
+    errors = []
+    for number in range(1740):
+        stamp = 5_000_000_000 + round(number * 1e9 / 120)
+        driven = 360 <= number < 480 or number >= 1440
+        swing = 0.2 * np.sin(2 * np.pi * number / 60) if driven else 0.0
+        stream.voltage(stamp, (4000.0 if driven else 0.0, 0.0))
+        stream.measured(stamp, swing)
+        stream.simulated(stamp, swing * (0.8 if number < 1440 else 0.9))
+        errors.append(stream.error.mean_absolute)
+    assert errors[300] == 0.0
+    assert errors[602] == errors[1439] == pytest.approx(0.5 * 0.2 * 0.2 * 2 / np.pi, rel=0.02)
+    assert errors[-1] == pytest.approx(0.1 * 0.2 * 2 / np.pi, rel=0.02)
+
+
 def test_what_was_heard_is_written_and_can_be_read(tmp_path):
     """One recording per run, in a file, so that nothing that was heard is lost and a script can read it."""
     (recording,) = _fed().recordings(tmp_path)

@@ -101,6 +101,7 @@ class BrowserPage:
         for part in ("Page", "Runtime", "DOM", "Log"):
             self.send(f"{part}.enable")
         self.send("Emulation.setFocusEmulationEnabled", enabled=True)
+        self.send("Emulation.setScrollbarsHidden", hidden=True)
         self.resize(width, height)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.send("Emulation.setEmulatedMedia", features=[scheme])
