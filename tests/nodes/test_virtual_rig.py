@@ -11,7 +11,7 @@ from tests.nodes.listener import stamp_ns
 
 @pytest.mark.timeout(150)
 def test_an_armed_virtual_rig_bends_what_the_camera_sees(tmp_path, environment, listener):
-    """The command goes over the serial protocol to the board and back as a state; the measured angle follows it, at 120 frames a second."""
+    """The command goes over the serial protocol and back as a state; the measured angle follows it, at 120 frames/s."""
     with Processes(tmp_path, environment) as processes:
         hidden = "hidden:=[quadratic_drag.coefficient=0.25]"
         processes.start("hasel_bringup", "virtual_rig", "--ros-args", "-p", hidden)
