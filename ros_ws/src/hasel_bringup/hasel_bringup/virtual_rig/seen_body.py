@@ -12,6 +12,11 @@ class SeenBody:
     frame_rate: frames per second, whatever the rate of the states; a new run's frames begin at its first state.
     """
 
+    _newest_ns: int | None
+    _next_ns: int
+    _voltage: np.ndarray
+    _frames: set[int]
+
     def __init__(self, model: Model, frame_rate: float) -> None:
         self._live = LiveSimulator(model)
         self._period_ns = round(1e9 / frame_rate)
