@@ -97,7 +97,7 @@ def _from_afar(
             rivals = [one.fit.model for one in begun]
             continue
         report = _part(progress, f"opening {number + 1} of {len(every)}", 0.15, 0.25)
-        found = search(sets, policy, report, begun)
+        found = search(sets, policy.wider(), report, begun)
         choice = choose(found, policy)
         wanted = dict.fromkeys([choice.chosen, *choice.alike, *choice.path])
         rivals = [found.known[one].fit.model for one in wanted if one][: 2 * policy.fits]

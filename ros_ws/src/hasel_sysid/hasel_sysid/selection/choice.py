@@ -1,9 +1,12 @@
 """Where to stop, what cannot be told from it, and how probable every set is."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
+from hasel_sysid.projection import orthonormal
 from hasel_sysid.selection.policy import Policy
 from hasel_sysid.selection.search import Searched, plausible
 from hasel_sysid.selection.sets import NOTHING, EffectSet
@@ -17,28 +20,19 @@ _NO_ODDS = float(np.log(20.0))
 @dataclass(frozen=True)
 class Choice:
     """chosen: the set to take; alike: sets of the same size that cannot be told from it, itself among them; weights: of
-    every set that was fitted, together one; path: from no effect to the chosen set, one more at a time.
+    every set that was fitted, together one; path: from no effect to the chosen set, one more at a time; groups: for
+    every chosen effect for which there are such, those that may stand in its place, itself among them.
     """
 
     chosen: EffectSet
     alike: tuple[EffectSet, ...]
     weights: dict[EffectSet, float]
     path: tuple[EffectSet, ...]
+    groups: tuple[tuple[str, ...], ...]
 
     def weight_of(self, effect: str) -> float:
         """Of all sets with an effect."""
         return sum(weight for effects, weight in self.weights.items() if effect in effects)
-
-    @property
-    def groups(self) -> list[tuple[str, ...]]:
-        """For every chosen effect those that may stand in its place, itself among them."""
-        found = []
-        for effect in sorted(self.chosen):
-            rest = self.chosen - {effect}
-            group = {other for one in self.alike if rest <= one for other in one - rest}
-            if len(group) > 1:
-                found.append(tuple(sorted(group)))
-        return found
 
 
 def choose(found: Searched, policy: Policy) -> Choice:
@@ -48,7 +42,7 @@ def choose(found: Searched, policy: Policy) -> Choice:
     """
     chosen = NOTHING if found.first.chance >= policy.level else _smallest(found, policy)
     alike = [s for s in plausible(found.known) if len(s) == len(chosen) and _alike(found, chosen, s, policy)]
-    return Choice(chosen, tuple(alike), weights(found), _path(found, chosen))
+    return Choice(chosen, tuple(alike), weights(found), _path(found, chosen), _groups(found, chosen, alike))
 
 
 def _smallest(found: Searched, policy: Policy) -> EffectSet:
@@ -72,10 +66,31 @@ def _worth_as_much(found: Searched, effects: EffectSet, best: Worth, policy: Pol
 def _alike(found: Searched, chosen: EffectSet, other: EffectSet, policy: Policy) -> bool:
     """Whether a set may stand in the chosen one's place: the confidence set of models.
 
-    By noise alone: how much runs of unequal strength scatter says how unequally they speak, and is no doubt.
+    How much runs of unequal strength scatter says how unequally they speak, and is no doubt; that a difference lasts
+    for many frames, which neither set describes, is.
     """
     more = found.worths[chosen].over(found.worths[other])
-    return more.total <= max(policy.doubt * more.by_noise, _NO_ODDS)
+    return more.total <= max(policy.doubt * max(more.by_noise, more.by_frames), _NO_ODDS)
+
+
+def _groups(found: Searched, chosen: EffectSet, alike: Sequence[EffectSet]) -> tuple[tuple[str, ...], ...]:
+    """Where a set that cannot be told apart differs in several effects, each stands for the one it looks most like."""
+    groups = {effect: {effect} for effect in sorted(chosen)}
+    for other in alike:
+        gone, new = sorted(chosen - other), sorted(other - chosen)
+        likeness = [[_likeness(found, one, another) for another in new] for one in gone]
+        pairs = linear_sum_assignment(np.reshape(likeness, (len(gone), len(new))), maximize=True)
+        for row, column in zip(*pairs, strict=True):
+            groups[gone[row]].add(new[column])
+    return tuple(tuple(sorted(group)) for group in groups.values() if len(group) > 1)
+
+
+def _likeness(found: Searched, one: str, other: str) -> float:
+    """Cosine of the angle between what two effects can look like beside the baseline; zero where that is not known."""
+    if one not in found.prospects or other not in found.prospects:
+        return 0.0
+    looks = [orthonormal(found.likelihood.whiten(found.prospects[effect].looks)) for effect in (one, other)]
+    return float(np.linalg.norm(looks[0].T @ looks[1], 2))
 
 
 def weights(found: Searched) -> dict[EffectSet, float]:

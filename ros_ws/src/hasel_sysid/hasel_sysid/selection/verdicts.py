@@ -39,7 +39,7 @@ def diagnosis(
     context = _context(sets, found, choice, changes)
     left = _left(found, choice, context.noise)
     none = left if found.first.chance < found.level else 1.0
-    groups = choice.groups
+    groups = list(choice.groups)
     findings = [
         replace(finding(context, effect), probability=(1.0 - none) * choice.weight_of(effect.id))
         for effect in context.effects

@@ -67,14 +67,14 @@ def test_twins_are_a_group():
         series["b"] = series["a"] + 0.02 * series["b"]
         name, choice, _ = chosen(LinearSets(series, {"a": 0.05}, WHITE, seed))
         assert name in "ab"
-        assert choice.groups == [("a", "b")]
+        assert choice.groups == (("a", "b"),)
         assert 0.02 < choice.weight_of("a") < 0.98
 
 
 def test_what_the_recordings_tell_apart_is_no_group():
     """Its weight is that of certainty."""
     _, choice, _ = chosen(LinearSets(made_up(1), {"a": 0.05}, WHITE, 1))
-    assert choice.groups == []
+    assert choice.groups == ()
     assert choice.weight_of("a") > 0.95
 
 
@@ -84,7 +84,17 @@ def test_the_other_member_of_a_pair_may_have_a_twin():
     series["b"] = series["a"] + 0.02 * series["b"]
     name, choice, _ = chosen(LinearSets(series, {"a": 0.05, "f": 0.05}, WHITE, 3))
     assert name in ("af", "bf")
-    assert choice.groups == [("a", "b")]
+    assert choice.groups == (("a", "b"),)
+
+
+def test_two_that_stand_for_two_others_are_groups_of_those_they_look_like():
+    """Exchanged one by one they would be told apart."""
+    series = made_up(6)
+    shift = 0.5 * series["j"]
+    series["b"], series["g"] = series["a"] + shift, series["f"] - shift
+    _, choice, _ = chosen(LinearSets(series, {"a": 0.05, "f": 0.05}, WHITE, 6))
+    assert choice.chosen in ({"a", "f"}, {"b", "g"})
+    assert choice.groups == (("a", "b"), ("f", "g"))
 
 
 def test_effects_that_exclude_each_other_are_never_together():
