@@ -1,10 +1,12 @@
 """Which cases the benchmark runs."""
 
 from collections.abc import Sequence
+from functools import cache
 from itertools import chain
 
-from hasel_sim.effects.registry import catalogue
 from hasel_sim.errors import nearest_name
+from hasel_sim.model import load_model
+from hasel_sysid.diagnosis.candidates import candidate_effects
 
 from hasel_bringup.bench_hidden.case import Case, both_signs
 from hasel_bringup.bench_hidden.unlisted import UNLISTED
@@ -50,7 +52,13 @@ def list_cases(
 
 def known_effects() -> list[str]:
     """Ids of everything that can be hidden."""
-    return [*catalogue(), *UNLISTED]
+    return [*listed_effects(), *UNLISTED]
+
+
+@cache
+def listed_effects() -> tuple[str, ...]:
+    """Ids of the catalogue's effects that the swimmer can have; a force of the fluid needs a medium, which it has not."""
+    return tuple(effect.id for effect in candidate_effects(load_model("swimmer")))
 
 
 def _of_seed(seed: int, numerics: str, strangers: bool) -> list[Case]:
@@ -60,7 +68,7 @@ def _of_seed(seed: int, numerics: str, strangers: bool) -> list[Case]:
         for n in range(NOTHING_PER_SEED)
     ]
     for kind, hidden in (
-        *(("single", (identity,)) for identity in catalogue()),
+        *(("single", (identity,)) for identity in listed_effects()),
         *(("unlisted", (identity,)) for identity in UNLISTED if strangers),
         *(("pair", pair) for pair in PAIRS[seed % 2 :: 2]),
     ):
