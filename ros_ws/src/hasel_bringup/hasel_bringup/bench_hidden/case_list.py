@@ -57,7 +57,7 @@ def known_effects() -> list[str]:
 
 @cache
 def listed_effects() -> tuple[str, ...]:
-    """Ids of the catalogue's effects that the swimmer can have; a force of the fluid needs a medium, which it has not."""
+    """Ids of the catalogue that the swimmer can have; a force of the fluid needs a medium, which it has not."""
     return tuple(effect.id for effect in candidate_effects(load_model("swimmer")))
 
 
