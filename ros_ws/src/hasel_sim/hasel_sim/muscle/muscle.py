@@ -71,6 +71,15 @@ class Muscle:
                 parameters[name] = Parameter(name, start, p.unit, p.lower, p.upper)
         return replace(self, effects=(*self.effects, *effects), parameters=parameters)
 
+    def without_effects(self, *names: str) -> "Muscle":
+        """A copy without some effects and their parameters."""
+        gone = tuple(f"{name}." for name in names)
+        return replace(
+            self,
+            effects=tuple(effect for effect in self.effects if effect.id not in names),
+            parameters={n: p for n, p in self.parameters.items() if not (gone and n.startswith(gone))},
+        )
+
     def contraction(
         self,
         time: np.ndarray,

@@ -1,5 +1,6 @@
 """Recordings of a bench from files and folders, and the muscle that they are of."""
 
+import contextlib
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
@@ -25,6 +26,15 @@ def read_bench(path: Path) -> BenchRecording:
     if path.suffix.lower() not in _READERS:
         raise RecordingError(f"{path}: a bench recording is a .csv or .mat file, not '{path.suffix}'.")
     return _READERS[path.suffix.lower()](path)
+
+
+def readable(paths: Sequence[Path]) -> list[BenchRecording]:
+    """Those of the recordings that can be read."""
+    found = []
+    for path in paths:
+        with contextlib.suppress(RecordingError):
+            found.append(read_bench(path))
+    return found
 
 
 def settled_runs(paths: Sequence[Path], settling: float) -> list[SettledRun]:

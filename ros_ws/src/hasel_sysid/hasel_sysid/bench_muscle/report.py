@@ -10,11 +10,17 @@ from jinja2 import Environment, FunctionLoader, StrictUndefined
 from hasel_sysid.bench_muscle.improve import BenchImprovement
 from hasel_sysid.bench_muscle.shown import quantity, sentences, stage_name
 from hasel_sysid.bench_muscle.stroke_table import Rival
+from hasel_sysid.bench_muscle.swinging import Swinging
 from hasel_sysid.report.provenance import provenance
 
 
 def write_report(
-    found: BenchImprovement, fails: tuple[str, ...], rival: Rival | None, picture: Path, path: Path
+    found: BenchImprovement,
+    fails: tuple[str, ...],
+    rival: Rival | None,
+    swings: Swinging | None,
+    picture: Path,
+    path: Path,
 ) -> None:
     """Write the page; fails: where the fitted law failed; picture: a PNG that is taken into it."""
     environment = Environment(
@@ -30,6 +36,7 @@ def write_report(
         catalogue=muscle_catalogue(),
         parameters=found.muscle.parameters.values(),
         rival=rival,
+        swings=swings,
         quantity=quantity,
         picture=base64.b64encode(picture.read_bytes()).decode(),
         style=_template("style.css"),

@@ -9,6 +9,7 @@ from rich.table import Table
 from hasel_sysid.bench_muscle.improve import BenchImprovement, Stage
 from hasel_sysid.bench_muscle.problem import BenchProblem
 from hasel_sysid.bench_muscle.stroke_table import Rival
+from hasel_sysid.bench_muscle.swinging import WINDOW_S, Swinging
 
 _DECIMALS = 6
 """Of millimetres and newtons; what lies below is rounding."""
@@ -90,7 +91,20 @@ def sentences(found: BenchImprovement) -> list[str]:
     return said
 
 
-def to_json(found: BenchImprovement, rival: Rival | None) -> dict:
+def lift_table(swings: Swinging) -> Table:
+    """How high the load swings after every lift, measured and by the law with its inertia."""
+    title = f"swinging in the first {WINDOW_S:g} s of a lift (*: unseen), mm"
+    table = Table(title=title, title_justify="left")
+    for name in ("lift", "highest", "simulated", "mean error", "without inertia"):
+        table.add_column(name, justify="right")
+    for lift in swings.lifts:
+        numbers = (*lift.peak, *lift.errors)
+        label = f"{lift.level:g} V{' *' if lift.unseen else ''}"
+        table.add_row(label, *(f"{1e3 * number:.2f}" for number in numbers))
+    return table
+
+
+def to_json(found: BenchImprovement, rival: Rival | None, swings: Swinging | None = None) -> dict:
     """The same for other programs."""
     return {
         "noise_floor": found.adequacy.noise,
@@ -116,5 +130,6 @@ def to_json(found: BenchImprovement, rival: Rival | None) -> dict:
         ],
         "indistinguishable": [list(group) for group in found.groups],
         "unseen_lifts": None if rival is None else {"law_m": rival.law, "table_m": rival.table},
+        "swinging": None if swings is None else swings.to_json(),
         "verdict": {"status": found.status, "missing": found.missing},
     }

@@ -17,9 +17,10 @@ from hasel_sysid.bench_muscle.improve import BenchImprovement, improve_muscle
 from hasel_sysid.bench_muscle.left_out import levels_of
 from hasel_sysid.bench_muscle.picture import write_picture
 from hasel_sysid.bench_muscle.problem import BenchProblem, bench_problem
-from hasel_sysid.bench_muscle.reading import muscle_for, settled_runs
+from hasel_sysid.bench_muscle.reading import muscle_for, readable, settled_runs
 from hasel_sysid.bench_muscle.report import write_report
 from hasel_sysid.bench_muscle.stroke_table import Rival, rival_table
+from hasel_sysid.bench_muscle.swinging import Swinging, swinging
 from hasel_sysid.bench_muscle.where_it_fails import where_it_fails
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import bench_muscle_parser
@@ -54,18 +55,21 @@ def _bench(options: argparse.Namespace) -> None:
         found = improve_muscle(fitted, muscle, unseen, options.effects or None, progress)
     fails = where_it_fails(fitted, found.stages[1].fit.muscle)
     rival = rival_table(fitted, unseen, found.muscle) if unseen is not None else None
+    swings = swinging(readable(options.recordings), found.muscle, options.unseen_voltages)
     named = [("formula", found.stages[0]), ("fitted", found.stages[1])]
     named += [("with effects", found.stages[-1])] if found.missing else []
     muscles = [(name, stage.fit.muscle) for name, stage in named]
     console.print(shown.stroke_table(fitted, muscles, unseen))
     console.print(shown.stage_table(found))
+    if swings is not None:
+        console.print(shown.lift_table(swings))
     _say(["The fitted law:", *(f"  {each}" for each in fails)] if fails else [], console)
-    _say([*shown.sentences(found), *([str(rival)] if rival else [])], console)
+    _say([*shown.sentences(found), *map(str, filter(None, (rival, swings)))], console)
     if options.all:
         _say([str(each) for each in found.findings], console)
     else:
         console.print(f"(what is said of all {len(found.findings)} effects: --all, and in the report)")
-    _write(found, fails, rival, fitted, unseen, options, console)
+    _write(found, fails, rival, swings, fitted, unseen, options, console)
 
 
 def _say(lines: Sequence[str], console: Console) -> None:
@@ -111,6 +115,7 @@ def _write(
     found: BenchImprovement,
     fails: tuple[str, ...],
     rival: Rival | None,
+    swings: Swinging | None,
     fitted: BenchProblem,
     unseen: BenchProblem | None,
     options: argparse.Namespace,
@@ -118,9 +123,9 @@ def _write(
 ) -> None:
     picture = options.output / PICTURE_FILE
     write_picture(found, fitted, unseen, picture)
-    write_report(found, fails, rival, picture, options.output / REPORT_FILE)
+    write_report(found, fails, rival, swings, picture, options.output / REPORT_FILE)
     if options.json:
-        write_json(shown.to_json(found, rival), options.json)
+        write_json(shown.to_json(found, rival, swings), options.json)
     _write_muscle(found.muscle, options.output, console, f", {PICTURE_FILE} and {REPORT_FILE}")
 
 
