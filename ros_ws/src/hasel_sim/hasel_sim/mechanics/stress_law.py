@@ -88,7 +88,8 @@ class StressLaw:
             float(drive.time[lanes[0]]),
             constant[1],
         )
-        stress = np.asarray(self.effect.first_piola(at, values)).reshape(-1, 4)
+        with np.errstate(invalid="ignore", divide="ignore"):  # inside out: NaN, and the step is refused
+            stress = np.asarray(self.effect.first_piola(at, values)).reshape(-1, 4)
         if len(lanes) == 1 or not at.looked:
             return stress
         self._groups = one_by_one(self._groups)

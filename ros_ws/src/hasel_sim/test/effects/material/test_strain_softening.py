@@ -4,8 +4,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.base import MaterialPoints
 from hasel_sim.effects.registry import catalogue
+from hasel_sim.errors import SimulationError
+from hasel_sim.model import load_model
+from hasel_sim.run import Run
+from hasel_sim.simulate import simulate
 
 SHEAR, SOFTENING, STRAIN = 2e4, 0.4, 0.1
 
@@ -39,3 +44,14 @@ def test_small_strains_meet_the_whole_modulus_and_large_ones_what_is_left():
     deformation[:, 0, 1] = shear
     lost = -_stress(deformation)[:, 0, 1] / (SHEAR * shear)
     assert lost == pytest.approx([0.0, 0.5 * SOFTENING, SOFTENING], abs=2e-3)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_body_that_would_be_turned_inside_out_is_one_sentence():
+    """Its stress has no logarithm there; numpy's own warnings would not tell the user why."""
+    values = {"strain_softening.softening": SOFTENING, "strain_softening.reference_strain": STRAIN}
+    beam = load_model("beam").with_effects("strain_softening").with_values(values)
+    undriven = DriveSchedule(np.zeros(1), np.zeros((1, 0)), ())
+    loaded = {"initial_state": "static_equilibrium", "initial_load_factor": 100.0}
+    with pytest.raises(SimulationError, match="no static equilibrium"):
+        simulate(beam, Run("overloaded", np.arange(2) / 100, undriven, **loaded))
