@@ -127,3 +127,14 @@ def test_a_step_divided_in_one_lane_is_as_it_is_alone(swimmer, boxes):
     same(found[0], simulate(swimmer, run, names))
     alone = simulate(hard, run, names)
     assert found[1].sin_theta == pytest.approx(alone.sin_theta, abs=1e-6)
+
+
+def test_bodies_of_different_shapes_give_what_they_give_alone(swimmer, boxes):
+    """Fins of three lengths in one call; the nodes of one are not those of another."""
+    name, run = "body.spine.fin_length_m", boxes(duration=0.2)
+    coarse = swimmer.with_numerics(mesh_density=0.5).with_freed(name)
+    models = [coarse.with_values({name: length}) for length in (0.02, 0.03, 0.04)]
+    together = simulate_many([(model, run) for model in models])
+    for model, found in zip(models, together, strict=True):
+        assert found.sin_theta == pytest.approx(simulate(model, run).sin_theta, abs=1e-9)
+    assert np.abs(together[0].sin_theta - together[2].sin_theta).max() > 1e-3

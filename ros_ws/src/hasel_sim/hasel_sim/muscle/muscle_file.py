@@ -108,6 +108,10 @@ def _given(entries: Mapping[str, ParameterEntry], known: Mapping[str, Parameter]
             raise ModelError(
                 f"{name} is {value:g}; expected a value between its bounds {lower:g} and {upper:g}: correct one of them"
             )
+        if entry.correlations:
+            raise ModelError(
+                f"{name} is given correlations; a muscle file keeps none, expected standard_error alone: remove them"
+            )
         given[name] = Parameter(name, value, old.unit, lower, upper, entry.free, entry.standard_error)
     return given
 

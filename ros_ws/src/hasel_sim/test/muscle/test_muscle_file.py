@@ -50,6 +50,10 @@ def test_a_muscle_survives_its_file(written):
         ("just words", "holds no muscle"),
         ("name: x\n" + POUCH + "effects: [edge]\n", "nearest known one is 'edge_effect'"),
         ("name: x\n" + POUCH + "parameters: {pouch.fil: {value: 1}}\n", "nearest known one is 'pouch.fill'"),
+        (
+            "name: x\n" + POUCH + "parameters: {pouch.fill: {value: 1, correlations: {a: 0.5}}}\n",
+            "a muscle file keeps none",
+        ),
         ("name: x\n" + POUCH + "parameters: {pouch.fill: {value: 9}}\n", "between its bounds 0.5 and 1.5"),
         ("name: x\n" + POUCH + "parameters: {pouch.fill: {unit: ml}}\n", "expected '1'"),
     ],
