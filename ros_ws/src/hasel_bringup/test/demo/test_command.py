@@ -1,5 +1,6 @@
 """The demonstration's choice of files."""
 
+import re
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -19,6 +20,18 @@ def test_nine_runs_are_fitted_and_three_never_seen(tmp_path):
     assert (len(demo.fitted), len(demo.unseen)) == (9, 3)
     assert demo.replayed in demo.unseen
     assert not set(demo.fitted) & set(demo.unseen)
+
+
+def test_it_says_how_to_go_on_by_hand(tmp_path, monkeypatch, capsys):
+    """With the workbench, on the demonstration's own runs."""
+    demo = Demo(DATA, [], tmp_path / "out")
+    monkeypatch.setattr(demo, "_step", lambda title, work: None)
+    demo.run()
+    said = capsys.readouterr().out
+    command = re.search(r"bin/ros2 run hasel_sysid workbench (\S+) --validate (\S+) --output", said)
+    assert [Path(pattern).parent for pattern in command.groups()] == [DATA, DATA]
+    assert [len(list(DATA.glob(Path(pattern).name))) for pattern in command.groups()] == [9, 3]
+    assert (ROOT / "bin" / "ros2").exists()
 
 
 def test_a_folder_without_a_measured_body_is_refused(tmp_path):

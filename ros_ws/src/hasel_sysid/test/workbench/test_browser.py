@@ -1,5 +1,6 @@
 """The page in a real browser: load, see, try, watch the error fall, take it back."""
 
+import http.client
 import os
 import re
 import select
@@ -7,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -115,10 +117,46 @@ def test_the_body_moves_and_the_map_leads_to_its_stretch(page):
     page.run("bench.whole()")
 
 
+def test_played_slowly_in_other_colours_run_by_run(page):
+    """A tenth of the speed passes a tenth of the time; contraction is coloured otherwise; n and p change the run."""
+    choose = (
+        "(() => {{ const s = document.getElementById('{}'); s.value = '{}';"
+        " s.dispatchEvent(new Event('change', {{bubbles: true}})); }})()"
+    )
+    page.run("bench.select('fit_5500V_2.0Hz')")
+    page.run("bench.seek(0.4)")
+    picture = page.run("document.getElementById('wb-body').toDataURL()")
+    page.run(choose.format("wb-colour", "contraction"))
+    assert page.run("document.getElementById('wb-body').toDataURL()") != picture
+    page.run(choose.format("wb-speed", "0.1"))
+    page.run("bench.seek(0)")
+    page.run("window.wbBegan = performance.now(); bench.play()")
+    page.until("bench.time > 0.05", _PATIENCE_S)
+    passed = page.run("bench.pause(), (performance.now() - window.wbBegan) / 1000 / bench.time")
+    assert passed > 8.0
+    for name in ("wb-colour", "wb-speed"):
+        page.run(choose.format(name, {"wb-colour": "strain", "wb-speed": "1"}[name]))
+    for key, run in (("p", "fit_4500V_3.5Hz"), ("n", "fit_5500V_2.0Hz")):
+        page.press(key)
+        page.until(f"bench.run === '{run}' && document.querySelector('tr.chosen').dataset.row === '{run}'")
+
+
 def test_nothing_comes_from_elsewhere(page, server):
     """All that the page loads comes from this machine."""
     assert all(address.startswith((server.address, "data:")) for address in page.addresses())
     assert page.errors == []
+
+
+def test_only_this_machine_is_answered(server):
+    """It listens at the loopback address alone, and not to a page elsewhere that gives its own name this address."""
+    port = int(server.address.rsplit(":")[-1].strip("/"))
+    rows = [line.split() for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
+    listening = [row[1].split(":") for row in rows if row[3] == "0A"]
+    assert [host for host, at in listening if int(at, 16) == port] == ["0100007F"]
+    for host, status in (("localhost", 200), ("elsewhere.example", 400)):
+        with closing(http.client.HTTPConnection("127.0.0.1", port, timeout=_PATIENCE_S)) as connection:
+            connection.request("GET", "/", headers={"Host": host})
+            assert connection.getresponse().status == status
 
 
 def test_everything_has_a_name(page):
@@ -170,16 +208,23 @@ def test_a_dropped_file_is_loaded(server_without_runs, browser, unseen_rig, tmp_
 
 def test_the_four_steps(page, server, browser, tmp_path):
     """The top effect is the hidden one; on, the error falls; another page sees it; taken back, all is as before."""
+    page.run("bench.select('val_5200V_2.5Hz')")
     page.click("Diagnose")
     page.until("document.querySelector('.chip.missing')", _PATIENCE_S)
     idle(page)
     assert page.run("document.querySelector('.wb-effect').dataset.effect") == "quadratic_drag"
+    card = page.run("document.querySelector('.wb-effect details').textContent")
+    for word in ("equation", "parameter coefficient", "plausible", "signature", "separated by", "source"):
+        assert word in card
+    bars = "[...document.querySelectorAll('svg.waterfall')].map(e => e.querySelectorAll('rect').length)"
+    assert page.run(bars) == [3, 3]
     before = page.run(_ERROR)
     page.click("switch on quadratic_drag")
     page.until(f"{_ERROR} < {0.4 * before}", _PATIENCE_S)
     tried = page.run(_ERROR)
     page.until("bench.curve.data.rows.includes('before')", _PATIENCE_S)
     page.picture(tmp_path / "tried.png")
+    assert page.run(bars) == [4, 4]  # on fitted and on unseen runs
 
     other = browser.open(server.address, 800, 900, dark=True)
     other.until(f"window.bench && bench.shown > 0 && {_ERROR} === {tried}", _PATIENCE_S)
@@ -221,23 +266,29 @@ def test_a_dragged_value_is_followed(page):
 
 
 def test_work_can_be_cancelled(page):
-    """Its progress is shown; cancelled, nothing has changed and the next work can begin."""
+    """Its progress is shown and the page is not held up; cancelled, nothing has changed, the next work can begin."""
     idle(page)
-    before = page.run(_ERROR)
+    before, shown = page.run(_ERROR), page.run("bench.shown")
     page.click("Diagnose")
+    page.run("bench.select('fit_4500V_3.5Hz')")
+    assert page.run("bench.shown") > shown
     page.click("cancel")
     page.until("document.body.innerText.includes('cancelled, nothing was changed')", _PATIENCE_S)
     assert page.run(_ERROR) == before
     idle(page)
 
 
-def test_export_gives_links(page):
+def test_export_gives_links(page, server, browser):
     """To the report, the script and the model, which this machine serves."""
     page.click("Export")
     page.until("document.querySelector('a[href*=\"report.html\"]')", _PATIENCE_S)
     assert page.run("fetch('/export/session.py').then(a => a.text())").startswith(
         '"""What was done in the workbench'
     )
+    report = browser.open(f"{server.address}export/report.html", 390, 800)
+    report.until("document.querySelector('.js-plotly-plot, .main-svg')", _PATIENCE_S)
+    assert report.run("document.documentElement.scrollWidth") <= 390  # a phone's
+    assert report.errors == []
 
 
 def test_it_ends_without_a_trace(tmp_path):

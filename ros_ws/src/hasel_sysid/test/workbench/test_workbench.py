@@ -150,6 +150,22 @@ def test_what_cannot_be_read_is_a_banner(loaded, unseen_rig, tmp_path):
     assert loaded.state.banners == ()
 
 
+def test_what_the_data_check_finds_is_a_banner(new_session, short_runs, tmp_path):
+    """With how bad it is; the run is shown all the same."""
+    lines = short_runs[0][0].read_text().splitlines()
+    dead = tmp_path / "one_sided.csv"
+    rows = (line.split(",") for line in lines[1:])
+    dead.write_text(
+        "\n".join([lines[0], *(",".join([time, upper, "0", sine]) for time, upper, _, sine in rows)])
+    )
+    session = new_session()
+    session.load([dead])
+    assert [
+        (b.severity, "the lower muscle never gets a voltage" in b.text) for b in session.state.banners
+    ] == [("warning", True)]
+    assert len(session.state.every) == 1
+
+
 def test_what_was_taken_is_not_taken_twice(new_session, short_runs):
     """Of what a rig was heard to do only the new runs are added, without a word about the others."""
     session = new_session()
