@@ -26,8 +26,9 @@ _STOP_IS_IN_SIGHT = (
     ".getBoundingClientRect())"
 )
 _CAUGHT_UP = (
-    "(rows => rows.simulated.length && rows.simulated.at(-1)[0] > rows.measured.at(-1)[0] - 0.5 &&"
-    " rows.voltage.at(-1)[0] - Math.max(...rows.voltage.filter(r => r[1] || r[2]).map(r => r[0])) > 1.5)(live.rows)"
+    "((rows, end) => Math.min(rows.measured.at(-1)[0], rows.simulated.at(-1)[0]) > end - 1 &&"
+    " end - Math.max(...rows.voltage.filter(r => r[1] || r[2]).map(r => r[0])) > 2.2)"
+    "(live.rows, live.rows.voltage.at(-1)[0])"
 )
 _TOO_BUSY = "this machine is too busy for a virtual board: it stopped itself in every run"
 
