@@ -12,10 +12,12 @@ from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
 from hasel_recording.endpoints import Role, subscription
 from hasel_recording.message_fields import nanoseconds
 from hasel_recording.topics import ERROR, MEASURED, SIMULATED, STATE
+from hasel_sysid.sysid_parameters import PARAMETERS
 
 from hasel_bringup.demo.processes import Processes
 from hasel_bringup.errors import BringupError
 from hasel_bringup.live_demo.rig import Rig
+from hasel_bringup.soak.gaps import between_states
 
 NODES = {
     "virtual_supply": ("hasel_driver", "--link", "{folder}/port"),
@@ -28,6 +30,7 @@ NODES = {
 }  # fmt: skip
 KILLED = ("simulator", "sysid", "virtual_rig", "driver_node")
 MOST_GROWTH = 0.05  # of a process's memory, from the first to the last fifth of its life
+GAP_S = next(p.default for p in PARAMETERS if p.name == "gap")  # of sysid
 FRAME_RATE = 120.0  # of the virtual camera
 MOST_OFF = 0.005  # of the frame rate
 _RECOVERY_S = 60.0
@@ -107,7 +110,11 @@ class Soak:
         rates = ", ".join(f"{topic} {count} ({count / span_s:.1f}/s)" for topic, count in counts.items())
         print(f"{when}: {span_s:.0f} s, {rates}", flush=True)
         self._compare(when, "states without a simulated angle", within[STATE], within[SIMULATED])
-        self._compare(when, "measured angles without an error", within[MEASURED], within[ERROR])
+        compared = between_states(within[MEASURED], heard[STATE], GAP_S)
+        print(f"{when}: {np.sum(~compared)} measured angles while states were more than {GAP_S:g} s apart")
+        self._compare(
+            when, "other measured angles without an error", within[MEASURED][compared], within[ERROR]
+        )
         gaps = np.diff(within[STATE]) * 1e-9
         print(f"{when}: longest distance of two states {gaps.max():.3f} s, median {np.median(gaps):.4f} s")
         rate = counts[MEASURED] / span_s
