@@ -46,12 +46,18 @@ def changed_packages(source: Path, build: Path) -> dict[str, str]:
 
 
 def remove_old_files(root: Path, name: str) -> None:
-    """Remove what the last build of a Python package installed, so that deleted modules do not live on."""
-    shutil.rmtree(root / "build" / name / "build", ignore_errors=True)
-    record = root / "build" / name / "install.log"
+    """Remove what the last build of a Python package installed, so that deleted modules do not live on.
+
+    From then on the package counts as changed until it is built; a folder copied from elsewhere is none of this one's.
+    """
+    folder = root / "build" / name
+    (folder / "source-fingerprint").unlink(missing_ok=True)
+    shutil.rmtree(folder / "build", ignore_errors=True)
+    record = folder / "install.log"
     if record.exists():
-        for line in record.read_text(encoding="utf-8").splitlines():
-            Path(line).unlink(missing_ok=True)
+        for path in map(Path, record.read_text(encoding="utf-8").splitlines()):
+            if path.is_relative_to(root / "install"):
+                path.unlink(missing_ok=True)
 
 
 def colcon_build(root: Path, packages: list[str]) -> int:

@@ -99,3 +99,29 @@ def test_deleted_module_is_uninstalled(root):
         "alpha_module.py",
         "beta_renamed.py",
     ]
+
+
+def test_what_a_failed_build_removed_is_built_again(root):
+    """Also when the change that made it fail is taken back."""
+    build_workspace.build(root)
+    module = root / "ros_ws" / "src" / "alpha" / "alpha" / "module.py"
+    module.write_text("A = (\n")
+    (root / "broken").touch()
+    assert build_workspace.build(root) == 1
+    module.write_text("A = 1\n")
+    (root / "broken").unlink()
+    built(root)
+    assert build_workspace.build(root) == 0
+    assert built(root) == ["alpha"]
+
+
+def test_files_of_another_checkout_stay(root, tmp_path):
+    """A build folder that was copied lists what the other workspace installed."""
+    build_workspace.build(root)
+    foreign = tmp_path / "elsewhere" / "install" / "module.py"
+    foreign.parent.mkdir(parents=True)
+    foreign.touch()
+    (root / "build" / "alpha" / "install.log").write_text(str(foreign))
+    (root / "ros_ws" / "src" / "alpha" / "alpha" / "module.py").write_text("A = 2\n")
+    build_workspace.build(root)
+    assert foreign.exists()
