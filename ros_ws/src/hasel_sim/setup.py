@@ -27,7 +27,7 @@ setup(
         "gradients": ["torch>=2"],
         "test": ["distributed", "pytest", "pytest-timeout", "scikit-fem", "torch>=2"],
     },
-    package_data={PACKAGE: ["py.typed", "models/*.yaml", "muscle/muscles/*.yaml"]},
+    package_data={PACKAGE: ["py.typed", "models/*.yaml", "muscle/muscles/*.yaml", "swimming/*.yaml"]},
     zip_safe=False,
     maintainer="HASEL swimmer maintainers",
     maintainer_email="maintainers@example.org",

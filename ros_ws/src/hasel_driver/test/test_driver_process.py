@@ -176,14 +176,14 @@ def test_simulated_time_without_a_clock_watches_all_the_same(start_driver, virtu
     driver.arm()
     from hasel_driver.testing.ros_client import RosClient
 
-    rival = RosClient()
-    try:
-        with ros.commanding():
-            ros.wait(lambda: virtual_rig.live)
+    with ros.commanding():
+        ros.wait(lambda: virtual_rig.live)
+        rival = RosClient()
+        try:
             with rival.commanding((1000.0, 1000.0)):
                 ros.wait(lambda: ros.state.fault_code == FaultCode.TWO_MASTERS, 10.0)
-    finally:
-        rival.close()
+        finally:
+            rival.close()
 
 
 STARTS = {

@@ -2,8 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+from ruamel.yaml import YAML
 from scipy.optimize import brentq
 
 from hasel_sim.effects.base import ForceEffect, Surroundings
@@ -13,12 +15,7 @@ from hasel_sim.swimming.given_shape import Shape, Swimmer, swim
 
 POWERS = np.array([2, 3, 4])
 """Of s, 0 at the base of the tail to 1 at the last marker, in the deflection of the tail."""
-_THEORY: dict[str, dict[str, float]] = {
-    "normal_drag": {"coefficient": 2.0, "boundary_layer": 4.0},
-    "skin_friction": {"along": 1.0, "thinning": 2.7},
-    "reactive_force": {"coefficient": 1.0},
-}
-"""Coefficients that theory gives."""
+_FORCES = Path(__file__).with_name("fish_in_water.yaml")
 _DRAGS = (0.0, 3.0)
 """Form drags [1] among which the right one is sought."""
 
@@ -83,11 +80,20 @@ def swimmer(fish: Fish, beat: Beat, form_drag: float, points: int = 32) -> Swimm
             across(1j * omega * slope),
         )
 
-    values = {"form_drag": {"coefficient": form_drag}, **_THEORY}
-    pairs = zip(find_effects(tuple(values)), values.values(), strict=True)
-    effects = [(effect, own) for effect, own in pairs if isinstance(effect, ForceEffect)]
+    effects = _forces(form_drag)
     around = Surroundings(fish.density, fish.viscosity, fish.depth, length)
     return Swimmer(lengths, fish.mass / fish.depth * lengths / length, shape, effects, around)
+
+
+def _forces(form_drag: float) -> list[tuple[ForceEffect, dict[str, float]]]:
+    """The forces of the water and their coefficients, the one that is fitted among them."""
+    values = YAML(typ="safe").load(_FORCES)["effects"]
+    found = zip(find_effects(tuple(values)), values.values(), strict=True)
+    return [
+        (effect, {name: form_drag if value == "fitted" else value for name, value in own.items()})
+        for effect, own in found
+        if isinstance(effect, ForceEffect)
+    ]
 
 
 def settled_speed(fish: Fish, beat: Beat, form_drag: float, periods: int = 5) -> float:
