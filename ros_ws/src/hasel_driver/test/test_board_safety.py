@@ -170,7 +170,7 @@ def test_calibration_corrects_output_and_monitor_and_survives_a_reset(board, rig
     ask(board, "SET CALIBRATION lower 10000 0 10000 0")
     board.events.clear()
     rig.say("reset")
-    board.until(lambda: any(event.words[0] == "BOOT" for event in board.events))
+    board.await_boot()
     assert board.ask("GET", "CALIBRATION", "upper") == (True, words)
     board.ask("SET", "MAXIMUM", 6000)
     drive(board, 5000, 0)

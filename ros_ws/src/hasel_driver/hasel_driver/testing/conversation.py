@@ -86,10 +86,21 @@ class Conversation:
             self._take()
             time.sleep(0.001)
 
-    def _take(self) -> None:
+    def await_boot(self, timeout_s: float = 3.0) -> None:
+        """Until the board says that it has started; what a reset cut off may stand before that in the same line."""
+        end_s = time.monotonic() + timeout_s
+        while not any(event.words[0] == "BOOT" for event in self.events):
+            if time.monotonic() > end_s:
+                raise AssertionError(f"the board did not start again within {timeout_s} s")
+            self._take(cut_off=True)
+            time.sleep(0.001)
+
+    def _take(self, cut_off: bool = False) -> None:
         kinds: dict[type, list] = {protocol.Event: self.events, protocol.Telemetry: self.reports}
         kinds[protocol.Reply] = self._replies
         for line in self._lines.feed(self._port.read()):
+            if cut_off and (begin := line.find(b"!BOOT")) > 0:
+                line = line[begin:]
             message = protocol.parse_device_line(line)
             kinds[type(message)].append(message)
 
