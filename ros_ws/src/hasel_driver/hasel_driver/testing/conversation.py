@@ -77,23 +77,18 @@ class Conversation:
             time.sleep(0.01)
         self._replies.clear()
 
-    def until(self, condition: Callable[[], bool], timeout_s: float = 3.0) -> None:
-        """Read until `condition()` holds."""
+    def until(self, condition: Callable[[], bool], timeout_s: float = 3.0, cut_off: bool = False) -> None:
+        """Read until `condition()` holds; cut_off: what a reset cut off may stand before BOOT in the same line."""
         end_s = time.monotonic() + timeout_s
         while not condition():
             if time.monotonic() > end_s:
                 raise AssertionError(f"the board did not answer as expected within {timeout_s} s")
-            self._take()
+            self._take(cut_off)
             time.sleep(0.001)
 
-    def await_boot(self, timeout_s: float = 3.0) -> None:
-        """Until the board says that it has started; what a reset cut off may stand before that in the same line."""
-        end_s = time.monotonic() + timeout_s
-        while not any(event.words[0] == "BOOT" for event in self.events):
-            if time.monotonic() > end_s:
-                raise AssertionError(f"the board did not start again within {timeout_s} s")
-            self._take(cut_off=True)
-            time.sleep(0.001)
+    def await_boot(self) -> None:
+        """Until the board says that it has started."""
+        self.until(lambda: any(event.words[0] == "BOOT" for event in self.events), cut_off=True)
 
     def _take(self, cut_off: bool = False) -> None:
         kinds: dict[type, list] = {protocol.Event: self.events, protocol.Telemetry: self.reports}

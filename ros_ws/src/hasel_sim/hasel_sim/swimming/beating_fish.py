@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -85,14 +86,19 @@ def swimmer(fish: Fish, beat: Beat, form_drag: float, points: int = 32) -> Swimm
     return Swimmer(lengths, fish.mass / fish.depth * lengths / length, shape, effects, around)
 
 
-def _forces(form_drag: float) -> list[tuple[ForceEffect, dict[str, float]]]:
-    """The forces of the water and their coefficients, the one that is fitted among them."""
+@cache
+def _coefficients() -> tuple[tuple[ForceEffect, dict[str, float | str]], ...]:
+    """The forces of the water and their coefficients, "fitted" for the one that is."""
     values = YAML(typ="safe").load(_FORCES)["effects"]
     found = zip(find_effects(tuple(values)), values.values(), strict=True)
+    return tuple((effect, own) for effect, own in found if isinstance(effect, ForceEffect))
+
+
+def _forces(form_drag: float) -> list[tuple[ForceEffect, dict[str, float]]]:
+    """The forces of the water and their coefficients."""
     return [
-        (effect, {name: form_drag if value == "fitted" else value for name, value in own.items()})
-        for effect, own in found
-        if isinstance(effect, ForceEffect)
+        (effect, {name: form_drag if value == "fitted" else float(value) for name, value in own.items()})
+        for effect, own in _coefficients()
     ]
 
 
