@@ -6,7 +6,7 @@ SHELL := /bin/bash
 .PHONY: help build test test-slow lint format docs demo bench bench-far bench-hidden soak clean
 
 ENVIRONMENT := . setup/environment.bash
-PACKAGES := hasel_recording hasel_driver hasel_tracker hasel_sim hasel_sysid hasel_bringup
+PACKAGES := hasel_recording hasel_driver hasel_tracker hasel_sim hasel_sysid hasel_bringup hasel_benchmark
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 16
@@ -47,10 +47,10 @@ bench: build ## measure the speeds that the README states
 	@bin/ros2-run hasel_tracker bench
 
 bench-hidden: build ## measure how often the right hidden effect is named
-	@bin/ros2-run hasel_bringup bench_hidden
+	@bin/ros2-run hasel_benchmark bench_hidden
 
 bench-far: build ## measure how often a constant that is far off is named
-	@bin/ros2-run hasel_bringup bench_far
+	@bin/ros2-run hasel_benchmark bench_far
 
 soak: build ## run the virtual rig for 10 minutes and kill each node once (MINUTES=2: shorter)
 	@bin/ros2-run hasel_bringup soak --minutes $(or $(MINUTES),10)

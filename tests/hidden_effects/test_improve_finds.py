@@ -1,11 +1,11 @@
 """A quick part of the benchmark: the six shorter runs are fitted, a third of the cost of all nine."""
 
 import pytest
-from hasel_bringup.bench_hidden.case import Case
-from hasel_bringup.bench_hidden.explain import explain
-from hasel_bringup.bench_hidden.generate import measure
-from hasel_bringup.bench_hidden.judge import judge
-from hasel_bringup.bench_hidden.plan import FITTED
+from hasel_benchmark.bench_hidden.case import Case
+from hasel_benchmark.bench_hidden.explain import explain
+from hasel_benchmark.bench_hidden.generate import measure
+from hasel_benchmark.bench_hidden.judge import judge
+from hasel_bringup.hidden_truth.plan import FITTED
 
 SHORT = [box for box in FITTED if box.frequency > 1]
 pytestmark = pytest.mark.timeout(900)

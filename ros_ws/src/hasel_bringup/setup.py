@@ -22,7 +22,6 @@ setup(
         "opencv-contrib-python-headless>=4.10",
         "rich",
         "ruamel.yaml",
-        "scipy>=1.11",
         "threadpoolctl",
     ],
     extras_require={"test": ["pytest", "pytest-timeout", "PyYAML"]},
@@ -34,8 +33,6 @@ setup(
     entry_points={
         "console_scripts": [
             "bench = hasel_bringup.bench:main",
-            "bench_far = hasel_bringup.entry:bench_far",
-            "bench_hidden = hasel_bringup.entry:bench_hidden",
             "demo = hasel_bringup.entry:demo",
             "live_demo = hasel_bringup.entry:live_demo",
             "recorder = hasel_bringup.entry:recorder",

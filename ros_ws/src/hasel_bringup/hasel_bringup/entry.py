@@ -9,16 +9,6 @@ from importlib import import_module
 from hasel_recording.node_usage import answer_help, user_arguments
 
 
-def bench_far() -> int:
-    """`bench_far`: is a constant that is far off named?"""
-    return _run("bench_far")
-
-
-def bench_hidden() -> int:
-    """`bench_hidden`: how often is the right hidden effect named?"""
-    return _run("bench_hidden")
-
-
 def demo() -> int:
     """`demo`: fit, diagnose, add, and watch the error fall."""
     return _run("demo")

@@ -8,9 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ament_index_python.packages import get_package_prefix
+from ament_index_python.packages import get_package_prefix, get_packages_with_prefixes
 
-PACKAGES = ("hasel_bringup", "hasel_driver", "hasel_recording", "hasel_sim", "hasel_sysid", "hasel_tracker")
 COMPARED = Path("data") / "unseen_rig" / "quadratic_drag"
 HELP_BAR_S, COMPARE_BAR_S, MEMORY_BAR_MB = 0.5, 3.0, 300.0
 _TRIALS = 3
@@ -40,9 +39,10 @@ def least_used(command: Sequence[str | Path]) -> Used:
 
 
 def executables() -> list[Path]:
-    """All installed ones of all packages."""
-    folders = (Path(get_package_prefix(package)) / "lib" / package for package in PACKAGES)
-    return [path for folder in folders for path in sorted(folder.iterdir()) if os.access(path, os.X_OK)]
+    """All installed ones of all packages of the stack."""
+    packages = sorted(get_packages_with_prefixes().items())
+    folders = (Path(prefix) / "lib" / package for package, prefix in packages if package.startswith("hasel_"))
+    return [path for folder in folders for path in sorted(folder.glob("*")) if os.access(path, os.X_OK)]
 
 
 def measure() -> bool:

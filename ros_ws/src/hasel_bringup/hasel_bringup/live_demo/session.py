@@ -13,8 +13,8 @@ from rich.markup import escape
 from ruamel.yaml import YAML
 from std_srvs.srv import SetBool
 
-from hasel_bringup.bench_hidden.plan import FITTED, UNSEEN, BoxRun
 from hasel_bringup.errors import BringupError
+from hasel_bringup.hidden_truth.plan import FITTED, UNSEEN, BoxRun
 from hasel_bringup.live_demo.commands import Commands
 from hasel_bringup.live_demo.rig import ExperimentFailedError, Rig
 

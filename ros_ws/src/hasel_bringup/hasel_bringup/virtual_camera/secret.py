@@ -6,8 +6,8 @@ import numpy as np
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import Model
 
-from hasel_bringup.bench_hidden.case import Case, draw_values
-from hasel_bringup.bench_hidden.truth import Muscles, TruthNumerics, draw_muscles, truth_model
+from hasel_bringup.hidden_truth.hidden_values import draw_hidden_values
+from hasel_bringup.hidden_truth.truth import Muscles, TruthNumerics, draw_muscles, truth_model
 from hasel_bringup.virtual_camera.hideable import NOTHING, RANDOM, check_hidden, hideable
 
 _NUMERICS = TruthNumerics("live", 1.6, 2, steps_per_second=480.0)  # the model: 1.0, 1 and 240
@@ -43,8 +43,9 @@ def draw_secret(hidden: str, generator: np.random.Generator) -> Secret:
     if hidden == RANDOM:
         hidden = str(generator.choice(hideable()))
     effects = () if hidden == NOTHING else (hidden,)
-    case = Case("single", effects, 1.0, int(generator.integers(2**31)), "white", _NUMERICS.name)
-    return Secret(draw_values(case, generator), draw_muscles(generator), _NUMERICS)
+    generator.integers(2**31)  # so that a seed stays for the swimmer that it always stood for
+    values = {effect: draw_hidden_values(effect, 1.0, generator) for effect in effects}
+    return Secret(values, draw_muscles(generator), _NUMERICS)
 
 
 def _unit(identity: str, name: str) -> str:

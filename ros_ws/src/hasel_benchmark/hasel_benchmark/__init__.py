@@ -1,0 +1,1 @@
+"""The naming benchmark: how often `improve` names what was hidden from it."""

@@ -1,0 +1,144 @@
+"""One case: a gross constant of a body is wrong by so much that it rings at another frequency."""
+
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+import numpy as np
+from hasel_bringup.hidden_truth.truth import NOMINAL, NUMERICS, truth_model
+from hasel_recording import Recording
+from hasel_sim.drive.schedule import DriveSchedule
+from hasel_sim.errors import SimulationError
+from hasel_sim.model import Model, load_model
+from hasel_sim.parallel import simulate_all
+from hasel_sim.run import Run
+from hasel_sim.simulate import simulate
+from hasel_sysid.dataset import Experiment
+from hasel_sysid.where_it_fails.components.free_swing import fit_swing
+from scipy.optimize import brentq
+
+from hasel_benchmark.bench_far.constants_far_off import BODIES, SHIFTS, SIZES
+
+NOISES = (2e-5, 3e-4, 3e-3)
+_BEAM_DAMPING_S = 0.004
+_FRAMES_PER_SECOND = 100.0
+
+
+@dataclass(frozen=True)
+class FarCase:
+    """effect: the wrong constant; shift: of the ringing's frequency, as a share; body: beam (let go) or swimmer
+    (driven); noise: rms of sin theta, white.
+    """
+
+    effect: str
+    shift: float
+    body: str
+    noise: float
+    seed: int = 0
+
+    @property
+    def name(self) -> str:
+        """Such as `payload-0.4-beam-2e-05`."""
+        return f"{self.effect}{self.shift:+g}-{self.body}-{self.noise:g}-{self.seed}"
+
+
+def far_cases(
+    effects: Sequence[str] = tuple(SIZES), shifts: Sequence[float] = SHIFTS, bodies: Sequence[str] = BODIES
+) -> list[FarCase]:
+    """All of them that a value within the effect's plausible range brings about; the noise goes round."""
+    found = []
+    for number, (effect, shift) in enumerate((e, s) for e in effects for s in shifts):
+        for offset, body in enumerate(BODIES):
+            case = FarCase(effect, shift, body, NOISES[(number + offset) % len(NOISES)])
+            if body not in bodies or (body == "beam" and effect == "spine_modulus"):
+                continue
+            if value_of(case) is not None:
+                found.append(case)
+    return found
+
+
+def baseline(body: str) -> Model:
+    """The model that the search begins with."""
+    model = load_model(body)
+    if body == "beam":
+        soft = model.description.material.soft.model_copy(update={"retardation_time_s": _BEAM_DAMPING_S})
+        material = model.description.material.model_copy(update={"soft": soft})
+        return type(model)(model.description.model_copy(update={"material": material}))
+    return model
+
+
+def value_of(case: FarCase) -> float | None:
+    """The value that shifts the ringing by the case's share; None where no plausible one does."""
+    model = _quick(_with_muscles(case.body)).with_effects(case.effect)
+    parameter = model.parameters[SIZES[case.effect]]
+    null = 1.0 if parameter.lower > 0 else 0.0
+    before = ringing_frequency(model.with_values({parameter.name: null}))
+
+    def miss(value: float) -> float:
+        return ringing_frequency(model.with_values({parameter.name: value})) / before - 1.0 - case.shift
+
+    if parameter.lower > 0:
+        ends = np.geomspace(parameter.lower, parameter.upper, 9)
+    else:
+        ends = np.concatenate([[0.0], np.geomspace(1e-4, 1.0, 13) * parameter.upper])
+    misses = []
+    for value in ends:
+        try:
+            misses.append(miss(float(value)))
+        except SimulationError:
+            misses.append(np.nan)
+    for (a, b), (x, y) in zip(
+        zip(misses, misses[1:], strict=False), zip(ends, ends[1:], strict=False), strict=True
+    ):
+        if a * b < 0:
+            return float(brentq(miss, x, y, rtol=1e-3))
+    return None
+
+
+def ringing_frequency(model: Model) -> float:
+    """Frequency [Hz] at which the body swings freely after it was let go, or after a muscle pulled for a moment."""
+    time = np.arange(0.0, 2.0, 1 / _FRAMES_PER_SECOND)
+    run = Run("ringing", time, None, "static_equilibrium", 1.3)
+    if model.has_muscles:
+        run = Run("ringing", time, DriveSchedule(np.array([0.0, 0.1]), np.array([[5000.0, 0.0], [0.0, 0.0]])))
+    series = simulate(model, run).sin_theta
+    swing = fit_swing(time[15:], series[15:])
+    return np.nan if swing is None else swing.frequency
+
+
+def measure(case: FarCase, value: float, pool: Executor) -> tuple[list[Experiment], list[Experiment]]:
+    """Fitted and unseen runs of the truth, on another mesh and time step than the model's, with noise and offsets."""
+    truth = _with_muscles(case.body)
+    truth = NUMERICS["near"].applied(truth).with_effects(case.effect).with_values({SIZES[case.effect]: value})
+    runs = _swings() if case.body == "beam" else _boxes()
+    generator = np.random.default_rng([case.seed, int(1e4 * (1 + case.shift)), len(case.effect)])
+    found = []
+    for run, simulation in zip(runs, simulate_all(pool, truth, runs), strict=True):
+        noise = case.noise * generator.standard_normal(len(run.time)) + 0.01 * generator.standard_normal()
+        voltage = None if run.schedule is None else run.schedule.at(run.time)
+        found.append(Experiment(Recording(run.name, run.time, simulation.sin_theta + noise, voltage), run))
+    return found[:-1], found[-1:]
+
+
+def _swings() -> list[Run]:
+    time = np.arange(0.0, 2.5, 1 / _FRAMES_PER_SECOND)
+    return [Run(f"let go from {f:g}", time, None, "static_equilibrium", f) for f in (1.3, 1.6, 1.45)]
+
+
+def _boxes() -> list[Run]:
+    runs = []
+    for voltage, frequency in ((3500.0, 0.5), (5500.0, 2.0), (4500.0, 1.0)):
+        time = np.arange(0.0, 2 / frequency, 1 / _FRAMES_PER_SECOND)
+        switches = np.arange(4) / (2 * frequency)
+        upper = np.arange(4) % 2 == 0
+        drive = DriveSchedule(switches, np.where(np.stack([upper, ~upper], axis=1), voltage, 0.0))
+        runs.append(Run(f"{voltage:g} V, {frequency:g} Hz", time, drive))
+    return runs
+
+
+def _with_muscles(body: str) -> Model:
+    return truth_model(NUMERICS["near"], NOMINAL) if body == "swimmer" else baseline(body)
+
+
+def _quick(model: Model) -> Model:
+    return model.with_numerics(mesh_density=0.5, quadrature_order=2, steps_per_second=120.0)

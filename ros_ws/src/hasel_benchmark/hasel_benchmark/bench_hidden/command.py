@@ -1,0 +1,100 @@
+"""`bench_hidden`: how often the right hidden effect is named, beside the bars."""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+from hasel_sim.errors import ModelError, SimulationError
+from hasel_sim.parallel import executor, worker_count
+from hasel_sysid.searches import SEARCHES
+
+from hasel_benchmark.bench_hidden.case import Case
+from hasel_benchmark.bench_hidden.case_list import list_cases, quick_cases
+from hasel_benchmark.bench_hidden.explain import explain
+from hasel_benchmark.bench_hidden.options import KINDS, PAGE, parser
+from hasel_benchmark.bench_hidden.outcome import Outcome
+from hasel_benchmark.bench_hidden.page import as_json, as_markdown, outcomes_of
+from hasel_benchmark.bench_hidden.run_cases import run_cases
+from hasel_benchmark.errors import BenchmarkError
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    return run(parser().parse_args(arguments))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code."""
+    try:
+        return _bench(options)
+    except (BenchmarkError, ModelError, SimulationError) as error:
+        print(error, file=sys.stderr)
+        return 1
+
+
+def _bench(options: argparse.Namespace) -> int:
+    cases = _cases(options)
+    if not cases:
+        raise BenchmarkError("No case is left to run; choose other --effects or another kind with --only.")
+    if not options.resume and any(options.output.glob("*.json")):
+        raise BenchmarkError(
+            f"{options.output} already holds results; go on with --resume, or name another folder with --output."
+        )
+    page = options.page or _default_page(options)
+    known = _known(page) if options.resume else {}
+    outcomes: list[Outcome] = []
+    stopped = False
+    how = partial(explain, search=options.search)
+    try:
+        with executor(options.jobs, options.scheduler) as pool:
+            at_once = _at_once(options, cases)
+            for outcome in run_cases(cases, how, pool, options.output, _say, at_once, known):
+                outcomes.append(outcome)
+    except KeyboardInterrupt:
+        stopped = True
+        _say(f"Stopped after {len(outcomes)} of {len(cases)} cases; go on with --resume.")
+    _write(outcomes, len(cases), page)
+    return 130 if stopped else 0
+
+
+def _known(page: Path) -> dict[str, Outcome]:
+    """What the page to be written already tells, from its JSON."""
+    path = page.with_suffix(".json")
+    return outcomes_of(json.loads(path.read_text())) if path.is_file() else {}
+
+
+def _at_once(options: argparse.Namespace, cases: Sequence[Case]) -> int:
+    return len(cases) if options.scheduler else worker_count(options.jobs)
+
+
+def _cases(options: argparse.Namespace) -> list[Case]:
+    if options.quick:
+        return quick_cases(options.truth)
+    kinds = list(KINDS.values()) if options.only is None else [KINDS[options.only]]
+    effects = [name for name in options.effects.split(",") if name]
+    seeds = range(options.first_seed, options.first_seed + options.seeds)
+    return list_cases(kinds, seeds, effects, options.truth)
+
+
+def _default_page(options: argparse.Namespace) -> Path:
+    usual = options.search == SEARCHES[0]
+    part = options.quick or options.only or options.effects or options.first_seed or not usual
+    return options.output / PAGE.name if part else PAGE
+
+
+def _write(outcomes: Sequence[Outcome], planned: int, page: Path) -> None:
+    if not outcomes:
+        return
+    page.parent.mkdir(parents=True, exist_ok=True)
+    text = as_markdown(outcomes, planned)
+    page.write_text(text)
+    page.with_suffix(".json").write_text(json.dumps(as_json(outcomes)))
+    print(text)
+    _say(f"Written to {page} and {page.with_suffix('.json')}.")
+
+
+def _say(sentence: str) -> None:
+    print(sentence, file=sys.stderr, flush=True)

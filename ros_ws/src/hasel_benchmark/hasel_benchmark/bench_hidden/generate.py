@@ -1,0 +1,93 @@
+"""From a case to what a laboratory would have measured."""
+
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from hasel_bringup.hidden_truth.plan import FITTED, UNSEEN, BoxRun
+from hasel_bringup.hidden_truth.truth import NUMERICS, draw_muscles, truth_model
+from hasel_recording import Recording, write_recording
+from hasel_sim.parallel import simulate_all
+from hasel_sim.run import Simulation
+from hasel_sysid.dataset import Experiment
+
+from hasel_benchmark.bench_hidden.case import Case, draw_values, effect_source
+from hasel_benchmark.bench_hidden.noise import draw_noise, draw_offset
+
+
+@dataclass(frozen=True)
+class Laboratory:
+    """What was measured, and what only the benchmark knows.
+
+    values: of the hidden effects' parameters; floor_*: mean |noise| with every run's mean removed, what a perfect
+    model would leave.
+    """
+
+    fitted: tuple[Experiment, ...]
+    unseen: tuple[Experiment, ...]
+    values: dict[str, dict[str, float]]
+    floor_fitted: float
+    floor_unseen: float
+
+    def write(self, folder: Path, suffix: str = ".csv") -> None:
+        """Write every run to a file of its name; a CSV file holds exact switches only if they lie on frames."""
+        folder.mkdir(parents=True, exist_ok=True)
+        for measured in (*self.fitted, *self.unseen):
+            write_recording(measured.recording, folder / f"{measured.name}{suffix}")
+
+
+def measure(
+    case: Case,
+    pool: Executor,
+    switch_on_frames: bool = False,
+    fitted: Sequence[BoxRun] = FITTED,
+    unseen: Sequence[BoxRun] = UNSEEN,
+) -> Laboratory:
+    """Simulate the truth of a case and add noise.
+
+    switch_on_frames: let the drive switch at frames only, which is what CSV files can hold.
+    Raises SimulationError when this truth cannot be simulated.
+    """
+    generator = case.generator()
+    muscles = draw_muscles(generator)
+    values = draw_values(case, generator)
+    model = truth_model(
+        NUMERICS[case.numerics],
+        muscles,
+        {effect_source(identity): chosen for identity, chosen in values.items()},
+    )
+    runs = [box.run(switch_on_frames) for box in (*fitted, *unseen)]
+    simulations = simulate_all(pool, model, runs)
+    noises = [draw_noise(len(run.time), case.colour, generator) for run in runs]
+    measured = [
+        _experiment(simulation, noise + draw_offset(generator), switch_on_frames)
+        for simulation, noise in zip(simulations, noises, strict=True)
+    ]
+    split = len(fitted)
+    return Laboratory(
+        tuple(measured[:split]),
+        tuple(measured[split:]),
+        values,
+        _mean_absolute(noises[:split]),
+        _mean_absolute(noises[split:]),
+    )
+
+
+def _mean_absolute(series: list[np.ndarray]) -> float:
+    return float(np.abs(np.concatenate([part - part.mean() for part in series])).mean()) if series else 0.0
+
+
+def _experiment(simulation: Simulation, noise: np.ndarray, switch_on_frames: bool) -> Experiment:
+    run = simulation.run
+    exact = None if switch_on_frames else run.schedule
+    recording = Recording(
+        run.name,
+        run.time,
+        simulation.sin_theta + noise,
+        drive_signal=run.schedule.at(run.time),
+        drive_time_s=None if exact is None else exact.time,
+        drive_values=None if exact is None else exact.signal,
+    )
+    return Experiment(recording, run)

@@ -1,0 +1,106 @@
+"""Run cases, each on one core and kept in a file of its own, so that hours of work survive a stop."""
+
+import json
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from pathlib import Path
+
+from hasel_sim.errors import SimulationError
+from hasel_sim.parallel import SerialExecutor
+from hasel_sysid.errors import SysidError
+
+from hasel_benchmark.bench_hidden.case import Case
+from hasel_benchmark.bench_hidden.generate import Laboratory, measure
+from hasel_benchmark.bench_hidden.judge import failed, judge
+from hasel_benchmark.bench_hidden.outcome import Outcome, outcome_from_dict
+
+Explain = Callable[[Laboratory, Executor], dict]
+"""What is judged: from measurements to the content of `improve --json`."""
+
+
+def kept_outcome(case: Case, folder: Path) -> Outcome | None:
+    """What an earlier run left about a case."""
+    path = folder / f"{case.name}.json"
+    return outcome_from_dict(json.loads(path.read_text())["outcome"]) if path.is_file() else None
+
+
+def run_case(case: Case, explain: Explain, pool: Executor) -> tuple[Outcome, dict, dict]:
+    """Outcome, hidden values and the answer of one case; a failure to simulate or to explain is an outcome too."""
+    try:
+        laboratory = measure(case, pool)
+    except SimulationError as error:
+        return failed(case, f"the truth cannot be simulated: {error}"), {}, {}
+    start = time.perf_counter()
+    try:
+        answer = explain(laboratory, pool)
+    except (SysidError, SimulationError) as error:
+        return failed(case, f"improve gave up: {error}"), laboratory.values, {}
+    return (
+        judge(case, laboratory, answer, time.perf_counter() - start),
+        laboratory.values,
+        answer,
+    )
+
+
+def run_cases(
+    cases: Sequence[Case],
+    explain: Explain,
+    pool: Executor,
+    folder: Path,
+    say: Callable[[str], None],
+    at_once: int = 1,
+    known: Mapping[str, Outcome] | None = None,
+) -> Iterator[Outcome]:
+    """Outcomes of all cases, those already known or in the folder first; each new one is written there at once.
+
+    at_once: how many cases the pool is given at a time, each to one worker; known: outcomes by name of the case.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    kept = {case.name: kept_outcome(case, folder) or (known or {}).get(case.name) for case in cases}
+    yield from (outcome for outcome in kept.values() if outcome is not None)
+    todo = [case for case in cases if kept[case.name] is None]
+    begin = time.perf_counter()
+    for number, (case, found) in enumerate(_in_turn(todo, explain, pool, at_once), start=1):
+        _keep(case, *found, folder)
+        left = (time.perf_counter() - begin) / number * (len(todo) - number)
+        say(f"[{number}/{len(todo)}, {_duration(left)} left] {case}: {_in_words(found[0])}")
+        yield found[0]
+
+
+def _in_turn(
+    cases: Sequence[Case], explain: Explain, pool: Executor, at_once: int
+) -> Iterator[tuple[Case, tuple[Outcome, dict, dict]]]:
+    waiting = list(reversed(cases))
+    running: dict[Future, Case] = {}
+    while waiting or running:
+        while waiting and len(running) < at_once:
+            case = waiting.pop()
+            running[pool.submit(run_case, case, explain, SerialExecutor())] = case
+        finished, _ = wait(running, return_when=FIRST_COMPLETED)
+        for future in finished:
+            yield running.pop(future), future.result()
+
+
+def _keep(case: Case, outcome: Outcome, values: dict, answer: dict, folder: Path) -> None:
+    content = {
+        "case": case.as_dict(),
+        "hidden_values": values,
+        "outcome": outcome.as_dict(),
+        "answer": answer,
+    }
+    unfinished = folder / f"{case.name}.part"
+    unfinished.write_text(json.dumps(content, indent=1))
+    unfinished.replace(folder / f"{case.name}.json")
+
+
+def _in_words(outcome: Outcome) -> str:
+    if outcome.failure:
+        return outcome.failure
+    added = ", ".join(outcome.missing) or "nothing"
+    return f"{outcome.status}, {added} added, first of the ranking {outcome.first or '–'}, {outcome.seconds:.0f} s"
+
+
+def _duration(seconds: float) -> str:
+    minutes = round(seconds / 60)
+    return f"{minutes // 60} h {minutes % 60} min" if minutes >= 60 else f"{minutes} min"

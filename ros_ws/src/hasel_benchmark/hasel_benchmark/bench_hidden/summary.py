@@ -1,0 +1,141 @@
+"""All outcomes in numbers, beside the bars."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hasel_benchmark.bench_hidden.outcome import Outcome
+
+
+@dataclass(frozen=True)
+class Bar:
+    """One measured number and what it must reach; value None: no case measured it."""
+
+    what: str
+    value: float | None
+    least: float | None
+    most: float | None
+    cases: int
+    unit: str = "%"
+
+    @property
+    def met(self) -> bool | None:
+        """Whether the bar is reached, None when it was not measured or there is none."""
+        if self.value is None or (self.least is None and self.most is None):
+            return None
+        return (self.least is None or self.value >= self.least) and (
+            self.most is None or self.value <= self.most
+        )
+
+    @property
+    def bar(self) -> str:
+        """The bar in words."""
+        if self.least is not None and self.most is not None:
+            return f"{self._text(self.least)}–{self._text(self.most)}"
+        if self.least is None and self.most is None:
+            return "–"
+        return f"≥ {self._text(self.least)}" if self.most is None else f"≤ {self._text(self.most)}"
+
+    @property
+    def measured(self) -> str:
+        """The number in words."""
+        return "not measured" if self.value is None else self._text(self.value)
+
+    def _text(self, value: float) -> str:
+        return f"{100 * value:.3g} %" if self.unit == "%" else f"{value:.0f} {self.unit}"
+
+
+def bars(outcomes: Sequence[Outcome]) -> list[Bar]:
+    """The numbers of all cases that have an answer."""
+    answered = [o for o in outcomes if not o.failure]
+    nothing, single, pair, unlisted = (
+        [o for o in answered if o.kind == kind] for kind in ("nothing", "single", "pair", "unlisted")
+    )
+    seen, hard = [o for o in single if o.visible], [o for o in single if not o.visible]
+    both, strangers = [o for o in pair if o.visible], [o for o in unlisted if o.visible]
+    explicable = [*seen, *both]
+    white, coloured = ([o for o in nothing if o.colour == colour] for colour in ("white", "coloured"))
+    covered = [e.covered for o in [*seen, *both] if o.all_named for e in o.estimates if e.covered is not None]
+    return [
+        _share("one visible effect hidden: named first", seen, lambda o: o.right, least=0.85),
+        _share("… or within the stated group", seen, lambda o: o.right_within_group, least=0.95),
+        _share("… and added to the model", seen, lambda o: o.all_named),
+        _share(
+            "one effect hidden that leaves hardly a trace: another one accused with confidence",
+            hard,
+            lambda o: o.accuses_with_confidence and not o.right_within_group,
+        ),
+        _share(
+            "nothing hidden, white noise: something reported", white, lambda o: o.reports_something, most=0.05
+        ),
+        _share(
+            "nothing hidden, coloured noise: something reported",
+            coloured,
+            lambda o: o.reports_something,
+            most=0.05,
+        ),
+        _share(
+            "not in the catalogue: a listed one accused",
+            strangers,
+            lambda o: o.accuses_with_confidence,
+            most=0.1,
+        ),
+        _share(
+            "… said to be none of them, or not wholly", strangers, lambda o: o.says_none_of_them, least=0.8
+        ),
+        _share("two effects hidden: both named", both, lambda o: o.all_named, least=0.7),
+        _share("… or within the stated groups", both, lambda o: o.all_named_within_group),
+        Bar("95 % intervals that cover the truth", _mean(covered), 0.9, 0.98, len(covered)),
+        _median(
+            "excess error removed, fitted runs (median)", [o.removed_fitted for o in explicable], least=0.9
+        ),
+        _median(
+            "excess error removed, unseen runs (median)", [o.removed_unseen for o in explicable], least=0.8
+        ),
+        _median("time of one improve, on one core (median)", [o.seconds for o in answered], unit="s"),
+        Bar(
+            "time of one improve, on one core (longest)",
+            max((o.seconds for o in answered), default=None),
+            None,
+            None,
+            len(answered),
+            "s",
+        ),
+    ]
+
+
+def _share(
+    what: str,
+    outcomes: Sequence[Outcome],
+    holds: Callable[[Outcome], bool],
+    least: float | None = None,
+    most: float | None = None,
+) -> Bar:
+    return Bar(what, _mean([holds(o) for o in outcomes]), least, most, len(outcomes))
+
+
+def _mean(values: Sequence[bool]) -> float | None:
+    return float(np.mean(values)) if values else None
+
+
+def _median(
+    what: str, values: Iterable[float], least: float | None = None, most: float | None = None, unit: str = "%"
+) -> Bar:
+    finite = [value for value in values if np.isfinite(value)]
+    return Bar(what, float(np.median(finite)) if finite else None, least, most, len(finite), unit)
+
+
+def confusion(outcomes: Sequence[Outcome]) -> dict[str, dict[str, int]]:
+    """Hidden -> named first -> how often, over single, unlisted and nothing-hidden cases."""
+    table: dict[str, dict[str, int]] = {}
+    for o in outcomes:
+        if o.kind == "pair" or o.failure:
+            continue
+        row = table.setdefault(o.hidden[0] if o.hidden else "nothing", {})
+        if o.kind == "unlisted" and o.says_none_of_them and not o.missing:
+            named = "none of them"
+        else:
+            named = o.first or ("none of them" if o.reports_something else "nothing")
+        row[named] = row.get(named, 0) + 1
+    return table

@@ -1,0 +1,23 @@
+"""Where the executables begin: options are read before anything heavy is imported, so that --help answers at once."""
+
+import sys
+from importlib import import_module
+
+from hasel_recording.node_usage import user_arguments
+
+
+def bench_far() -> int:
+    """`bench_far`: is a constant that is far off named?"""
+    return _run("bench_far")
+
+
+def bench_hidden() -> int:
+    """`bench_hidden`: how often is the right hidden effect named?"""
+    return _run("bench_hidden")
+
+
+def _run(command: str) -> int:
+    options = (
+        import_module(f"hasel_benchmark.{command}.options").parser().parse_args(user_arguments(sys.argv[1:]))
+    )
+    return import_module(f"hasel_benchmark.{command}.command").run(options)
