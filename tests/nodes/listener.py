@@ -7,7 +7,7 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
 from hasel_recording.endpoints import Role
-from rclpy.context import Context
+from hasel_recording.spinning import node_alone
 from rclpy.executors import SingleThreadedExecutor
 
 EVERY_MESSAGE = Role.EVERY_SAMPLE.value
@@ -22,10 +22,8 @@ class Listener:
     """A node of a ROS domain, with everything it hears."""
 
     def __init__(self, domain: int) -> None:
-        self._context = Context()
-        rclpy.init(context=self._context, domain_id=domain)
-        self.node = rclpy.create_node("listener", context=self._context)
-        self._executor = SingleThreadedExecutor(context=self._context)
+        self.node = node_alone("listener", domain=domain)
+        self._executor = SingleThreadedExecutor(context=self.node.context)
         self._executor.add_node(self.node)
         self.states: list[SupplyState] = []
         self.measured: list[BendingAngle] = []
@@ -76,4 +74,4 @@ class Listener:
         """Leave the domain."""
         self._executor.shutdown()
         self.node.destroy_node()
-        rclpy.try_shutdown(context=self._context)
+        rclpy.try_shutdown(context=self.node.context)

@@ -24,7 +24,7 @@ setup(
         "ruamel.yaml",
         "threadpoolctl",
     ],
-    extras_require={"test": ["pytest", "pytest-timeout", "PyYAML"]},
+    extras_require={"test": ["hypothesis", "pytest", "pytest-timeout", "PyYAML"]},
     zip_safe=False,
     maintainer="HASEL swimmer maintainers",
     maintainer_email="maintainers@example.org",

@@ -3,16 +3,16 @@
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from typing import Any
 
 import rclpy
 from hasel_interfaces.msg import Actuation, SupplyState
 from hasel_recording.endpoints import Role, frame_of, publisher, subscription
+from hasel_recording.spinning import BackgroundSpin
 from hasel_recording.topics import COMMAND, NAMESPACE, STATE
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.publisher import Publisher
 from std_srvs.srv import Trigger
 
@@ -34,10 +34,7 @@ class ConsoleLink:
         self._commands: Publisher | None = None
         subscription(self._node, SupplyState, STATE, self._take, Role.SAMPLES)
         self._clients: dict[str, Any] = {}
-        self._executor = SingleThreadedExecutor()
-        self._executor.add_node(self._node)
-        self._thread = threading.Thread(target=self._spin, daemon=True)
-        self._thread.start()
+        self._spin = BackgroundSpin(self._node, "console", owns_context=True)
 
     def state(self) -> SupplyState | None:
         """The last state, if it is of now."""
@@ -90,14 +87,7 @@ class ConsoleLink:
 
     def close(self) -> None:
         """Leave."""
-        self._executor.shutdown()
-        self._thread.join(timeout=2.0)
-        self._node.destroy_node()
-        rclpy.try_shutdown()
-
-    def _spin(self) -> None:
-        with suppress(ExternalShutdownException):
-            self._executor.spin()
+        self._spin.close()
 
     def _take(self, state: SupplyState) -> None:
         self._state, self._heard_s = state, time.monotonic()

@@ -1,16 +1,15 @@
 """Commands and emergency stops on an executor of their own: the main one, with its services, is too slow."""
 
-import threading
 import time
 from collections.abc import Callable
+from functools import partial
 
 import rclpy
 from hasel_interfaces.msg import Actuation
 from hasel_recording.endpoints import Role
-from hasel_recording.spinning import quiet_at_shutdown
+from hasel_recording.spinning import BackgroundSpin
 from hasel_recording.topics import COMMAND, relative
 from rclpy.clock import Clock, ClockType
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
 from hasel_driver.realtime import request_realtime
@@ -36,7 +35,6 @@ class UrgentInputs:
         realtime_priority: int = 0,
     ) -> None:
         self._on_command = on_command
-        self._realtime_priority = realtime_priority
         self._node: Node = rclpy.create_node(
             "hasel_driver_inputs", namespace=namespace, start_parameter_services=False, enable_rosout=False
         )
@@ -46,10 +44,8 @@ class UrgentInputs:
         self.holders = StopHolders()
         self.stop_topic = StopTopic(self._node, self.holders, on_stop)
         self._node.create_timer(ALIVE_PERIOD_S, on_alive, clock=STEADY)
-        self._executor = SingleThreadedExecutor()
-        self._executor.add_node(self._node)
-        self._thread = threading.Thread(target=self._spin, name="inputs", daemon=True)
-        self._thread.start()
+        # whether the priority was granted, the supply's thread tells
+        self._spin = BackgroundSpin(self._node, "inputs", begin=partial(request_realtime, realtime_priority))
 
     @property
     def command_topic(self) -> str:
@@ -62,15 +58,9 @@ class UrgentInputs:
 
     def close(self) -> None:
         """End the thread."""
-        self._executor.shutdown()
-        self._thread.join(timeout=2.0)
+        self._spin.end()
         self.stop_topic.destroy()
-        self._node.destroy_node()
-
-    def _spin(self) -> None:
-        request_realtime(self._realtime_priority)  # whether it was granted, the supply's thread tells
-        with quiet_at_shutdown():
-            self._executor.spin()
+        self._spin.close()
 
     def _take_command(self, command: Actuation) -> None:
         stamp = command.header.stamp

@@ -1,5 +1,9 @@
 """What escapes from rclpy's spin, and what becomes of it."""
 
+import sys
+import threading
+import time
+
 import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
@@ -18,7 +22,7 @@ class FakeRclpy:
     def __init__(self, errors: list[Exception], shut: int) -> None:
         self.errors, self.shut = errors, shut
 
-    def ok(self) -> bool:
+    def ok(self, context=None) -> bool:
         return len(self.errors) > self.shut
 
     def spin(self) -> None:
@@ -53,3 +57,82 @@ def test_another_error_is_not_called_an_illegal_transition(spin):
     """It ends the node, which disarms on its way out."""
     with pytest.raises(RCLError, match="bad allocation"):
         spin(RCLError("bad allocation"), ILLEGAL)
+
+
+@pytest.fixture
+def failures(monkeypatch):
+    """What threads ended with, which take turns often here."""
+    found, usual = [], sys.getswitchinterval()
+    monkeypatch.setattr(threading, "excepthook", lambda failure: found.append(failure.exc_value))
+    sys.setswitchinterval(1e-6)
+    yield found
+    sys.setswitchinterval(usual)
+
+
+def busy_node():
+    """A node with much to look through all the time: rclpy's executor, shut down meanwhile, fails one time in ten."""
+    node = spinning.node_alone("busy")
+    for number in range(60):
+        node.create_timer(100.0 if number else 1e-4, lambda: None)
+    return node
+
+
+def test_a_thread_that_is_busy_ends_without_a_failure(failures):
+    """Again and again, in the middle of whatever rclpy does."""
+    for _ in range(40):
+        node = busy_node()
+        spun = spinning.BackgroundSpin(node, "busy", owns_context=True)
+        time.sleep(0.003)
+        spun.close()
+        assert not node.context.ok()
+    assert failures == []
+
+
+def test_a_thread_that_waits_ends_at_once():
+    """Nothing has to come in for it to notice, and closing again does nothing."""
+    spun = spinning.BackgroundSpin(spinning.node_alone("idle"), "idle", owns_context=True)
+    time.sleep(0.05)
+    begun = time.monotonic()
+    spun.end()
+    spun.close()
+    assert time.monotonic() - begun < spinning.PATIENCE_S
+    assert "idle" not in {thread.name for thread in threading.enumerate()}
+
+
+def test_a_callback_comes_to_its_end_before_the_node_goes():
+    """Whoever closes waits for it."""
+    node = spinning.node_alone("slow")
+    begun, done = threading.Event(), threading.Event()
+
+    def work():
+        begun.set()
+        time.sleep(0.2)
+        done.set()
+
+    node.create_timer(1e-3, work)
+    spun = spinning.BackgroundSpin(node, "slow", owns_context=True)
+    assert begun.wait(20.0)
+    spun.close()
+    assert done.is_set()
+
+
+def test_what_is_called_first_is_called_in_the_thread():
+    """Such as a thread's own priority."""
+    called = []
+    spun = spinning.BackgroundSpin(
+        spinning.node_alone("first"),
+        "first",
+        begin=lambda: called.append(threading.current_thread().name),
+        owns_context=True,
+    )
+    spun.close()
+    assert called == ["first"]
+
+
+def test_a_context_that_was_shut_down_ends_the_thread_quietly(failures):
+    """As Ctrl-C does; closing is then no error either."""
+    node = busy_node()
+    spun = spinning.BackgroundSpin(node, "busy")
+    node.context.try_shutdown()
+    spun.close()
+    assert failures == []

@@ -9,8 +9,8 @@ from diagnostic_msgs.msg import DiagnosticArray
 from hasel_interfaces.msg import RunningError
 from hasel_interfaces.srv import LoadModel
 from hasel_recording.endpoints import Role, subscription
+from hasel_recording.spinning import node_alone
 from hasel_recording.topics import ERROR, NAMESPACE, SIMULATED
-from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 
 from hasel_bringup.demo.processes import Processes
@@ -33,10 +33,8 @@ class LiveError:
         self._last, self._compared = RunningError(), 0
 
     def __enter__(self) -> "LiveError":
-        self._context = Context()
-        rclpy.init(context=self._context, domain_id=self._domain)
-        self._node = rclpy.create_node("hasel_demo", namespace=NAMESPACE, context=self._context)
-        self._executor = SingleThreadedExecutor(context=self._context)
+        self._node = node_alone("hasel_demo", NAMESPACE, self._domain)
+        self._executor = SingleThreadedExecutor(context=self._node.context)
         self._executor.add_node(self._node)
         subscription(self._node, RunningError, ERROR, self._on_error, Role.EVERY_SAMPLE)
         self._node.create_subscription(DiagnosticArray, "/diagnostics", self._on_diagnostics, 10)
@@ -54,7 +52,7 @@ class LiveError:
         self._processes.__exit__()
         self._executor.shutdown()
         self._node.destroy_node()
-        rclpy.try_shutdown(context=self._context)
+        rclpy.try_shutdown(context=self._node.context)
 
     def load(self, model: Path) -> None:
         """Let the running simulator go on with another model. Raises BringupError when it refuses."""

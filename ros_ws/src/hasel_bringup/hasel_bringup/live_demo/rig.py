@@ -1,31 +1,27 @@
 """What an experimenter does with the rig's nodes: services, the action, parameters, and the error on its topic."""
 
-import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
 from typing import Any
 
-import rclpy
 from hasel_interfaces.action import RunExperiment
 from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
 from hasel_recording.endpoints import Role, subscription
+from hasel_recording.spinning import BackgroundSpin, node_alone
 from hasel_recording.topics import ERROR, MEASURED, NAMESPACE, SIMULATED, STATE, relative
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState
 from rcl_interfaces.srv import SetParameters
 from rclpy.action import ActionClient
-from rclpy.context import Context
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.parameter import Parameter
-from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import Trigger
 
 from hasel_bringup.errors import BringupError
 
 _START_S = 120.0
-_ANSWER_S, _IDLE_S = 60.0, 0.5
+_ANSWER_S = 60.0
 _TO_REST = {
     "hasel_driver": (Transition.TRANSITION_DEACTIVATE, Transition.TRANSITION_CLEANUP),
     "hasel_simulator": (Transition.TRANSITION_DEACTIVATE,),
@@ -53,9 +49,7 @@ class Rig:
         self, check: Callable[[], None], domain: int | None = None, namespace: str = NAMESPACE
     ) -> None:
         self._check = check
-        self._context = Context()
-        rclpy.init(context=self._context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
-        self.node = rclpy.create_node("hasel_live_demo", namespace=namespace, context=self._context)
+        self.node = node_alone("hasel_live_demo", namespace, domain)
         self.error = RunningError()
         self.measured = 0
         subscription(self.node, RunningError, ERROR, self._on_error, Role.EVERY_SAMPLE)
@@ -64,11 +58,7 @@ class Rig:
         subscription(self.node, SupplyState, STATE, self._on_state, Role.SAMPLES)
         self._actions = ActionClient(self.node, RunExperiment, "run_experiment")
         self._clients: dict[str, Any] = {}
-        self._executor = SingleThreadedExecutor(context=self._context)
-        self._executor.add_node(self.node)
-        self._closing = threading.Event()
-        self._thread = threading.Thread(target=self._spin, name="rig", daemon=True)
-        self._thread.start()
+        self._spin = BackgroundSpin(self.node, "rig", owns_context=True)
 
     @property
     def error_topic(self) -> str:
@@ -77,12 +67,7 @@ class Rig:
 
     def close(self) -> None:
         """Leave the graph."""
-        self._closing.set()
-        self._executor.wake()
-        self._thread.join(timeout=5.0)
-        self._executor.shutdown()
-        self.node.destroy_node()
-        rclpy.try_shutdown(context=self._context)
+        self._spin.close()
 
     def await_nodes(self) -> None:
         """Wait until everybody hears everybody. Raises BringupError when that does not happen."""
@@ -197,8 +182,3 @@ class Rig:
 
     def _on_state(self, state: SupplyState) -> None:
         self.state = state
-
-    def _spin(self) -> None:
-        with suppress(ExternalShutdownException):
-            while not self._closing.is_set():
-                self._executor.spin_once(timeout_sec=_IDLE_S)

@@ -10,6 +10,8 @@ from hasel_sim.model import Model
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 
+from hasel_bringup.camera_clock import CameraClock
+
 
 @dataclass(frozen=True)
 class Exposure:
@@ -29,36 +31,30 @@ class FilmedSwimmer:
         self, model: Model, frame_rate: float, ripple: float, generator: np.random.Generator
     ) -> None:
         self._live = LiveSimulator(model)
-        self._period_ns = round(1e9 / frame_rate)
+        self._clock = CameraClock(frame_rate)
         self._ripple, self._generator = ripple, generator
         self.put_back()
 
     def put_back(self) -> None:
         """Lay the swimmer straight and still in the middle of the picture, as is done between two runs."""
         self._live.restart()
-        self._last_ns: int | None = None
-        self._next_ns = 0
-        self._voltage = np.zeros(2)
+        self._clock.end()
         self._middle = self._live.markers.mean(axis=0)
 
     def state(self, stamp_ns: int, voltage: np.ndarray) -> list[Exposure]:
-        """The exposures up to a state; its voltage [V] holds from its stamp [ns] on. One out of order is ignored."""
-        if self._last_ns is None:
+        """The exposures since the last state; this one's voltage [V] holds from its stamp [ns] on.
+
+        The first state begins the run, and one that comes late is ignored.
+        """
+        if self._clock.newest_ns is None:
             self._live.receive(stamp_ns, voltage)
-            self._last_ns, self._next_ns = stamp_ns, stamp_ns + self._period_ns
-            self._voltage = voltage
+            self._clock.begin(stamp_ns, voltage)
             return []
         exposures = []
-        while self._next_ns < stamp_ns:
-            if self._next_ns > self._last_ns:
-                self._live.receive(self._next_ns, self._voltage)
-                self._last_ns = self._next_ns
-            exposures.append(Exposure(self._next_ns, self._seen()))
-            self._next_ns += self._period_ns
-        self._voltage = voltage
-        if stamp_ns > self._last_ns:
-            self._live.receive(stamp_ns, voltage)
-            self._last_ns = stamp_ns
+        for instant in self._clock.until(stamp_ns, voltage):
+            self._live.receive(instant.stamp_ns, instant.voltage)
+            if instant.is_frame:
+                exposures.append(Exposure(instant.stamp_ns, self._seen()))
         return exposures
 
     def film(self, states: Sequence[tuple[int, np.ndarray]]) -> list[Exposure]:
@@ -67,7 +63,7 @@ class FilmedSwimmer:
         if len(kept) < 2:
             return []
         origin_ns, until_ns = kept[0][0], kept[-1][0]
-        stamps = np.arange(origin_ns + self._period_ns, until_ns, self._period_ns)
+        stamps = self._clock.frames(origin_ns, until_ns)[1:]
         if len(stamps) == 0:
             return []
         schedule = DriveSchedule(

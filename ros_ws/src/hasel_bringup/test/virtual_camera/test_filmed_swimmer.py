@@ -24,26 +24,41 @@ def swimmer() -> FilmedSwimmer:
     return FilmedSwimmer(model, 120.0, 0.0, np.random.default_rng(0))
 
 
+def one_by_one(swimmer, taken) -> list:
+    """Exposures as the states come."""
+    return [exposure for stamp, voltage in taken for exposure in swimmer.state(stamp, voltage)]
+
+
+def film(swimmer, taken) -> list:
+    """Exposures of the whole run."""
+    return swimmer.film(taken)
+
+
 def test_a_run_filmed_as_a_whole_shows_what_was_seen_step_by_step(swimmer):
     """The same stamps, and the markers in the same places to a hundredth of their motion."""
-    one_by_one = [exposure for stamp, voltage in states() for exposure in swimmer.state(stamp, voltage)]
+    seen = one_by_one(swimmer, states())
     swimmer.put_back()
-    filmed = swimmer.film(states())
-    assert [each.stamp_ns for each in filmed] == [each.stamp_ns for each in one_by_one]
-    difference = np.array([a.markers - b.markers for a, b in zip(filmed, one_by_one, strict=True)])
+    filmed = film(swimmer, states())
+    assert [each.stamp_ns for each in filmed] == [each.stamp_ns for each in seen]
+    difference = np.array([a.markers - b.markers for a, b in zip(filmed, seen, strict=True)])
     motion = np.array([each.markers for each in filmed])
     assert np.abs(difference).max() < 0.01 * np.ptp(motion[..., 1])
 
 
-def test_states_that_come_twice_or_late_are_left_out(swimmer):
-    """As when they are taken one by one."""
-    expected = swimmer.film(states())
+def places(exposures) -> list:
+    """Stamps and markers."""
+    return [(each.stamp_ns, each.markers.tolist()) for each in exposures]
+
+
+@pytest.mark.parametrize("by", [film, one_by_one])
+def test_states_that_come_twice_or_late_are_left_out(swimmer, by):
+    """Their voltage too: an old one does not come into force again."""
+    expected = places(by(swimmer, states()))
     disturbed = states()
     disturbed.insert(12, disturbed[4])
     disturbed.insert(20, disturbed[19])
-    assert [each.markers.tolist() for each in swimmer.film(disturbed)] == [
-        e.markers.tolist() for e in expected
-    ]
+    swimmer.put_back()
+    assert places(by(swimmer, disturbed)) == expected
 
 
 def test_a_run_without_states_has_no_pictures(swimmer):

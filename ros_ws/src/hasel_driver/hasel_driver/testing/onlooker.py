@@ -4,27 +4,24 @@ import time
 
 import rclpy
 from hasel_interfaces.msg import SupplyState
-from rclpy.context import Context
+from hasel_recording.spinning import node_alone
 from rclpy.executors import SingleThreadedExecutor
-from rclpy.signals import SignalHandlerOptions
 
 PATIENCE_S = 10.0
 
 
 def look_on() -> None:
     """Join with a context of its own until it has heard `/hasel/state`, as `ros2 topic echo --once` does."""
-    context = Context()
-    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
     heard: list[SupplyState] = []
-    node = rclpy.create_node("onlooker", context=context)
+    node = node_alone("onlooker")
     node.create_subscription(SupplyState, "/hasel/state", heard.append, 10)
-    executor = SingleThreadedExecutor(context=context)
+    executor = SingleThreadedExecutor(context=node.context)
     executor.add_node(node)
     end_s = time.monotonic() + PATIENCE_S
     while not heard and time.monotonic() < end_s:
         executor.spin_once(timeout_sec=0.1)
     executor.shutdown()
     node.destroy_node()
-    rclpy.try_shutdown(context=context)
+    rclpy.try_shutdown(context=node.context)
     if not heard:
         raise AssertionError(f"nothing was heard within {PATIENCE_S} s")

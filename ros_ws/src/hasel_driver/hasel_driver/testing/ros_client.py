@@ -7,16 +7,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
-import rclpy
 from hasel_interfaces.msg import Actuation, SupplyState
+from hasel_recording.spinning import BackgroundSpin, node_alone
 from lifecycle_msgs.msg import State, Transition
 from lifecycle_msgs.srv import ChangeState, GetState
-from rclpy.context import Context
 from rclpy.duration import Duration
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
@@ -36,24 +33,15 @@ class RosClient:
     """For some tests; `states` collects `/hasel/state` and may be cleared, `heard` keeps the last."""
 
     def __init__(self) -> None:
-        # A context of its own: other tests of the same process make theirs. The signal handlers are the test runner's.
-        self._context = Context()
-        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
-        self.node = rclpy.create_node("user", context=self._context)
+        # Alone: other tests of the same process make contexts of theirs, and the signals are the test runner's.
+        self.node = node_alone("user")
         self.states: list[SupplyState] = []
         self.heard: deque[SupplyState] = deque(maxlen=10_000)
         self.node.create_subscription(SupplyState, "/hasel/state", self._take_state, 200)
         self.commands = self.node.create_publisher(Actuation, "/hasel/command", 100)
         self._stop: Any = None
         self._clients: dict[str, Any] = {}
-        self._executor = SingleThreadedExecutor(context=self._context)
-        self._executor.add_node(self.node)
-        self._thread = threading.Thread(target=self._spin, daemon=True)
-        self._thread.start()
-
-    def _spin(self) -> None:
-        with suppress(ExternalShutdownException):
-            self._executor.spin()
+        self._spin = BackgroundSpin(self.node, "user", owns_context=True)
 
     def _take_state(self, state: SupplyState) -> None:
         self.states.append(state)
@@ -61,10 +49,7 @@ class RosClient:
 
     def close(self) -> None:
         """Leave the graph."""
-        self._executor.shutdown()
-        self._thread.join(timeout=5.0)
-        self.node.destroy_node()
-        rclpy.try_shutdown(context=self._context)
+        self._spin.close()
 
     def _client(self, kind: type, name: str) -> Any:
         if name not in self._clients:
@@ -194,25 +179,12 @@ class RosClient:
 @contextmanager
 def another_node(name: str) -> Iterator[Node]:
     """A node in a context of its own, as of another process, spun in the background."""
-    context = Context()
-    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
-    node = rclpy.create_node(name, context=context)
-    executor = SingleThreadedExecutor(context=context)
-    executor.add_node(node)
-
-    def spin() -> None:
-        with suppress(ExternalShutdownException):
-            executor.spin()
-
-    thread = threading.Thread(target=spin, daemon=True)
-    thread.start()
+    node = node_alone(name)
+    spin = BackgroundSpin(node, name, owns_context=True)
     try:
         yield node
     finally:
-        executor.shutdown()
-        thread.join(timeout=5.0)
-        node.destroy_node()
-        rclpy.try_shutdown(context=context)
+        spin.close()
 
 
 def _stamp_s(state: SupplyState) -> float:

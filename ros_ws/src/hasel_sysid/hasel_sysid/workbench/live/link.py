@@ -1,31 +1,26 @@
 """The node of the workbench, spun in a thread of its own: hears the rig, asks its services."""
 
 import asyncio
-import threading
 import time
 from collections.abc import Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-import rclpy
 from hasel_interfaces.action import RunExperiment
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_interfaces.srv import LoadModel
 from hasel_recording.endpoints import Role, subscription
+from hasel_recording.spinning import BackgroundSpin, node_alone
 from hasel_recording.topics import MEASURED, SIMULATED, STATE
 from hasel_sim.simulator_messages import rig_voltage, to_nanoseconds
 from rclpy.action import ActionClient
-from rclpy.context import Context
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
-from rclpy.signals import SignalHandlerOptions
 from std_srvs.srv import Trigger
 
 from hasel_sysid.errors import SysidError
 from hasel_sysid.workbench.evaluate import Progress
 from hasel_sysid.workbench.live.stream import KINDS, LiveStream
 
-_STOP_S, _ANSWER_S, _LOOK_S, _IDLE_S = 1.0, 30.0, 0.05, 0.5
+_STOP_S, _ANSWER_S, _LOOK_S = 1.0, 30.0, 0.05
 
 
 class RigLink:
@@ -37,29 +32,18 @@ class RigLink:
         self.state: SupplyState | None = None
         self.heard_at = dict.fromkeys(KINDS, float("-inf"))
         self._stream = stream
-        self._context = Context()
-        rclpy.init(context=self._context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
-        self._node = rclpy.create_node("hasel_workbench", namespace=namespace, context=self._context)
+        self._node = node_alone("hasel_workbench", namespace, domain)
         subscription(self._node, SupplyState, STATE, self._on_state, Role.SAMPLES)
         subscription(self._node, BendingAngle, MEASURED, self._on_measured, Role.SAMPLES)
         subscription(self._node, BendingAngle, SIMULATED, self._on_simulated, Role.SAMPLES)
         self._stop = self._node.create_client(Trigger, "emergency_stop")
         self._load = self._node.create_client(LoadModel, "load_model")
         self._experiments = ActionClient(self._node, RunExperiment, "run_experiment")
-        self._executor = SingleThreadedExecutor(context=self._context)
-        self._executor.add_node(self._node)
-        self._closing = threading.Event()
-        self._thread = threading.Thread(target=self._spin, name="rig", daemon=True)
-        self._thread.start()
+        self._spin = BackgroundSpin(self._node, "rig", owns_context=True)
 
     def close(self) -> None:
         """Leave the graph."""
-        self._closing.set()
-        self._executor.wake()
-        self._thread.join(timeout=5.0)
-        self._executor.shutdown()
-        self._node.destroy_node()
-        rclpy.try_shutdown(context=self._context)
+        self._spin.close()
 
     @property
     def has_simulator(self) -> bool:
@@ -135,8 +119,3 @@ class RigLink:
     def _on_simulated(self, message: BendingAngle) -> None:
         self.heard_at["simulated"] = time.monotonic()
         self._stream.simulated(to_nanoseconds(message.header.stamp), message.sin_theta)
-
-    def _spin(self) -> None:
-        with suppress(ExternalShutdownException):
-            while not self._closing.is_set():
-                self._executor.spin_once(timeout_sec=_IDLE_S)
