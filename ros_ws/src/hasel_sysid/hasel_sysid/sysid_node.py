@@ -27,7 +27,7 @@ from hasel_sysid.live.epochs import Epochs, StreamEpoch
 from hasel_sysid.live.fitting import chosen_recordings, diagnose_recordings, fit_recordings, status
 from hasel_sysid.live.heard import Heard
 from hasel_sysid.live.pairing import Pair, Pairing
-from hasel_sysid.live.running_error import DriveStarts, RunningErrors
+from hasel_sysid.live.running_error import RunningErrors
 from hasel_sysid.sysid_messages import diagnosis_message, diagnostics, error_message, fit_message
 from hasel_sysid.sysid_parameters import PARAMETERS
 
@@ -42,7 +42,7 @@ class SysidNode(Node):
         epochs = Epochs()
         self._epoch = {topic: StreamEpoch(epochs, late) for topic in (STATE, MEASURED, SIMULATED)}
         self._pairing, self._heard = Pairing(gap), Heard(reset)
-        self._errors, self._starts = RunningErrors(reset, window), DriveStarts()
+        self._errors = RunningErrors(reset, window)
         self._latest: running_error.RunningError | None = None
         self._pairs, self._busy, self._doing = 0, threading.Lock(), ""
         self._frame_id = frame_of(self, self._value("frame_id"))
@@ -77,8 +77,7 @@ class SysidNode(Node):
         stamp = to_nanoseconds(message.header.stamp)
         epoch, voltage = self._epoch[STATE].of(stamp), tuple(rig_voltage(message))
         self._heard.state(epoch, stamp, voltage)
-        if self._starts.begins(epoch, stamp, voltage):
-            self._errors.begin(epoch, stamp)
+        self._errors.state(epoch, stamp, voltage)
 
     def _on_measured(self, message: BendingAngle) -> None:
         stamp = to_nanoseconds(message.header.stamp)

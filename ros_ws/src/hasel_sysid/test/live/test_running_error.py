@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sysid.live.pairing import Pair
-from hasel_sysid.live.running_error import DriveStarts, RunningErrors
+from hasel_sysid.live.running_error import RunningErrors
 
 _FRAME = 10_000_000
 
@@ -46,18 +46,40 @@ def test_a_better_model_shows_in_the_window_at_once():
 
 def test_driving_after_a_rest_begins_a_new_run():
     """The driver's states go on between two experiments: no gap, no step back, only a rest at 0 V."""
-    errors, starts = RunningErrors(reset=2.0, window=5.0), DriveStarts()
+    errors = RunningErrors(reset=2.0, window=5.0)
     counts = []
     for n in range(1000):
         driven = n < 300 or n >= 700
         stamp = n * _FRAME
-        if starts.begins(0, stamp, (5000.0 * driven * (n % 50 < 25), 0.0)):
-            errors.begin(0, stamp)
+        errors.state(0, stamp, (5000.0 * driven * (n % 50 < 25), 0.0))
         counts.append(errors.add(Pair(0, stamp, 0.0, 1.0)).count)
-    assert counts[:700] == list(range(1, 701))
+    ended = 275 + 100  # the last stroke, and what rings after it
+    assert counts[:700] == list(range(1, ended + 2)) + [ended + 1] * (699 - ended)
     assert counts[700:] == list(range(1, 301))
 
 
-def test_an_unknown_voltage_begins_no_run():
-    """A supply in FAULT says NaN."""
-    assert not DriveStarts().begins(0, 0, (float("nan"), 0.0))
+def test_rest_does_not_make_the_error_smaller():
+    """The error of a run stays while the body rests after it; the difference is that of each frame."""
+    errors = RunningErrors(reset=2.0, window=1.0)
+    for n in range(1500):
+        swing = 0.1 * (-1) ** n * (n < 200)
+        errors.state(0, n * _FRAME, (5000.0 * (n < 200), 0.0))
+        error = errors.add(Pair(0, n * _FRAME, 0.0, swing))
+        if n == 300:
+            at_its_end = error
+    assert (error.mean_absolute, error.recent, error.count) == (
+        at_its_end.mean_absolute,
+        at_its_end.recent,
+        301,
+    )
+    assert error.mean_absolute == pytest.approx(0.1 * 200 / 301, rel=0.01)
+    assert error.difference == 0.0
+
+
+def test_a_body_that_is_never_driven_is_never_at_rest():
+    """It swings by itself, until the recording ends."""
+    errors = RunningErrors(reset=2.0, window=1.0)
+    for n in range(500):
+        errors.state(0, n * _FRAME, (0.0, 0.0))
+        error = errors.add(Pair(0, n * _FRAME, 0.0, 1.0))
+    assert error.count == 500

@@ -128,6 +128,21 @@ def test_the_error_is_published_for_every_frame(talk, recording):
     assert talk.errors[-1].count == 61
 
 
+def test_rest_does_not_make_the_published_error_smaller(talk):
+    """Half a second of drive, then ten of rest: the error is that of the run and of the second after it."""
+    time_s = np.arange(1260) / 120
+    driven = time_s < 0.5
+    measured = 0.1 * np.sin(50 * time_s) * driven
+    voltage = np.stack([4500.0 * driven, np.zeros(len(time_s))], axis=1)
+    talk.say(Recording("rests", time_s, measured, voltage), 1.2 * measured)
+    talk.until(lambda: len(talk.errors) == len(time_s))
+    last, of_the_run = talk.errors[-1], time_s <= 1.5
+    assert last.count == of_the_run.sum()
+    difference = 0.2 * measured[of_the_run]
+    assert last.mean_absolute_error == pytest.approx(np.abs(difference - difference.mean()).mean())
+    assert last.difference == 0.0
+
+
 @pytest.fixture
 def held_fit(monkeypatch):
     """The events that a fit has `begun`, and that it may be `answered`; until then it is held back."""

@@ -8,11 +8,10 @@ from pathlib import Path
 import numpy as np
 from hasel_recording import Recording, write_recording
 
-from hasel_sysid.live.driven_parts import AFTER_S
 from hasel_sysid.live.epochs import Epochs, StreamEpoch
 from hasel_sysid.live.heard import Heard
-from hasel_sysid.live.pairing import Pair, Pairing
-from hasel_sysid.live.running_error import DriveStarts, RunningError, RunningErrors
+from hasel_sysid.live.pairing import Pairing
+from hasel_sysid.live.running_error import RunningError, RunningErrors
 
 _LATE_S, _GAP_S, _RESET_S = 0.5, 0.1, 2.0
 WINDOW_S = 5.0
@@ -35,9 +34,8 @@ class LiveStream:
         }
         self.count = dict.fromkeys(KINDS, 0)
         self._pairing, self._heard = Pairing(_GAP_S), Heard(_RESET_S)
-        self._errors, self._starts = RunningErrors(_RESET_S, WINDOW_S), DriveStarts()
+        self._errors = RunningErrors(_RESET_S, WINDOW_S)
         self._origin: int | None = None
-        self._driven: tuple[int, int] | None = None
         self._lock = threading.Lock()
         self.error: RunningError | None = None
 
@@ -46,10 +44,7 @@ class LiveStream:
         with self._lock:
             epoch = self._epoch["voltage"].of(stamp_ns)
             self._heard.state(epoch, stamp_ns, voltage)
-            if any(abs(each) > 0 for each in voltage):
-                self._driven = epoch, stamp_ns
-            if self._starts.begins(epoch, stamp_ns, voltage):
-                self._errors.begin(epoch, stamp_ns)
+            self._errors.state(epoch, stamp_ns, voltage)
             self._add("voltage", stamp_ns, *voltage)
 
     def measured(self, stamp_ns: int, sin_theta: float) -> None:
@@ -101,12 +96,4 @@ class LiveStream:
 
     def _paired(self, pairs) -> None:
         for pair in pairs:
-            if not self._is_at_rest(pair):
-                self.error = self._errors.add(pair)
-
-    def _is_at_rest(self, pair: Pair) -> bool:
-        """Whether the run is over: waiting would make its error smaller."""
-        if self._driven is None:
-            return False
-        epoch, stamp_ns = self._driven
-        return pair.epoch == epoch and pair.stamp_ns > stamp_ns + AFTER_S * 1e9
+            self.error = self._errors.add(pair)
