@@ -37,10 +37,7 @@ class TimeLeft(ProgressColumn):
 
 @contextmanager
 def progress_bar(title: str) -> Iterator[Show]:
-    """A bar on stderr; call what it gives with a line of text and the share done, 0 to 1.
-
-    It never goes back, where a step turns out to be longer than was thought.
-    """
+    """A bar on stderr that never goes back; call what it gives with a line of text and the share done, 0 to 1."""
     console = Console(stderr=True)
     columns = (
         TextColumn("{task.description}"),
@@ -51,12 +48,19 @@ def progress_bar(title: str) -> Iterator[Show]:
     )
     with Progress(*columns, console=console, transient=not console.is_terminal) as bar:
         task = bar.add_task(title, total=1.0)
+        yield never_back(lambda text, share: bar.update(task, description=text, completed=share))
 
-        def show(text: str, share: float) -> None:
-            done = max(bar.tasks[0].completed, min(share, 1.0))
-            bar.update(task, description=text, completed=done)
 
-        yield show
+def never_back(progress: Show) -> Show:
+    """Shares that only grow, up to 1: a step that turns out to be longer than was thought stays where it is."""
+    done = 0.0
+
+    def show(text: str, share: float) -> None:
+        nonlocal done
+        done = max(done, min(share, 1.0))
+        progress(text, done)
+
+    return show
 
 
 def part(progress: Show, title: str, begin: float, end: float) -> Show:

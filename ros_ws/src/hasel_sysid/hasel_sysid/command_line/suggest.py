@@ -3,6 +3,7 @@
 import argparse
 import sys
 from collections.abc import Sequence
+from functools import partial
 
 from hasel_recording import HASEL_PAIR
 from hasel_sim.model import Model
@@ -19,7 +20,7 @@ from hasel_sysid.drive_match import drive_unit
 from hasel_sysid.errors import SysidError
 from hasel_sysid.fit import fit_from_afar
 from hasel_sysid.problem import Problem
-from hasel_sysid.suggest import Suggestion, rivals, suggest
+from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest
 
 GOAL_FILE = "suggested_run.yaml"
 _SHOWN = 5
@@ -40,13 +41,14 @@ def _suggest(options: argparse.Namespace) -> None:
     given = load_inputs(options)
     with executor(options.jobs, options.scheduler) as pool, progress_bar("suggest") as progress:
         problem = Problem(given.experiments, pool, given.noise)
+        named = any(not name.startswith("+") for name in options.effects or ())
         fit = fit_from_afar(problem, given.model, lambda text, share: progress(text, 0.15 * share))
         found = diagnose(
             problem, fit, options.effects, lambda text, share: progress(text, 0.15 + 0.6 * share)
         )
         ranked = suggest(
             pool,
-            rivals(problem, found, named=any(not name.startswith("+") for name in options.effects or ())),
+            rivals(found, partial(fitted_briefly, problem) if named else None),
             found.noise,
             _highest(options.max_level, given.model),
             lambda text, share: progress(text, 0.75 + 0.25 * share),

@@ -1,6 +1,6 @@
 """Which explanations are to be told apart."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from hasel_sim.errors import HaselSimError
 from hasel_sim.model import Model
@@ -14,15 +14,15 @@ _BRIEF = 8
 """Evaluations for a fit of what the diagnosis did not think worth one."""
 
 
-def rivals(problem: Problem, diagnosis: Diagnosis, named: bool = False) -> dict[str, Model]:
+def rivals(diagnosis: Diagnosis, fit: Callable[[Model], Model] | None = None) -> dict[str, Model]:
     """The refitted models of the explanations that are still in the running, at least two, by effect.
 
-    named: somebody asked for these effects; where one alone is in the running, the next of the ranking is compared
-    with it all the same. Raises SysidError when there are not two to tell apart.
+    fit: where somebody asked for these effects and one alone is in the running, this fits the next of the ranking, to
+    be compared with it all the same. Raises SysidError when there are not two to tell apart.
     """
     fitted = _refitted(diagnosis)
-    if named:
-        fitted = _at_least_two(problem, diagnosis, fitted)
+    if fit is not None:
+        fitted = _at_least_two(fit, diagnosis, fitted)
     if len(fitted) < 2:
         raise SysidError(
             "fewer than two explanations are left, so there is nothing to tell apart; "
@@ -47,15 +47,21 @@ def _refitted(diagnosis: Diagnosis) -> dict[str, Model]:
     return {finding.effect: finding.fit.model for finding in diagnosis.findings if finding.fit is not None}
 
 
-def _at_least_two(problem: Problem, diagnosis: Diagnosis, fitted: dict[str, Model]) -> dict[str, Model]:
+def fitted_briefly(problem: Problem, model: Model) -> Model:
+    """A model fitted to the runs of a problem, as far as a few evaluations lead."""
+    return fit_least_squares(problem, model, most_evaluations=_BRIEF, drafts=False).model
+
+
+def _at_least_two(
+    fit: Callable[[Model], Model], diagnosis: Diagnosis, fitted: dict[str, Model]
+) -> dict[str, Model]:
     found = dict(fitted)
     rest = [finding.effect for finding in diagnosis.findings if finding.effect not in fitted]
     for effect in rest:
         if len(found) >= 2:
             break
         try:
-            model = with_effect(diagnosis.context.fit.model, diagnosis, effect)
-            found[effect] = fit_least_squares(problem, model, most_evaluations=_BRIEF, drafts=False).model
+            found[effect] = fit(with_effect(diagnosis.context.fit.model, diagnosis, effect))
         except HaselSimError:
             continue
     return found

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
+from functools import partial
 
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
@@ -12,7 +13,7 @@ from hasel_sysid.diagnosis import Diagnosis, diagnose
 from hasel_sysid.errors import SysidError
 from hasel_sysid.fit import identify
 from hasel_sysid.fit.result import FitResult
-from hasel_sysid.suggest import Suggestion, rivals, suggest
+from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest
 from hasel_sysid.workbench.cards import source_of
 from hasel_sysid.workbench.evaluate import Progress, WatchedProblem, evaluated
 from hasel_sysid.workbench.state import State
@@ -99,7 +100,7 @@ def suggestions(state: State, pool: Executor, progress: Progress) -> tuple[Sugge
     if state.diagnosis is None:
         raise SysidError("nothing was diagnosed so far; expected a ranking to decide about: diagnose first")
     problem = WatchedProblem(state.experiments, pool, lambda: progress("explanations", 0.0))
-    candidates = rivals(problem, state.diagnosis, named=True)
+    candidates = rivals(state.diagnosis, partial(fitted_briefly, problem))
     highest = max(state.current.model.levels, default=0.0)
     found = suggest(pool, candidates, state.diagnosis.noise, float(highest), progress, brief=True)
     if not found:

@@ -1,40 +1,41 @@
 """A fit as a user asks for it."""
 
-import sys
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
+from hasel_sim.errors import SimulationError
 from hasel_sim.model import load_model
 from hasel_sysid.errors import SysidError
 from hasel_sysid.fit import METHODS, identify
 from hasel_sysid.fit.result import FitResult
+from hasel_sysid.testing.made_up_runs import made_up_evaluation
 
 NAME = "current_limit.inverse_rate"
 
 
 @pytest.fixture
 def method(monkeypatch):
-    """A method that moves nothing: it only tells how good a start is; and no finer numerics."""
+    """A method that moves nothing: it only tells how good a start is."""
 
     def install(squares):
         def stay(problem, model, progress):
             value = model.values[NAME]
             residual = np.array([np.sqrt(squares(value))])
-            evaluation = SimpleNamespace(
-                names=(NAME,),
-                residual=residual,
-                sum_of_squares=float(residual @ residual),
-                jacobian=np.zeros((1, 1)),
-            )
+            evaluation = made_up_evaluation(residual[None], np.zeros(1), names=(NAME,), model=model)
             at_bound = (NAME,) if value == 0 else ()
             return FitResult(model, evaluation, at_bound, (), 1, "nothing")
 
         monkeypatch.setitem(METHODS, "least_squares", stay)
-        module = sys.modules["hasel_sysid.fit.identify"]
-        monkeypatch.setattr(module, "changes_by_refinement", lambda problem, base: {})
 
     return install
+
+
+class Unsimulated:
+    """A problem of which nothing can be simulated on finer numerics either."""
+
+    @staticmethod
+    def evaluate_each(models, names):
+        """What comes of it, model by model."""
+        return [SimulationError("too fine") for _ in models]
 
 
 @pytest.fixture
@@ -46,13 +47,13 @@ def added():
 def test_an_effect_that_sleeps_at_its_null_is_tried_from_its_typical_size(method, added):
     """The better of the two is kept."""
     method(lambda value: 1.0 if value == 0 else 0.2)
-    assert identify(None, added, "least_squares").model.values[NAME] == pytest.approx(2e-5)
+    assert identify(Unsimulated(), added, "least_squares").model.values[NAME] == pytest.approx(2e-5)
 
 
 def test_an_effect_that_is_not_there_stays_out(method, added):
     """From its typical size it fits worse."""
     method(lambda value: 0.2 if value == 0 else 1.0)
-    assert identify(None, added, "least_squares").model.values[NAME] == 0.0
+    assert identify(Unsimulated(), added, "least_squares").model.values[NAME] == 0.0
 
 
 def test_an_unknown_method_is_refused_with_the_nearest_name(added):

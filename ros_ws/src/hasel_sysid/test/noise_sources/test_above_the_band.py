@@ -1,11 +1,10 @@
 """An upper bound of the noise where a model is badly wrong."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.noise_sources.above_the_band import noise_above_the_band
+from hasel_sysid.testing.made_up_runs import made_up_evaluation
 
 TIME = np.arange(0, 4.0, 1 / 120)
 
@@ -14,15 +13,7 @@ def evaluation(missed, truth, seed):
     """Four runs of a body that swings at 2 Hz; the model misses `missed`."""
     runs = np.repeat(np.arange(4), len(TIME))
     noise = truth.sample(runs, 1, np.random.default_rng(seed))[:, 0]
-    simulated = np.tile(0.2 * np.sin(4 * np.pi * TIME), 4)
-    run = SimpleNamespace(run=SimpleNamespace(time=TIME))
-    return SimpleNamespace(
-        residual=noise + np.tile(missed, 4),
-        runs=runs,
-        simulations=[run] * 4,
-        frames=[np.ones(len(TIME), dtype=bool)] * 4,
-        simulated=lambda: simulated,
-    )
+    return made_up_evaluation(noise.reshape(4, -1) + missed, TIME, simulated=0.2 * np.sin(4 * np.pi * TIME))
 
 
 @pytest.mark.parametrize("missed", [0.0, 0.15])

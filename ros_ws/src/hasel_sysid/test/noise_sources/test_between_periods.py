@@ -1,12 +1,11 @@
 """Noise from what differs between periods of the drive."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.noise_sources.between_periods import noise_between_periods
+from hasel_sysid.testing.made_up_runs import made_up_evaluation
 
 TIME = np.arange(0, 4.0, 1 / 120)
 TRUTH = NoiseModel(white=4e-6, coloured=5e-6, correlation=0.9)
@@ -20,16 +19,11 @@ def box(frequency: float) -> DriveSchedule:
 
 
 def evaluation(missed, schedules, seed=0):
-    """Six runs with noise and what a model misses at every time."""
+    """Runs with noise and what a model misses at every time."""
     runs = np.repeat(np.arange(len(schedules)), len(TIME))
     noise = TRUTH.sample(runs, 1, np.random.default_rng(seed))[:, 0]
-    return SimpleNamespace(
-        residual=noise + np.tile(np.broadcast_to(missed, TIME.shape), len(schedules)),
-        jacobian=np.tile(np.sin(TIME)[:, None], (len(schedules), 1)),
-        runs=runs,
-        simulations=[SimpleNamespace(run=SimpleNamespace(time=TIME, schedule=s)) for s in schedules],
-        frames=[np.ones(len(TIME), dtype=bool)] * len(schedules),
-    )
+    residual = noise.reshape(len(schedules), -1) + missed
+    return made_up_evaluation(residual, TIME, schedules, jacobian=np.sin(TIME)[:, None], names=("size",))
 
 
 @pytest.mark.parametrize("missed", [0.0, 0.02])

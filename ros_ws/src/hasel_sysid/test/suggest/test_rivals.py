@@ -1,52 +1,70 @@
 """Which explanations a run is to tell apart."""
 
-import importlib
-from types import SimpleNamespace
+from dataclasses import dataclass
 
 import pytest
 from hasel_sim.errors import SimulationError
+from hasel_sim.model import Model, load_model
+from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict
 from hasel_sysid.errors import SysidError
+from hasel_sysid.fit.result import FitResult
+from hasel_sysid.noise import NoiseModel
 from hasel_sysid.suggest import in_doubt, rivals
-
-module = importlib.import_module("hasel_sysid.suggest.rivals")
-
-
-def finding(effect, fitted=True):
-    """A finding with or without a refitted model, of which only the name matters here."""
-    return SimpleNamespace(effect=effect, fit=SimpleNamespace(model=f"with {effect}") if fitted else None)
+from hasel_sysid.testing.made_up_runs import made_up_fit
 
 
-def diagnosis(*findings, groups=()):
-    """What a diagnosis found, most probable first."""
-    baseline = SimpleNamespace(fit=SimpleNamespace(model="baseline"))
-    return SimpleNamespace(findings=list(findings), groups=list(groups), context=baseline)
+@dataclass
+class Baseline:
+    """Of a diagnosis's context, what a further explanation begins with."""
+
+    fit: FitResult
 
 
-LAGS = diagnosis(finding("charging_lag"), finding("hydraulic_lag", False), finding("current_limit", False))
+@pytest.fixture(scope="module")
+def swimmer() -> Model:
+    """At one voltage."""
+    return load_model("swimmer").with_levels([4500.0])
 
 
 @pytest.fixture
-def hopeless(monkeypatch):
-    """Fits that are asked for succeed, but for these effects."""
-    effects = set()
+def diagnosis(swimmer):
+    """Make what a diagnosis found, most probable first: effects with a refitted model (True), and those without."""
 
-    def fitted(_problem, model, **_options):
-        if model.split()[-1] in effects:
+    def make(effects: dict[str, bool], groups=()) -> Diagnosis:
+        findings = [
+            Finding(
+                *(effect, Verdict.MISSING, 0.5, 0.5, {}, {}, 0.0, 0.0),
+                fit=made_up_fit(swimmer.with_effects(effect), 0.01) if fitted else None,
+            )
+            for effect, fitted in effects.items()
+        ]
+        noise, baseline = NoiseModel(9e-6, 0.0, 0.5, "a test"), Baseline(made_up_fit(swimmer, 0.02))
+        return Diagnosis(findings, list(groups), noise, 0.0, 0.98, 0.99, 0.02, context=baseline)
+
+    return make
+
+
+@pytest.fixture
+def lags(diagnosis):
+    """One is in the running."""
+    return diagnosis({"charging_lag": True, "hydraulic_lag": False, "current_limit": False})
+
+
+def fit_but(*hopeless):
+    """A fit that leaves the model as it is, but for those with one of these effects."""
+
+    def fit(model):
+        if model.effects[-1].id in hopeless:
             raise SimulationError("too stiff to follow")
-        return SimpleNamespace(model=model)
+        return model
 
-    monkeypatch.setattr(module, "fit_least_squares", fitted)
-    monkeypatch.setattr(module, "with_effect", lambda model, found, effect: f"{model} and {effect}")
-    return effects
+    return fit
 
 
-def test_in_doubt_is_what_looks_like_the_accepted_effect():
+def test_in_doubt_is_what_looks_like_the_accepted_effect(diagnosis):
     """Only refitted members of its group; with nothing accepted, all that were refitted."""
     found = diagnosis(
-        finding("linear_drag"),
-        finding("quadratic_drag"),
-        finding("pre_bend"),
-        finding("tether", False),
+        {"linear_drag": True, "quadratic_drag": True, "pre_bend": True, "tether": False},
         groups=[("linear_drag", "quadratic_drag", "tether")],
     )
     assert set(in_doubt(found, ["quadratic_drag"])) == {"linear_drag", "quadratic_drag"}
@@ -54,24 +72,24 @@ def test_in_doubt_is_what_looks_like_the_accepted_effect():
     assert set(in_doubt(found, [])) == {"linear_drag", "quadratic_drag", "pre_bend"}
 
 
-def test_one_explanation_leaves_nothing_to_suggest():
+def test_one_explanation_leaves_nothing_to_suggest(lags):
     """A sentence says so, and how to ask all the same."""
     with pytest.raises(SysidError, match="fewer than two explanations"):
-        rivals(None, LAGS)
+        rivals(lags)
 
 
-def test_effects_that_were_named_are_compared_all_the_same(hopeless):
-    """The one in the running with the next of the ranking, fitted for that."""
-    assert rivals(None, LAGS, named=True) == {
-        "charging_lag": "with charging_lag",
-        "hydraulic_lag": "baseline and hydraulic_lag",
-    }
+def test_effects_that_were_named_are_compared_all_the_same(lags):
+    """The one in the running with the next of the ranking, fitted for that from its typical size."""
+    found = rivals(lags, fit_but())
+    assert list(found) == ["charging_lag", "hydraulic_lag"]
+    next_one = found["hydraulic_lag"]
+    assert [effect.id for effect in next_one.effects] == ["hydraulic_lag"]
+    typical = next_one.effects[0].typical()
+    assert {name: next_one.values[f"hydraulic_lag.{name}"] for name in typical} == typical
 
 
-def test_what_cannot_be_simulated_leaves_its_turn_to_the_next(hopeless):
+def test_what_cannot_be_simulated_leaves_its_turn_to_the_next(lags):
     """And where nothing is left, that is said."""
-    hopeless.add("hydraulic_lag")
-    assert set(rivals(None, LAGS, named=True)) == {"charging_lag", "current_limit"}
-    hopeless.add("current_limit")
+    assert set(rivals(lags, fit_but("hydraulic_lag"))) == {"charging_lag", "current_limit"}
     with pytest.raises(SysidError, match="fewer than two explanations"):
-        rivals(None, LAGS, named=True)
+        rivals(lags, fit_but("hydraulic_lag", "current_limit"))
