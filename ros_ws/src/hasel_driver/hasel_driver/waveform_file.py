@@ -10,6 +10,7 @@ from hasel_recording.csv_reader import drive_columns
 from hasel_recording.csv_text import read_text
 from hasel_recording.drive_channel import HASEL_PAIR
 from hasel_recording.errors import RecordingError
+from hasel_recording.zero_order_hold import row_in_force
 
 from hasel_driver.errors import LimitError
 from hasel_driver.limits import HARDWARE_MAXIMUM_V, Voltages
@@ -44,7 +45,7 @@ class FileWaveform:
         """Voltage of the upper and lower muscle [V] at `time_s` after the start; 0 outside the drive."""
         if not 0.0 <= time_s < self.duration_s:
             return 0.0, 0.0
-        upper, lower = self.voltages_v[np.searchsorted(self.time_s, time_s, side="right") - 1]
+        upper, lower = self.voltages_v[row_in_force(self.time_s, time_s)]
         return float(upper), float(lower)
 
     def metadata(self) -> dict[str, str]:

@@ -19,6 +19,7 @@ from hasel_recording.mcap_drive import stamped_drive
 from hasel_recording.mcap_reader import seconds, time_origin
 from hasel_recording.recording import Recording
 from hasel_recording.stand_in import as_meant
+from hasel_recording.zero_order_hold import held, row_in_force
 
 
 @dataclass(frozen=True)
@@ -59,15 +60,15 @@ def with_drive(recording: Recording, path: Path, mapping: Mapping[str, str] | No
     drive = read_drive(path, mapping, recording.metadata)
     channels, time_s, values = drive.channels, drive.time_s, drive.values
     _check_cover(recording, path, channels, time_s, values)
-    row = np.searchsorted(time_s, recording.time_s, side="right") - 1
-    held = np.where(row[:, None] >= 0, values[np.maximum(row, 0)], 0.0)
-    started = max(0, int(row[0]))  # what was before the run matters only if the body was driven then
+    started = max(
+        0, int(row_in_force(time_s, recording.time_s[0]))
+    )  # what was before the run matters only if the body was driven then
     first = started if not values[: started + 1].any() else 0
     said = f"the drive comes from {path.name}: {', '.join(map(str, channels))}"
     return replace(
         recording,
         channels=channels,
-        drive_signal=held,
+        drive_signal=held(time_s, values, recording.time_s),
         drive_time_s=time_s[first:],
         drive_values=values[first:],
         understood=(*recording.understood, *filter(None, [said, drive.stand_in])),

@@ -12,6 +12,7 @@ from hasel_recording.errors import RecordingError
 from hasel_recording.mcap_file import McapFile
 from hasel_recording.message_fields import nanoseconds
 from hasel_recording.topics import DRIVE, STATE, TOPIC_TYPES
+from hasel_recording.zero_order_hold import row_in_force
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ class StampedDrive:
 
     def at(self, stamps: np.ndarray) -> np.ndarray:
         """Values [n, channels] at stamps [ns] [n], none of them before the first."""
-        return self.values[np.searchsorted(self.stamps, stamps, side="right") - 1]
+        return self.values[row_in_force(self.stamps, stamps)]
 
     def changes(self) -> np.ndarray:
         """Which messages begin a new value, the first among them, [changes]."""

@@ -3,6 +3,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hasel_recording import read_recording, sin_theta_from_markers
+from hasel_recording.marker_angle import turn_between
 
 REAL_BEAM = Path(__file__).resolve().parents[4].parent / "shared" / "data" / "real_beam"
 
@@ -17,6 +18,23 @@ def test_angle_between_two_segments(degrees):
     assert sin_theta_from_markers(np.array([[head, middle, tail]])) == pytest.approx(
         [np.sin(angle)], abs=1e-12
     )
+
+
+def test_any_number_of_axes_comes_before():
+    """One frame, frames of a run, or runs of frames."""
+    markers = np.random.default_rng(0).normal(size=(4, 5, 3, 2))
+    found = sin_theta_from_markers(markers)
+    assert found.shape == (4, 5)
+    assert found[2].tolist() == sin_theta_from_markers(markers[2]).tolist()
+    assert found[2, 3] == sin_theta_from_markers(markers[2, 3])
+
+
+@pytest.mark.parametrize("degrees", [-170, -90, 0, 30, 150])
+def test_turn_tells_which_way_round(degrees):
+    """The angle beyond a right one too, which its sine alone does not tell."""
+    angle = np.deg2rad(degrees)
+    sine, turn = turn_between(np.array([2.0, 0.0]), 0.5 * np.array([np.cos(angle), np.sin(angle)]))
+    assert (sine, turn) == (pytest.approx(np.sin(angle)), pytest.approx(angle))
 
 
 def test_coinciding_markers_have_no_angle():

@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 import numpy as np
+from hasel_recording.marker_angle import sin_theta_from_markers
 
 from hasel_sim.effects.base import ObservationEffect
 from hasel_sim.mesh.mesh import Mesh
@@ -56,13 +57,6 @@ class MarkerRows:
         np.add.at(out, self.nodes, share)
 
 
-def sin_theta(markers: np.ndarray) -> np.ndarray:
-    """Sine of the bending angle from markers [..., 3, 2] (head, middle, tail), positive towards the upper side."""
-    first, second = markers[..., 1, :] - markers[..., 0, :], markers[..., 2, :] - markers[..., 1, :]
-    cross = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
-    return cross / (np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1))
-
-
 def observe(
     time: np.ndarray,
     positions: np.ndarray,
@@ -73,7 +67,7 @@ def observe(
     """The measured series [n] from marker positions and lines across [n, 3, 2] at times [s] [n]."""
     for effect in effects:
         positions = effect.markers(positions, across, values[effect.id])
-    series = sin_theta(positions)
+    series = sin_theta_from_markers(positions)
     for effect in effects:
         series = effect.angle(time, series, values[effect.id])
     return series

@@ -3,17 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sim.build import Builder, marker_points
-from hasel_sim.observation import MarkerRows, sin_theta
-
-
-@pytest.mark.parametrize("degrees", [-120.0, -30.0, 0.0, 45.0])
-def test_sin_theta_is_that_of_the_angle_between_the_two_chords(degrees):
-    """Positive towards the upper side, whatever the body's heading and size."""
-    angle = np.radians(degrees)
-    markers = np.array([[0.0, 0.0], [2.0, 0.0], [2.0 + 3 * np.cos(angle), 3 * np.sin(angle)]])
-    heading = np.radians(33.0)
-    turn = np.array([[np.cos(heading), np.sin(heading)], [-np.sin(heading), np.cos(heading)]])
-    assert sin_theta(0.1 * markers @ turn + [5.0, 7.0]) == pytest.approx(np.sin(angle))
+from hasel_sim.observation import MarkerRows
 
 
 def test_markers_move_with_the_body_and_fixed_ones_do_not(swimmer):

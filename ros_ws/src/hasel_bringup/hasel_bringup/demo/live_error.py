@@ -10,7 +10,7 @@ from hasel_interfaces.msg import RunningError
 from hasel_interfaces.srv import LoadModel
 from hasel_recording.endpoints import Role, subscription
 from hasel_recording.spinning import node_alone
-from hasel_recording.topics import ERROR, NAMESPACE, SIMULATED
+from hasel_recording.topics import DIAGNOSTICS, ERROR, NAMESPACE, SIMULATED
 from rclpy.executors import SingleThreadedExecutor
 
 from hasel_bringup.demo.processes import Processes
@@ -37,7 +37,7 @@ class LiveError:
         self._executor = SingleThreadedExecutor(context=self._node.context)
         self._executor.add_node(self._node)
         subscription(self._node, RunningError, ERROR, self._on_error, Role.EVERY_SAMPLE)
-        self._node.create_subscription(DiagnosticArray, "/diagnostics", self._on_diagnostics, 10)
+        subscription(self._node, DiagnosticArray, DIAGNOSTICS, self._on_diagnostics, Role.DIAGNOSTICS)
         model = ("--ros-args", "-p", f"model:={self._model}")
         self._processes.start("hasel_sim", "simulator", *model)
         self._processes.start("hasel_sysid", "sysid", *model)

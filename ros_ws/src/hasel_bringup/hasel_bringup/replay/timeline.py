@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from hasel_recording import Recording
+from hasel_recording.zero_order_hold import held
 
 from hasel_bringup.errors import BringupError
 
@@ -36,8 +37,7 @@ def timeline(recording: Recording) -> list[ReplayedFrame]:
         )
     times = np.unique(np.concatenate([[start], recording.time_s, drive_time]))
     times = times[times >= start]
-    in_force = np.searchsorted(drive_time, times, side="right") - 1
-    voltage = np.where(in_force[:, None] >= 0, drive_voltage[np.maximum(in_force, 0)], 0.0)
+    voltage = held(drive_time, drive_voltage, times)
     measured = dict(zip(recording.time_s.tolist(), recording.sin_theta.tolist(), strict=True))
     return [
         ReplayedFrame(round(time * 1e9), tuple(row), measured.get(time))

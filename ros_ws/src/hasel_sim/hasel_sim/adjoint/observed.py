@@ -1,10 +1,10 @@
 """From weights of the measured angles back to weights of the markers; observation effects included."""
 
 import numpy as np
+from hasel_recording.marker_angle import sin_theta_from_markers
 
 from hasel_sim.adjoint.trajectory import Trajectory
 from hasel_sim.effects.base import ObservationEffect
-from hasel_sim.observation import sin_theta
 
 _STEP = 1e-6
 
@@ -31,7 +31,7 @@ def _angles(trajectory: Trajectory, markers: np.ndarray, lines: np.ndarray) -> n
     values = trajectory.prepared.model.effect_values()
     for effect in trajectory.prepared.observed_by:
         markers = effect.markers(markers, lines, values[effect.id])
-    return sin_theta(markers)
+    return sin_theta_from_markers(markers)
 
 
 def _reverse_angles(trajectory: Trajectory, weights: np.ndarray) -> np.ndarray:

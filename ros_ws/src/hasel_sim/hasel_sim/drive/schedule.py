@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from hasel_recording.drive_channel import HASEL_PAIR
+from hasel_recording.zero_order_hold import held
 
 from hasel_sim.errors import SimulationError
 
@@ -40,8 +41,7 @@ class DriveSchedule:
         """Signal [m, channels] at times [s] [m]; 0 before the first."""
         if len(self.time) == 0:
             return np.zeros((len(time), len(self.channels)))
-        index = np.searchsorted(self.time, time, side="right") - 1
-        return np.where(index[:, None] >= 0, self.signal[np.maximum(index, 0)], 0.0)
+        return held(self.time, self.signal, time)
 
     def switches(self) -> np.ndarray:
         """Instants [s] at which the signal changes."""

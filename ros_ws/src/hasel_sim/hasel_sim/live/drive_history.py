@@ -1,6 +1,7 @@
 """The drive chain of a running simulation, evaluated over the recent past."""
 
 import numpy as np
+from hasel_recording.zero_order_hold import row_in_force
 
 from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.schedule import DriveSchedule
@@ -39,8 +40,7 @@ class DriveHistory:
         schedule = self._schedule
         if len(schedule.time) and np.array_equal(schedule.signal[-1], voltage):
             return
-        in_force = int(np.searchsorted(schedule.time, time - self._history, side="right")) - 1
-        first = max(0, in_force)
+        first = max(0, int(row_in_force(schedule.time, time - self._history)))
         self._schedule = DriveSchedule(
             np.append(schedule.time[first:], time),
             np.vstack([schedule.signal[first:], voltage]),

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from hasel_recording import Recording
+from hasel_recording.zero_order_hold import held
 
 from hasel_sysid.errors import SysidError
 from hasel_sysid.live.driven_parts import driven_parts
@@ -130,8 +131,7 @@ def _part(origin: int, drive: tuple, measured: tuple, begin: float, stop: float)
     """What happened from `begin` to `stop` [s], counted from `begin`."""
     (drive_time, drive_voltage), (time, sin_theta) = drive, measured
     driven, seen = (begin <= drive_time) & (drive_time <= stop), (begin <= time) & (time <= stop)
-    in_force = np.searchsorted(drive_time, time[seen], side="right") - 1
-    voltage = np.where(in_force[:, None] >= 0, drive_voltage[np.maximum(in_force, 0)], 0.0)
+    voltage = held(drive_time, drive_voltage, time[seen])
     passive = not drive_voltage[driven].any()
     return Recording(
         _name(origin * 1e-9 + begin),

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from hasel_recording import DriveChannel
+from hasel_recording.zero_order_hold import row_in_force
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,7 @@ class DriveCycle:
 
     def since_switch(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Time [s] since the latest switch and the side it went to, both [n]; NaN and 0 before the first."""
-        index = np.searchsorted(self.switches, time, side="right") - 1
+        index = row_in_force(self.switches, time)
         seen = index >= 0
         since = np.where(seen, time - self.switches[np.maximum(index, 0)], np.nan)
         return since, np.where(seen, self.side[np.maximum(index, 0)], 0)

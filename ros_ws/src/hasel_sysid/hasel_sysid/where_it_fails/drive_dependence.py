@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from hasel_recording.zero_order_hold import held
 from scipy.special import ndtri
 
 from hasel_sysid.where_it_fails.drive_cycle import comparable, net_drive
@@ -50,9 +51,8 @@ def drive_dependence(run: RunSeries) -> DriveDependence | None:
     """
     if run.drive_time is None or len(run.time) < 20:
         return None
-    index = np.searchsorted(run.drive_time, run.time + 1e-9, side="right") - 1
     net = net_drive(comparable(run.drive_values, run.channels))
-    command = np.where(index >= 0, net[np.maximum(index, 0)], 0.0)
+    command = held(run.drive_time, net, run.time + 1e-9)
     command = command - command.mean()
     residual = run.residual
     scale = np.sqrt(float(command @ command) * float(residual @ residual))

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from hasel_recording import sin_theta_from_markers
 from hasel_sim.model import load_model
-from hasel_sim.observation import sin_theta
 from hasel_sim.parallel import executor
 from hasel_sysid.compare import compare
 from hasel_sysid.dataset import load_experiments
@@ -19,7 +19,7 @@ def test_the_measured_tail_gives_the_measured_angle():
     measured = np.array([-0.4, 0.0, 0.3])
     moved = markers.copy()
     moved[:, 2] = measured_tail(markers, measured)
-    assert sin_theta(moved) == pytest.approx(measured)
+    assert sin_theta_from_markers(moved) == pytest.approx(measured)
     assert np.linalg.norm(moved[:, 2] - moved[:, 1], axis=1) == pytest.approx(
         np.linalg.norm(markers[:, 2] - markers[:, 1], axis=1)
     )
@@ -33,9 +33,11 @@ def test_the_extremes_are_shown_with_both_markers(unseen_rig):
     shapes = simulated_shapes(comparison.model, comparison.runs)
     series = comparison.runs[0].series
     first = series.time <= series.time[0] + series.cycle.period
-    shown = sin_theta(shapes.markers)
+    shown = sin_theta_from_markers(shapes.markers)
     assert shown.max() == pytest.approx(series.simulated[first].max(), abs=2e-3)
     assert shown.min() == pytest.approx(series.simulated[first].min(), abs=2e-3)
     at = np.searchsorted(series.time, shapes.time - 1e-6)
-    assert sin_theta(shapes.measured) == pytest.approx((series.measured - series.offset)[at], abs=1e-6)
+    assert sin_theta_from_markers(shapes.measured) == pytest.approx(
+        (series.measured - series.offset)[at], abs=1e-6
+    )
     assert len(shapes_figure(shapes).data) == 3 * len(shapes.time)

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 from hasel_recording import HASEL_PAIR, DriveChannel, RecordingError
 from hasel_recording.drive_file import read_drive as read_recorded_drive
+from hasel_recording.zero_order_hold import held
 
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.offline.drive_lag import estimate_lag
@@ -28,9 +29,8 @@ class Drive:
 
     def at(self, time_s: np.ndarray) -> np.ndarray:
         """Values at some times, shape (n, channels); 0 before the first row, NaN after the recording's end."""
-        row = np.searchsorted(self.time_s, time_s + 1e-9, side="right") - 1
-        held = np.where((row >= 0)[:, None], self.values[np.maximum(row, 0)], 0.0)
-        return np.where((time_s > self.end_s + 1e-9)[:, None], np.nan, held)
+        known = held(self.time_s, self.values, time_s + 1e-9)
+        return np.where((time_s > self.end_s + 1e-9)[:, None], np.nan, known)
 
     @property
     def end_s(self) -> float:

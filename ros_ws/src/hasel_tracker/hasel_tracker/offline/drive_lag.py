@@ -10,6 +10,7 @@ period later) is refused.
 from dataclasses import dataclass
 
 import numpy as np
+from hasel_recording.zero_order_hold import row_in_force
 
 from hasel_tracker.errors import TrackerError
 
@@ -171,7 +172,7 @@ def _from_the_start(
     when, angle = time_s[used], sin_theta[used]
     lags = coarse.lag_s + np.arange(-1.2 * coarse.uncertainty_s, 1.2 * coarse.uncertainty_s, frame_s / 8)
     fine = np.arange(drive_time_s[change], when[-1] - lags[0] + frame_s, frame_s / 8)
-    pushed = push[np.searchsorted(drive_time_s, fine + 1e-9, side="right") - 1] - push[0]
+    pushed = push[row_in_force(drive_time_s, fine + 1e-9)] - push[0]
     losses = []
     response = pushed
     for order in (1, 2, 3):

@@ -1,10 +1,15 @@
 """Motions from files: centre lines, markers, or a bending angle alone."""
 
 import re
+from collections.abc import Callable
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from hasel_recording import Recording, RecordingError, read_recording
+from hasel_recording.csv_columns import Column
+from hasel_recording.csv_numbers import CsvNumbers
+from hasel_recording.csv_text import read_text
 
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.render.body_shape import BodyShape
@@ -13,6 +18,7 @@ from hasel_tracker.tracking.bending_angle import bending_angle
 
 LINE_COLUMN = re.compile(r"centre_(\d+)_([xy])_m")
 BEND_SAMPLES = np.linspace(-2.8, 2.8, 201)
+_Read = TypeVar("_Read")
 
 
 def read_motion(path: Path, shape: BodyShape) -> SampledMotion:
@@ -28,11 +34,8 @@ def read_motion(path: Path, shape: BodyShape) -> SampledMotion:
         and path.is_file()
         and "centre_0_x_m" in path.read_text(errors="replace")
     ):
-        return _centre_lines(path)
-    try:
-        recording = read_recording(path)
-    except RecordingError as error:
-        raise TrackerError(str(error)) from error
+        return _told(_centre_lines, path)
+    recording = _told(read_recording, path)
     seen = recording.valid
     if seen.sum() < 2:
         raise TrackerError(f"{path} has {int(seen.sum())} frames with an angle; a motion needs at least two.")
@@ -41,6 +44,14 @@ def read_motion(path: Path, shape: BodyShape) -> SampledMotion:
     else:
         lines = _lines_of_angle(recording, shape)
     return SampledMotion(recording.time_s[seen], lines - lines.mean(axis=(0, 1)))
+
+
+def _told(read: Callable[[Path], _Read], path: Path) -> _Read:
+    """What is read; a recording's error as one of the tracker's."""
+    try:
+        return read(path)
+    except RecordingError as error:
+        raise TrackerError(str(error)) from error
 
 
 def bend_of(sin_theta: np.ndarray, shape: BodyShape) -> np.ndarray:
@@ -60,30 +71,18 @@ def _lines_of_angle(recording: Recording, shape: BodyShape) -> np.ndarray:
 
 
 def _centre_lines(path: Path) -> SampledMotion:
-    lines = [
-        line for line in path.read_text(errors="replace").splitlines() if line and not line.startswith("#")
-    ]
-    names = [name.strip() for name in lines[0].split(",")]
-    points = {
-        (int(match[1]), match[2]): i for i, name in enumerate(names) if (match := LINE_COLUMN.fullmatch(name))
-    }
+    text = read_text(path)
+    points = {(int(m[1]), m[2]): name for name in text.names if (m := LINE_COLUMN.fullmatch(name))}
     count = len(points) // 2
     wanted = {(number, axis) for number in range(count) for axis in "xy"}
-    if "time_s" not in names or set(points) != wanted or count < 4:
+    if "time_s" not in text.names or set(points) != wanted or count < 4:
         raise TrackerError(
             f"{path} does not hold whole centre lines; expected time_s and centre_0_x_m, centre_0_y_m, "
             "centre_1_x_m … for at least four points."
         )
-    try:
-        table = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]]).reshape(
-            -1, len(names)
-        )
-    except ValueError as error:
-        raise TrackerError(
-            f"{path} has a row that is not numbers ({error}); correct or remove it."
-        ) from error
-    times = table[:, names.index("time_s")]
-    if len(times) < 2 or (np.diff(times) <= 0.0).any() or not np.isfinite(table).all():
-        raise TrackerError(f"{path} needs at least two rows of finite numbers with increasing time_s.")
-    columns = [[points[number, "x"], points[number, "y"]] for number in range(count)]
-    return SampledMotion(times, table[:, columns])
+    numbers = CsvNumbers(text)
+    times = numbers.times(Column("time_s", 1.0))
+    if len(times) < 2:
+        raise TrackerError(f"{path} has one row; a motion needs at least two.")
+    lines = [[numbers.column(Column(points[n, axis], 1.0)) for axis in "xy"] for n in range(count)]
+    return SampledMotion(times, np.moveaxis(np.array(lines), -1, 0))

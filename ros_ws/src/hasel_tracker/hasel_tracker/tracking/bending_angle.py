@@ -1,6 +1,7 @@
 """Bending angle of the body from its markers."""
 
 import numpy as np
+from hasel_recording.marker_angle import turn_between
 
 
 def head_middle_tail(points: np.ndarray) -> np.ndarray:
@@ -31,10 +32,6 @@ def bending_angle(
     else:
         head, middle, tail = head_middle_tail(points)
         front, rear = middle - head, tail - middle
-    lengths = np.hypot(*front) * np.hypot(*rear)
-    if not lengths > 0.0:
-        return float("nan"), float("nan")
-    # The image's y axis points down: its cross product is that of axes with y up, turned round.
-    cross = front[1] * rear[0] - front[0] * rear[1]
-    cross = -cross if mirrored else cross
-    return float(cross / lengths), float(np.arctan2(cross, front @ rear))
+    axes = np.array([1.0, 1.0 if mirrored else -1.0])  # the image's y axis points down
+    sine, angle = turn_between(front * axes, rear * axes)
+    return float(sine), float(angle)
