@@ -4,7 +4,8 @@ import difflib
 from collections.abc import Callable
 from typing import Any
 
-from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
+from hasel_recording.declared_parameters import descriptor
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 
 from hasel_driver.errors import DriverError, LimitError
@@ -21,7 +22,9 @@ def declare(node: Node, in_use: Callable[[], bool], lower: Callable[[float], Non
     """
     _check_names(node)
     for parameter in PARAMETERS:
-        node.declare_parameter(parameter.name, parameter.default, _descriptor(parameter))
+        node.declare_parameter(
+            parameter.name, parameter.default, descriptor(parameter, checked_elsewhere=True)
+        )
         parameter.check(node.get_parameter(parameter.name).value)
 
     def check(changes) -> SetParametersResult:
@@ -51,20 +54,6 @@ def _check_change(parameter: Parameter, value: Any, in_use: bool, lower: Callabl
     if parameter.name != LOWERABLE:
         raise LimitError(f"{parameter.name} is in use: deactivate and clean up the node, then change it.")
     lower(float(value))
-
-
-def _descriptor(parameter: Parameter) -> ParameterDescriptor:
-    unit = f" [{parameter.unit}]" if parameter.unit else ""
-    # Typed by our own check: `maximum_voltage:=200` is a whole number to ROS, and would not be a float.
-    descriptor = ParameterDescriptor(description=parameter.description + unit, dynamic_typing=True)
-    if isinstance(parameter.low, float):
-        descriptor.floating_point_range = [
-            FloatingPointRange(from_value=parameter.low, to_value=parameter.high)
-        ]
-    elif parameter.low is not None:
-        descriptor.integer_range = [IntegerRange(from_value=parameter.low, to_value=parameter.high)]
-    descriptor.additional_constraints = ", ".join(parameter.choices)
-    return descriptor
 
 
 def _check_names(node: Node) -> None:

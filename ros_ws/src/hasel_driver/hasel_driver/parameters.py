@@ -1,25 +1,17 @@
 """The node's parameters: names, defaults, units, ranges; declared in the node and listed in the README."""
 
 import difflib
-from dataclasses import dataclass
 from typing import Any
+
+from hasel_recording.node_parameter import NodeParameter
 
 from hasel_driver.errors import LimitError
 
 LOWERABLE = "maximum_voltage"  # the one that may be changed, downwards, while it is in use
 
 
-@dataclass(frozen=True)
-class Parameter:
-    """One parameter; numbers have a range."""
-
-    name: str
-    default: str | float | int | bool | list[str]
-    unit: str
-    description: str
-    low: float | None = None
-    high: float | None = None
-    choices: tuple[str, ...] = ()
+class Parameter(NodeParameter):
+    """One parameter, checked by ourselves with a sentence."""
 
     def check(self, value: Any) -> None:
         """Raises LimitError for a value of another kind, or outside range or choices."""
@@ -54,56 +46,50 @@ class Parameter:
 
 
 PARAMETERS: tuple[Parameter, ...] = (
-    Parameter("port", "/dev/ttyACM0", "", "serial port of the supply (with shvps: of the upper muscle's)"),
-    Parameter("backend", "hasel", "", "protocol of the supply", choices=("hasel", "shvps")),
-    Parameter("second_port", "", "", "serial port of the lower muscle's supply (shvps only)"),
+    Parameter("port", "/dev/ttyACM0", "serial port of the supply (with shvps: of the upper muscle's)"),
+    Parameter("backend", "hasel", "protocol of the supply", choices=("hasel", "shvps")),
+    Parameter("second_port", "", "serial port of the lower muscle's supply (shvps only)"),
     Parameter(
         "maximum_voltage",
         6000.0,
-        "V",
         "commands are clipped to ± this; may be lowered at any time",
+        "V",
         0.0,
         9800.0,
     ),
-    Parameter("slew_rate", 250.0, "V/ms", "steepest change of the set point", 1.0, 2000.0),
+    Parameter("slew_rate", 250.0, "steepest change of the set point", "V/ms", 1.0, 2000.0),
     Parameter(
-        "trip_current", 450e-6, "A", "converter current at which the board latches a fault", 1e-6, 9.8e-4
+        "trip_current", 450e-6, "converter current at which the board latches a fault", "A", 1e-6, 9.8e-4
     ),
-    Parameter("heartbeat_timeout", 0.3, "s", "silence after which the board grounds its output", 0.1, 0.45),
+    Parameter("heartbeat_timeout", 0.3, "silence after which the board grounds its output", "s", 0.1, 0.45),
     Parameter(
         "dead_time",
         0.005,
-        "s",
         "between opening and closing relays: at least their release time and bounce by the data sheet",
+        "s",
         0.002,
         0.05,
     ),
-    Parameter("discovery_time", 1.0, "s", "arming waits this long for a latched emergency stop", 0.0, 60.0),
-    Parameter(
-        "accept_no_deadman", False, "", "allow arming a supply that stays live when its host dies (shvps)"
-    ),
-    Parameter(
-        "recording_directory", "recordings", "", "where RunExperiment writes when its goal names no file"
-    ),
+    Parameter("discovery_time", 1.0, "arming waits this long for a latched emergency stop", "s", 0.0, 60.0),
+    Parameter("accept_no_deadman", False, "allow arming a supply that stays live when its host dies (shvps)"),
+    Parameter("recording_directory", "recordings", "where RunExperiment writes when its goal names no file"),
     Parameter(
         "history_file",
         "~/.ros/hasel_supply_history.jsonl",
-        "",
         "where faults, breakdowns and leakage are noted for good; empty: nowhere",
     ),
     Parameter(
         "recorded_topics",
         ["bending/measured", "markers/measured", "bending/simulated"],
-        "",
         "recorded with the state; required in the recording when published as the experiment begins",
     ),
     Parameter(
         "realtime_priority",
         40,
-        "",
         "of the threads that send commands, where the system allows it; 0: none",
+        "",
         0,
         90,
     ),
-    Parameter("autostart", True, "", "configure and activate at start (never arms)"),
+    Parameter("autostart", True, "configure and activate at start (never arms)"),
 )

@@ -12,10 +12,7 @@ def main() -> int:
     answer_help(
         "driver_node",
         "Drives the high-voltage supply at a serial port: opens the port when it starts, arms nothing by itself.",
-        [
-            (each.name, each.default, each.description + (f" [{each.unit}]" if each.unit else ""))
-            for each in PARAMETERS
-        ],
+        [each.usage for each in PARAMETERS],
     )
     from hasel_driver.driver_node import main as run
 

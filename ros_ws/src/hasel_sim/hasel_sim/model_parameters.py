@@ -3,7 +3,9 @@
 from collections.abc import Callable, Iterable
 from math import isfinite
 
-from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
+from hasel_recording.declared_parameters import descriptor
+from hasel_recording.node_parameter import NodeParameter
+from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.exceptions import InvalidParameterValueException
 from rclpy.node import Node
 from rclpy.parameter import Parameter as RosParameter
@@ -73,8 +75,9 @@ class ModelParameters:
 
 
 def _descriptor(parameter: Parameter) -> ParameterDescriptor:
-    descriptor = ParameterDescriptor(description=f"parameter of the model [{parameter.unit}]")
-    if isfinite(parameter.lower) and isfinite(parameter.upper):
-        span = FloatingPointRange(from_value=float(parameter.lower), to_value=float(parameter.upper))
-        descriptor.floating_point_range = [span]
-    return descriptor
+    bounded = isfinite(parameter.lower) and isfinite(parameter.upper)
+    low, high = (parameter.lower, parameter.upper) if bounded else (None, None)
+    described = "parameter of the model", parameter.unit
+    return descriptor(
+        NodeParameter(parameter.name, float(parameter.value), *described, low, high, changeable=True)
+    )

@@ -8,6 +8,7 @@ import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_interfaces.srv import AddEffect, LoadModel, RemoveEffect
+from hasel_recording.declared_parameters import declare, words
 from hasel_recording.endpoints import STEADY, Role, frame_of, publisher, subscription
 from hasel_recording.managed_node import ManagedNode, start_and_spin
 from hasel_recording.topics import DIAGNOSTICS, NAMESPACE, SIMULATED, STATE, SWIMMER
@@ -23,7 +24,6 @@ from hasel_sim.live.pace import Pace
 from hasel_sim.live.repeated_warnings import RepeatedWarnings
 from hasel_sim.model import Model
 from hasel_sim.model_parameters import ModelParameters
-from hasel_sim.node_parameters import declare, words
 from hasel_sim.node_process import run_node
 from hasel_sim.simulator_messages import BodyMessage, angle_message, diagnostics, rig_voltage, to_nanoseconds
 from hasel_sim.simulator_parameters import PARAMETERS

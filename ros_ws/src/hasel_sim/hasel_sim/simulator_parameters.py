@@ -1,8 +1,7 @@
 """The simulator node's parameters."""
 
 from hasel_recording.autostart import AUTOSTART
-
-from hasel_sim.node_parameters import NodeParameter
+from hasel_recording.node_parameter import NodeParameter
 
 PARAMETERS = (
     NodeParameter(*AUTOSTART),
@@ -11,10 +10,22 @@ PARAMETERS = (
         "effects", [""], "effects added to the model at the start: ids, or path/to/file.py:ClassName"
     ),
     NodeParameter(
-        "rate", 0.0, "most angles published per second; 0: one for every state", "1/s", 0.0, 1000.0, True
+        "rate",
+        0.0,
+        "most angles published per second; 0: one for every state",
+        "1/s",
+        0.0,
+        1000.0,
+        changeable=True,
     ),
     NodeParameter(
-        "shape_rate", 20.0, "shapes published per second, if anybody listens", "1/s", 0.0, 20.0, True
+        "shape_rate",
+        20.0,
+        "shapes published per second, if anybody listens",
+        "1/s",
+        0.0,
+        20.0,
+        changeable=True,
     ),
     NodeParameter("history", 20.0, "how far back drive and observation effects remember", "s", 1.0, 600.0),
     NodeParameter("gap", 0.1, "state messages further apart are reported as missing", "s", 0.001, 10.0),

@@ -8,12 +8,12 @@ from diagnostic_msgs.msg import DiagnosticArray
 from hasel_interfaces.msg import BendingAngle, Diagnosis, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import RecordingError
+from hasel_recording.declared_parameters import declare, words
 from hasel_recording.endpoints import STEADY, Role, frame_of, publisher, subscription
 from hasel_recording.topics import DIAGNOSIS, DIAGNOSTICS, ERROR, FIT, MEASURED, NAMESPACE, SIMULATED, STATE
 from hasel_sim.errors import HaselSimError
 from hasel_sim.live.live_model import live_model
 from hasel_sim.model import Model, save_model
-from hasel_sim.node_parameters import declare, words
 from hasel_sim.node_process import end_at_once, run_node
 from hasel_sim.simulator_messages import rig_voltage, to_nanoseconds
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup

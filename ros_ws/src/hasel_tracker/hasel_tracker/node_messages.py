@@ -5,12 +5,10 @@ from typing import Any
 from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from hasel_interfaces.msg import BendingAngle
-from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from sensor_msgs.msg import CompressedImage
 
 from hasel_tracker.live.health_report import HealthReport
 from hasel_tracker.live.tracking_statistics import Health
-from hasel_tracker.node_parameters import NodeParameter
 from hasel_tracker.tracking.bending_tracker import TrackedFrame
 from hasel_tracker.tracking.marker_set import marker_names
 
@@ -74,18 +72,3 @@ def resting_status(node_name: str) -> DiagnosticStatus:
         message="Not active: nothing is tracked.",
         hardware_id="camera",
     )
-
-
-def parameter_descriptor(parameter: NodeParameter) -> ParameterDescriptor:
-    """Description, range and whether it may change, for `ros2 param describe`."""
-    descriptor = ParameterDescriptor(description=parameter.meaning, read_only=not parameter.changeable)
-    if parameter.choices:
-        descriptor.additional_constraints = "one of " + ", ".join(parameter.choices)
-    if parameter.low is not None:
-        if isinstance(parameter.default, float):
-            span = FloatingPointRange(from_value=float(parameter.low), to_value=float(parameter.high))
-            descriptor.floating_point_range = [span]
-        else:
-            span = IntegerRange(from_value=int(parameter.low), to_value=int(parameter.high), step=1)
-            descriptor.integer_range = [span]
-    return descriptor

@@ -12,7 +12,7 @@ def main() -> int:
     answer_help(
         "tracker_node",
         "Follows the markers of a camera or video and publishes the bending angle (/hasel/bending/measured).",
-        [(each.name, each.default, each.meaning) for each in PARAMETERS],
+        [each.usage for each in PARAMETERS],
     )
     from hasel_tracker.tracker_node import main as run
 

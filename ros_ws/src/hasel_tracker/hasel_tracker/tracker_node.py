@@ -12,6 +12,7 @@ import numpy as np
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from hasel_interfaces.msg import BendingAngle
+from hasel_recording.declared_parameters import declare
 from hasel_recording.endpoints import STEADY, Role, frame_of, publisher
 from hasel_recording.managed_node import ManagedNode, start_and_spin
 from hasel_recording.topics import DIAGNOSTICS, MEASURED, NAMESPACE
@@ -35,7 +36,6 @@ from hasel_tracker.node_messages import (
     angle_message,
     compressed_image,
     diagnostic_status,
-    parameter_descriptor,
     resting_status,
 )
 from hasel_tracker.node_parameters import PARAMETERS, SEARCH_NAMES
@@ -59,8 +59,7 @@ class TrackerNode(ManagedNode):
 
     def __init__(self) -> None:
         super().__init__("hasel_tracker", namespace=NAMESPACE)
-        for each in PARAMETERS:
-            self.declare_parameter(each.name, each.default, parameter_descriptor(each))
+        declare(self, PARAMETERS)
         self._angles = publisher(self, BendingAngle, MEASURED, Role.SAMPLES)
         self._previews = publisher(self, CompressedImage, "~/preview/compressed", Role.PICTURES)
         self._diagnostics = publisher(self, DiagnosticArray, DIAGNOSTICS, Role.DIAGNOSTICS)

@@ -30,7 +30,12 @@ def rows(heading: str) -> list[list[str]]:
 def test_parameters_are_listed_as_they_are():
     """Every parameter is in the table with its default, its meaning, and whether it may change; no other is."""
     expected = [
-        [f"`{each.name}`{' ✎' * each.changeable}", f"`{each.default}`", each.meaning] for each in PARAMETERS
+        [
+            f"`{each.name}`{' ✎' * each.changeable}",
+            f"`{each.default}`",
+            each.description + (f" [{each.unit}]" if each.unit else ""),
+        ]
+        for each in PARAMETERS
     ]
     assert rows("parameter") == expected
 

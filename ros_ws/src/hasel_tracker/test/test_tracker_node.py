@@ -13,7 +13,8 @@ import pytest
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from hasel_interfaces.msg import BendingAngle
-from hasel_tracker.node_messages import angle_message, parameter_descriptor
+from hasel_recording.declared_parameters import descriptor
+from hasel_tracker.node_messages import angle_message
 from hasel_tracker.node_parameters import PARAMETERS, SEARCH_NAMES
 from hasel_tracker.sources.video_source import VideoSource
 from hasel_tracker.tracking.bending_tracker import BendingTracker
@@ -275,9 +276,9 @@ def test_angle_message_of_a_frame(frames):
 @pytest.mark.parametrize("parameter", PARAMETERS, ids=lambda each: each.name)
 def test_parameters_are_described_and_within_their_range(parameter):
     """Every parameter has a meaning, and its default lies within the range or choices it states."""
-    descriptor = parameter_descriptor(parameter)
-    assert descriptor.description
-    assert descriptor.read_only is not parameter.changeable
+    told = descriptor(parameter)
+    assert told.description
+    assert told.read_only is not parameter.changeable
     if parameter.low is not None:
         assert parameter.low <= parameter.default <= parameter.high
     if parameter.choices:

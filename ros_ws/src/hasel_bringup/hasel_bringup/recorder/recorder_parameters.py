@@ -1,6 +1,6 @@
 """Parameters of the recorder."""
 
-from hasel_sim.node_parameters import NodeParameter
+from hasel_recording.node_parameter import NodeParameter
 
 PARAMETERS = (
     NodeParameter("folder", "recordings", "into which recordings are written", changeable=True),

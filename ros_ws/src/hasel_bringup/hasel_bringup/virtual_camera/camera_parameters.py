@@ -1,6 +1,6 @@
 """Parameters of the virtual camera."""
 
-from hasel_sim.node_parameters import NodeParameter
+from hasel_recording.node_parameter import NodeParameter
 
 PARAMETERS = (
     NodeParameter(

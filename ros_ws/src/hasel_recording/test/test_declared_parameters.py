@@ -1,0 +1,67 @@
+"""Parameters as a table, and what ROS is told of them."""
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not there")
+
+from hasel_recording.declared_parameters import declare, descriptor, words
+from hasel_recording.node_parameter import NodeParameter
+from hasel_recording.spinning import node_alone
+from rclpy.exceptions import InvalidParameterValueException
+from rclpy.parameter import Parameter
+
+RATE = NodeParameter("rate", 120.0, "of the camera", "1/s", 1, 1000, changeable=True)
+METHOD = NodeParameter("method", "blobs", "how markers are found", choices=("blobs", "tags"))
+NAMES = NodeParameter("names", [""], "of further effects")
+
+
+@pytest.fixture
+def node():
+    """A node in a context of its own."""
+    node = node_alone("declares")
+    yield node
+    node.destroy_node()
+    node.context.try_shutdown()
+
+
+def test_description_unit_range_and_choices_are_told():
+    """As `ros2 param describe` lists them."""
+    rate, method = descriptor(RATE), descriptor(METHOD)
+    assert rate.description == "of the camera [1/s]"
+    span = rate.floating_point_range[0]
+    assert (span.from_value, span.to_value) == (1.0, 1000.0)
+    assert not rate.read_only
+    assert method.additional_constraints == "one of blobs, tags"
+    assert method.read_only
+    whole = descriptor(NodeParameter("count", 3, "of markers", "", 2, 15)).integer_range[0]
+    assert (whole.from_value, whole.to_value, whole.step) == (2, 15, 1)
+
+
+def test_what_is_checked_elsewhere_is_left_alone():
+    """Its type and whether it may change; a range is told all the same."""
+    told = descriptor(NodeParameter("limit", 6000.0, "of the supply", "V", 0, 9800), checked_elsewhere=True)
+    assert told.dynamic_typing and not told.read_only
+    assert told.floating_point_range[0].to_value == 9800.0
+
+
+def test_ros_refuses_what_is_out_of_range(node):
+    """And what may not change."""
+    declare(node, [RATE, METHOD])
+    rate, method = node.set_parameters([Parameter("rate", value=5000.0), Parameter("method", value="tags")])
+    assert not rate.successful and not method.successful
+    assert node.set_parameters([Parameter("rate", value=60.0)])[0].successful
+    with pytest.raises(InvalidParameterValueException):
+        declare(node, [NodeParameter("wrong", 5.0, "beyond its own range", "", 0.0, 1.0)])
+
+
+def test_words_of_an_empty_list(node):
+    """An empty list has no type in ROS, so it holds an empty word."""
+    declare(node, [NAMES, NodeParameter("two", ["a", "b"], "of them")])
+    assert words(node, "names") == ()
+    assert words(node, "two") == ("a", "b")
+
+
+def test_usage_tells_unit_and_range():
+    """For --help."""
+    assert RATE.usage == ("rate", 120.0, "of the camera [1/s, 1 to 1000]")
+    assert METHOD.usage == ("method", "blobs", "how markers are found")
