@@ -1,4 +1,4 @@
-"""A draft of a model: half the cost, for finding one's way before the model itself decides."""
+"""The low-fidelity model, a draft at half the cost, for finding one's way before the model itself decides."""
 
 from hasel_sim.model import Model
 

@@ -44,7 +44,7 @@ class Evaluation:
 
     @property
     def sum_of_squares(self) -> float:
-        """Sum of the squared residuals."""
+        """The residual sum of squares (RSS)."""
         return float(self.residual @ self.residual)
 
     def by(self, names: Sequence[str]) -> "Evaluation":

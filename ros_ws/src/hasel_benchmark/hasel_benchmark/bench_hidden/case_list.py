@@ -47,7 +47,7 @@ def list_cases(
                 f"There is no effect '{name}' to hide; {nearest_name(name, known_effects())}."
             )
     listed = chain.from_iterable(
-        _of_seed(seed, numerics, strangers=number < UNLISTED_SEEDS) for number, seed in enumerate(seeds)
+        _of_seed(seed, numerics, with_unlisted=number < UNLISTED_SEEDS) for number, seed in enumerate(seeds)
     )
     chosen = set(effects)
     return [case for case in listed if case.kind in kinds and (not chosen or chosen & set(case.effects))]
@@ -64,7 +64,7 @@ def listed_effects() -> tuple[str, ...]:
     return tuple(effect.id for effect in candidate_effects(load_model("swimmer")))
 
 
-def _of_seed(seed: int, numerics: str, strangers: bool) -> list[Case]:
+def _of_seed(seed: int, numerics: str, with_unlisted: bool) -> list[Case]:
     size = SIZES[seed % len(SIZES)]
     cases = [
         Case("nothing", (), 0.0, seed * NOTHING_PER_SEED + n, ("white", "coloured")[n % 2], numerics)
@@ -72,7 +72,7 @@ def _of_seed(seed: int, numerics: str, strangers: bool) -> list[Case]:
     ]
     for kind, hidden in (
         *(("single", (identity,)) for identity in listed_effects()),
-        *(("unlisted", (identity,)) for identity in UNLISTED if strangers),
+        *(("unlisted", (identity,)) for identity in UNLISTED if with_unlisted),
         *(("pair", pair) for pair in PAIRS[seed % 2 :: 2]),
     ):
         sign = -1.0 if seed % 2 and kind != "pair" and both_signs(effect_source(hidden[0])) else 1.0

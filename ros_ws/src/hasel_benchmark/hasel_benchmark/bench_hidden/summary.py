@@ -53,7 +53,7 @@ def bars(outcomes: Sequence[Outcome]) -> list[Bar]:
         [o for o in answered if o.kind == kind] for kind in ("nothing", "single", "pair", "unlisted")
     )
     seen, hard = [o for o in single if o.visible], [o for o in single if not o.visible]
-    both, strangers = [o for o in pair if o.visible], [o for o in unlisted if o.visible]
+    both, seen_unlisted = [o for o in pair if o.visible], [o for o in unlisted if o.visible]
     explicable = [*seen, *both]
     white, coloured = ([o for o in nothing if o.colour == colour] for colour in ("white", "coloured"))
     covered = [e.covered for o in [*seen, *both] if o.all_named for e in o.estimates if e.covered is not None]
@@ -77,12 +77,15 @@ def bars(outcomes: Sequence[Outcome]) -> list[Bar]:
         ),
         _share(
             "not in the catalogue: a listed one accused",
-            strangers,
+            seen_unlisted,
             lambda o: o.accuses_with_confidence,
             most=0.1,
         ),
         _share(
-            "… said to be none of them, or not wholly", strangers, lambda o: o.says_none_of_them, least=0.8
+            "… said to be none of them, or not wholly",
+            seen_unlisted,
+            lambda o: o.says_none_of_them,
+            least=0.8,
         ),
         _share("two effects hidden: both named", both, lambda o: o.all_named, least=0.7),
         _share("… or within the stated groups", both, lambda o: o.all_named_within_group),

@@ -79,7 +79,7 @@ def test_hidden_values_are_plausible_and_not_null(identity):
 
 
 def test_whole_benchmark_covers_what_it_must():
-    """Every effect five times or more, nothing hidden forty times or more in both noises, pairs, and strangers."""
+    """Every effect five times or more, nothing hidden forty times or more in both noises, pairs, unlisted effects."""
     cases = list_cases(("nothing", "single", "pair", "unlisted"), range(5), (), "near")
     assert len({case.name for case in cases}) == len(cases)
     for identity in listed_effects():
@@ -90,9 +90,9 @@ def test_whole_benchmark_covers_what_it_must():
     assert len(nothing) >= 40
     assert nothing.count("white") == nothing.count("coloured")
     assert {case.effects for case in cases if case.kind == "pair"} == set(PAIRS)
-    strangers = [(case.effects, abs(case.size)) for case in cases if case.kind == "unlisted"]
-    assert len({effects for effects, _ in strangers}) >= 5
-    assert all(strangers.count((effects, size)) == 1 for effects, _ in strangers for size in (0.5, 1.0, 2.0))
+    unlisted = [(case.effects, abs(case.size)) for case in cases if case.kind == "unlisted"]
+    assert len({effects for effects, _ in unlisted}) >= 5
+    assert all(unlisted.count((effects, size)) == 1 for effects, _ in unlisted for size in (0.5, 1.0, 2.0))
 
 
 def test_every_single_effect_can_be_hidden_in_the_swimmer():

@@ -56,7 +56,7 @@ def test_stated_twin_counts_within_the_group_only():
     assert found.all_named_within_group and not found.all_named
 
 
-def test_stranger_named_is_wrong():
+def test_another_effect_named_is_wrong():
     """An effect outside the stated groups is neither."""
     found = outcome(["charging_lag"])
     assert not found.right and not found.right_within_group and found.accuses_with_confidence

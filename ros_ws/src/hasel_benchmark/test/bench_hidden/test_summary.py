@@ -33,7 +33,7 @@ def value(outcomes, words):
 
 
 def test_shares_of_right_answers():
-    """Three of four right, the fourth a stranger: 75 %, below the bar of 85 %."""
+    """Three of four right, the fourth an unlisted effect: 75 %, below the bar of 85 %."""
     outcomes = [outcome("single", ["gain_drift"], "gain_drift")] * 3 + [
         outcome("single", ["gain_drift"], "tether")
     ]

@@ -1,4 +1,4 @@
-"""What the model's own mesh and time step do to fitted values."""
+"""The discretisation error: what the model's own mesh and time step do to fitted values."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -33,7 +33,7 @@ def changes_by_refinement(problem: Problem, base: Evaluation) -> dict[str, np.nd
 
 
 def with_numerical_error(fit: FitResult, changes: Mapping[str, np.ndarray]) -> FitResult:
-    """The fit with standard errors that also hold the shift of the values that each refinement would bring.
+    """The fit with standard errors that also hold its discretisation error: the shift that each refinement would bring.
 
     A type B contribution: the shift, linearised, counts as one standard error (JCGM 100:2008, 4.3; ASME V&V 20-2009
     combines numerical and measurement uncertainty likewise). changes: as from `changes_by_refinement`.
