@@ -10,12 +10,13 @@ import numpy as np
 
 from hasel_sim.adjoint.weights import StateWeights, green_pulled_back, history_pulled_back
 from hasel_sim.mechanics.initial import start_of_motion
+from hasel_sim.mechanics.linearisation import Linearisation
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.residual_slopes import NoSlope, ResidualSlope, SolidSlope
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.statics import equilibrium_multiplier
 from hasel_sim.mechanics.stepper import Part, Stepper
-from hasel_sim.mechanics.system import Linearisation, System
+from hasel_sim.mechanics.system import System
 
 
 def reverse_step(

@@ -1,13 +1,13 @@
 """Forces out of balance and their matrix, in one compiled pass over the elements.
 
-What `compiled` does in one loop per quantity, with the same laws, coefficients and shapes; nothing but nodal forces,
-the band and the stress leaves the pass.
+What `constitutive` and `assembly` do in one loop per quantity, with the same laws, coefficients and shapes; nothing but
+nodal forces, the band and the stress leaves the pass.
 """
 
 import numpy as np
 from numba import njit
 
-from hasel_sim.mechanics.compiled import COEFFICIENTS, _thickness
+from hasel_sim.mechanics.constitutive import COEFFICIENTS, thickness
 from hasel_sim.mechanics.element_force import add_stress, add_to_nodes
 from hasel_sim.mechanics.simd import add, four, load, logarithm_near_one, square_root, store, three, zero
 from hasel_sim.mechanics.tangent import add_elastic_rows, viscous_rows
@@ -19,7 +19,7 @@ def balance(motion, solid, drive, added, masses, weights, expected, wanted, out,
 
     motion: position, velocity, acceleration [nodes, 2, lanes]; solid: elements, gradients, areas, stretch, muscle of
     each element, whether in plane stress; drive: coefficients per element, contraction, history of the branches (see
-    `compiled.first_piola`); added: index of every element among those with further stress or -1 [elements], first
+    `constitutive.first_piola`); added: index of every element among those with further stress or -1 [elements], first
     Piola stress of these [n, points, 4, lanes] and its derivative by the gradient of the end-of-step acceleration
     [n, points, 4, 4, lanes]; weights [3, lanes] of stiffness, damping and mass; wanted: (the matrix, with the geometric
     stiffness of the second Piola stress `expected` [elements, points, 3, lanes] in place of the one found); out:
@@ -75,7 +75,7 @@ def balance(motion, solid, drive, added, masses, weights, expected, wanted, out,
             inverse = 1.0 / J
             volume, bulk = J, lam
             if plane_stress:
-                f = _thickness(mu, lam, J, lane)
+                f = thickness(mu, lam, J, lane)
                 volume, bulk = J * f, lam * 2.0 * mu * f * f / (2.0 * mu * f * f + lam)
             pull = mu - lam * logarithm_near_one(volume, lane)
             q = (0.0 - pull) * inverse

@@ -4,7 +4,7 @@ import numpy as np
 
 from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics import banded_lu
-from hasel_sim.mechanics.compiled import clear_band
+from hasel_sim.mechanics.banded_lu import clear_band
 from hasel_sim.mechanics.simd import lane_tuple
 
 

@@ -173,3 +173,17 @@ def solve_transposed(A, n, k, reach, x, lane):
             value = load(x, at, lane)
             for t in range(lanes, (min(i, k) + 1) * lanes, lanes):
                 store(x, at - t, load(x, at - t, lane) - load(A, diagonal - t, lane) * value)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def clear_band(band, reach, diagonal, lane):
+    """Set to zero what lies within reach of the diagonal; the rest of a band matrix always is."""
+    lanes, width, first = len(lane), band.shape[1], 0
+    for row in range(band.shape[0]):
+        left, right = 0, width
+        if row < len(reach):
+            while first + reach[first] < row:
+                first += 1
+            left, right = diagonal - (row - first) - 4, min(width, diagonal + reach[row] + 5)
+        for at in range((row * width + left) * lanes, (row * width + right) * lanes, lanes):
+            store(band, at, zero(lane))

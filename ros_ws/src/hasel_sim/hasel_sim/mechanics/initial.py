@@ -4,11 +4,12 @@ import numpy as np
 
 from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.banded import BandFactors
+from hasel_sim.mechanics.linearisation import Linearisation
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.residual_slopes import ResidualSlope, SolidSlope
 from hasel_sim.mechanics.state import State, StateSlopes
 from hasel_sim.mechanics.statics import equilibrium, equilibrium_slope
-from hasel_sim.mechanics.system import Linearisation, System
+from hasel_sim.mechanics.system import System
 
 _EQUILIBRIUM_TOLERANCE = 1e-11
 

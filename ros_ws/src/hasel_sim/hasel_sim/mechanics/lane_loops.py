@@ -1,8 +1,8 @@
-"""Loops over arrays [..., lanes] that act on some of the lanes only."""
+"""Loops over nodal arrays [..., lanes]: weighted sums, and what acts on some of the lanes only."""
 
 from numba import njit
 
-from hasel_sim.mechanics.simd import load, of_lane, store, with_lane, zero
+from hasel_sim.mechanics.simd import four, load, of_lane, store, with_lane, zero
 
 
 @njit(inline="always")
@@ -37,3 +37,20 @@ def difference(more, less, out, lane):
             store(out, at, load(more, at, lane) - load(less, at, lane))
         else:
             store(out, at, zero(lane))
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def combine(position, velocity, acceleration, new, weights, x, v, a, lane):
+    """Weighted sums of nodal vectors [nodes, 2, lanes], as a time step needs them, into x, v and a.
+
+    weights [8, lanes]: of the velocity, acceleration and new acceleration in x; of the two accelerations in v and in a;
+    one more is not used.
+    """
+    lanes = len(lane)
+    xv, xa, xn, va = four(weights, 0, lane)
+    vn, aa, an, _ = four(weights, 4 * lanes, lane)
+    for at in range(0, position.size, lanes):
+        speed, old, now = load(velocity, at, lane), load(acceleration, at, lane), load(new, at, lane)
+        store(x, at, load(position, at, lane) + xv * speed + xa * old + xn * now)
+        store(v, at, speed + va * old + vn * now)
+        store(a, at, aa * old + an * now)

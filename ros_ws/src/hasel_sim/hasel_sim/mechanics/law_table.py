@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from hasel_sim.mechanics.linearisation import Strained
 from hasel_sim.mechanics.motion import DriveState, Motion
-from hasel_sim.mechanics.system import Strained, System
+from hasel_sim.mechanics.system import System
 
 
 class LawTable:

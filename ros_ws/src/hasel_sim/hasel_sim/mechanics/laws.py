@@ -67,3 +67,10 @@ def by_group(
             return np.ascontiguousarray(found.transpose(0, 2, 3, 1))
         out[..., lanes] = found.transpose(0, 2, 3, 1)
     return out
+
+
+def repeated(rows: np.ndarray, copies: int) -> np.ndarray:
+    """Rows [n, ...] as often as asked, one copy after the other, [copies n, ...]."""
+    out = np.empty((copies, *rows.shape), dtype=rows.dtype)
+    out[:] = rows
+    return out.reshape(-1, *rows.shape[1:])

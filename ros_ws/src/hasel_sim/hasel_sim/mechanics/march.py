@@ -13,10 +13,10 @@ the end position, length.
 
 from numba import njit
 
-from hasel_sim.mechanics.compiled import combine, deformation, green_stress
-from hasel_sim.mechanics.lane_loops import chosen_of, copy_lanes
+from hasel_sim.mechanics.lane_loops import chosen_of, combine, copy_lanes
 from hasel_sim.mechanics.newton import newton
 from hasel_sim.mechanics.simd import load, store, zero
+from hasel_sim.mechanics.strain import deformation, green_stress
 
 PREDICT, BALANCE, COMMIT = 1, 2, 4
 MOST_WITH_ONE_MATRIX, MOST_ITERATIONS = 5, 15

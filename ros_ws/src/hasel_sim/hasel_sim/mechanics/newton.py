@@ -9,8 +9,7 @@ from numba import njit
 
 from hasel_sim.mechanics import banded_lu
 from hasel_sim.mechanics.balance import balance
-from hasel_sim.mechanics.compiled import clear_band, combine
-from hasel_sim.mechanics.lane_loops import copy_lanes, difference, subtract_lanes
+from hasel_sim.mechanics.lane_loops import combine, copy_lanes, difference, subtract_lanes
 from hasel_sim.mechanics.law_terms import add_site_matrix
 from hasel_sim.mechanics.simd import store, zero
 
@@ -119,7 +118,7 @@ def newton(
         if fresh and spoilt[0]:
             band[:] = 0.0
         elif fresh:
-            clear_band(band, reach, diagonal, lane)
+            banded_lu.clear_band(band, reach, diagonal, lane)
         balance(
             (x, v, a),
             solid,

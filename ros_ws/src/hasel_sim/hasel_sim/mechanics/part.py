@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hasel_sim.mechanics.compiled import combine
 from hasel_sim.mechanics.generalised_alpha import StepCoefficients
+from hasel_sim.mechanics.lane_loops import combine
 from hasel_sim.mechanics.motion import DriveState, Motion
 from hasel_sim.mechanics.simd import lane_tuple
 from hasel_sim.mechanics.state import State

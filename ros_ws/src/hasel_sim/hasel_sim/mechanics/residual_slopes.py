@@ -6,11 +6,12 @@ from typing import Any, Protocol
 import numpy as np
 
 from hasel_sim.mechanics.force_law import ForceLaw
+from hasel_sim.mechanics.linearisation import Strained
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.solid import Solid
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.stress_law import StressLaw
-from hasel_sim.mechanics.system import Strained, System
+from hasel_sim.mechanics.system import System
 
 
 class ResidualSlope(Protocol):

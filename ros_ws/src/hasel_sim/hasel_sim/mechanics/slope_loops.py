@@ -8,7 +8,7 @@ that only damping, inertia and what a parameter changes at a fixed motion are le
 import numpy as np
 from numba import njit
 
-from hasel_sim.mechanics.compiled import COEFFICIENTS
+from hasel_sim.mechanics.constitutive import COEFFICIENTS
 from hasel_sim.mechanics.element_force import add_stress, add_to_nodes, product
 from hasel_sim.mechanics.lane_loops import chosen_of
 from hasel_sim.mechanics.simd import add, four, load, square_root, store, three, zero

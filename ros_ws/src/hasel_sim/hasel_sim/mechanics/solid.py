@@ -6,7 +6,7 @@ from copy import copy
 import numpy as np
 
 from hasel_sim.effects.base import Coefficients
-from hasel_sim.mechanics import compiled
+from hasel_sim.mechanics import assembly, constitutive, strain
 from hasel_sim.mechanics.branches import Branches
 from hasel_sim.mechanics.simd import lane_tuple
 from hasel_sim.mesh.mesh import Mesh
@@ -45,12 +45,12 @@ class Solid:
         if plane_stress:
             lame = 2 * material.shear * lame / (lame + 2 * material.shear)
         self.shear, self.linear_lame = material.shear[:, None].copy(), lame[:, None].copy()
-        self._table = np.zeros((len(mesh.elements), compiled.COEFFICIENTS, 1))
-        self._table[:, compiled.SHEAR, 0] = material.equilibrium * material.shear
-        self._table[:, compiled.LAME, 0] = material.equilibrium * material.lame
-        self._table[:, compiled.VISCOUS_SHEAR, 0] = material.retardation * material.shear
-        self._table[:, compiled.VISCOUS_LAME, 0] = material.retardation * lame
-        self._table[:, compiled.FIBRE, 0] = np.where(self.muscle > 0, material.fibre, 0.0)
+        self._table = np.zeros((len(mesh.elements), constitutive.COEFFICIENTS, 1))
+        self._table[:, constitutive.SHEAR, 0] = material.equilibrium * material.shear
+        self._table[:, constitutive.LAME, 0] = material.equilibrium * material.lame
+        self._table[:, constitutive.VISCOUS_SHEAR, 0] = material.retardation * material.shear
+        self._table[:, constitutive.VISCOUS_LAME, 0] = material.retardation * lame
+        self._table[:, constitutive.FIBRE, 0] = np.where(self.muscle > 0, material.fibre, 0.0)
         self._use_lanes()
 
     def _use_lanes(self) -> None:
@@ -86,7 +86,7 @@ class Solid:
                 f"a field has the shape {field.shape}; expected {(self._nodes, 2, self._shape[-1])}"
             )
         out = np.empty(self._shape)
-        compiled.deformation(
+        strain.deformation(
             np.ascontiguousarray(field), self.elements, self.gradients, self.stretch, out, self._lane
         )
         return out
@@ -101,21 +101,21 @@ class Solid:
         gain = self.branches.factors(step)[1].sum(axis=0)
         if self._last_table is None or not np.array_equal(self._last_table[0], gain):
             table = self._table.copy()
-            table[:, compiled.BRANCH_SHEAR] = gain * self.shear
-            table[:, compiled.BRANCH_LAME] = gain * self.linear_lame
+            table[:, constitutive.BRANCH_SHEAR] = gain * self.shear
+            table[:, constitutive.BRANCH_LAME] = gain * self.linear_lame
             self._last_table = gain, table
         return self._last_table[1]
 
     def green_stress(self, F: np.ndarray) -> np.ndarray:
         """C : E at the Gauss points (xx, yy, xy), [elements, points, 3, lanes]."""
         out = np.empty((*self.areas.shape, 3, F.shape[-1]))
-        compiled.green_stress(F, self.shear, self.linear_lame, out, self._lane)
+        strain.green_stress(F, self.shear, self.linear_lame, out, self._lane)
         return out
 
     def green_stress_along(self, F: np.ndarray, change: np.ndarray) -> np.ndarray:
         """Change of C : E along a change of F."""
         out = np.empty((*self.areas.shape, 3, F.shape[-1]))
-        compiled.green_stress_direction(F, change, self.shear, self.linear_lame, out, self._lane)
+        strain.green_stress_direction(F, change, self.shear, self.linear_lame, out, self._lane)
         return out
 
     def _at(self, F, rate, contraction: np.ndarray, history: np.ndarray | None, step) -> tuple:
@@ -133,22 +133,22 @@ class Solid:
     def stress(self, F, rate, contraction: np.ndarray, history: np.ndarray | None, step) -> np.ndarray:
         """First Piola stress; history: `Branches.history` or None; contraction: [muscles, lanes]."""
         P = np.empty_like(F)
-        compiled.first_piola(*self._at(F, rate, contraction, history, step), P, self._lane)
+        constitutive.first_piola(*self._at(F, rate, contraction, history, step), P, self._lane)
         return P
 
     def moduli(self, F, rate, contraction, history, step) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of `stress` by F and by its rate, [elements, points, 4, 4, lanes]; valid until the next call."""
         elastic, viscous = self.kept_moduli
-        compiled.moduli(*self._at(F, rate, contraction, history, step), elastic, viscous, self._lane)
+        constitutive.moduli(*self._at(F, rate, contraction, history, step), elastic, viscous, self._lane)
         return elastic, viscous
 
     def add_force(self, P: np.ndarray, out: np.ndarray) -> None:
         """Add the nodal forces of a stress to out [nodes, 2, lanes]."""
-        compiled.scatter_stress(P, *self.places, out, self._lane)
+        assembly.scatter_stress(P, *self.places, out, self._lane)
 
     def contraction_force(self, F: np.ndarray) -> np.ndarray:
         """Derivative of the internal force by each muscle's contraction, [muscles, nodes, 2, lanes]."""
         out = np.empty((self._muscles, self._nodes, 2, F.shape[-1]))
         mesh = self.elements, self.gradients, self.areas
-        compiled.contraction_force(F, self._table, self.muscle, *mesh, out, self._lane)
+        assembly.contraction_force(F, self._table, self.muscle, *mesh, out, self._lane)
         return out

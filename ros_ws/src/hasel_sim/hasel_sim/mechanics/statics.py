@@ -7,8 +7,9 @@ in the shape that these loads and its own inertia bend it into ("inertia relief"
 import numpy as np
 
 from hasel_sim.errors import SimulationError
+from hasel_sim.mechanics.linearisation import Linearisation
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
-from hasel_sim.mechanics.system import Linearisation, System
+from hasel_sim.mechanics.system import System
 
 _HELD = 1e-3
 """Stiffness over mass [1/s^2] above which the surroundings hold a rigid motion of a free body."""

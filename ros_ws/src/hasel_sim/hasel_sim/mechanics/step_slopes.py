@@ -5,15 +5,16 @@ import numpy as np
 from hasel_sim.mechanics import slope_loops
 from hasel_sim.mechanics.balance import balance
 from hasel_sim.mechanics.banded import BandMatrix, singular_matrix
-from hasel_sim.mechanics.compiled import clear_band
+from hasel_sim.mechanics.banded_lu import clear_band
 from hasel_sim.mechanics.law_table import LawTable
 from hasel_sim.mechanics.law_terms import add_site_matrix
+from hasel_sim.mechanics.linearisation import Strained
 from hasel_sim.mechanics.newton import factorise, solve
 from hasel_sim.mechanics.part import Part
 from hasel_sim.mechanics.residual_slopes import ResidualSlope, SolidSlope
 from hasel_sim.mechanics.simd import lane_tuple
 from hasel_sim.mechanics.state import State, StateSlopes
-from hasel_sim.mechanics.system import Strained, System
+from hasel_sim.mechanics.system import System
 
 
 class StepSlopes:

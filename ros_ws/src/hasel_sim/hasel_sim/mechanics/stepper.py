@@ -7,12 +7,13 @@ import numpy as np
 from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.banded import BandFactors, BandMatrix
 from hasel_sim.mechanics.generalised_alpha import StepCoefficients
+from hasel_sim.mechanics.linearisation import Linearisation
 from hasel_sim.mechanics.marcher import Drives, Marcher
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.part import Part
 from hasel_sim.mechanics.seen import Seen
 from hasel_sim.mechanics.state import State
-from hasel_sim.mechanics.system import Linearisation, System
+from hasel_sim.mechanics.system import System
 
 _MOST_HALVINGS = 8
 """A step that cannot be followed is halved up to this often: to 1/256 of its length."""

@@ -7,8 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from hasel_sim.effects.base import MaterialEffect, MaterialPoints
-from hasel_sim.mechanics.force_law import repeated
-from hasel_sim.mechanics.laws import by_group, grouped, one_by_one, watched
+from hasel_sim.mechanics.laws import by_group, grouped, one_by_one, repeated, watched
 from hasel_sim.mechanics.motion import DriveState
 from hasel_sim.mesh.mesh import Mesh
 

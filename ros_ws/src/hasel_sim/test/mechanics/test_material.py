@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_sim.mechanics import compiled
+from hasel_sim.mechanics import constitutive, strain
 from hasel_sim.mechanics.branches import Branches
 from hasel_sim.mechanics.simd import lane_tuple
 from scipy.optimize import minimize_scalar
@@ -41,7 +41,7 @@ def _arguments(viscous: bool, plane_stress: bool, history=(0.0, 0.0, 0.0), branc
 
 def _stress(f, rate, arguments) -> np.ndarray:
     out = np.empty((1, 1, 4, 1))
-    compiled.first_piola(_point(f), _point(rate), *arguments, out, ONE)
+    constitutive.first_piola(_point(f), _point(rate), *arguments, out, ONE)
     return out[0, 0, :, 0]
 
 
@@ -73,7 +73,7 @@ def test_moduli_are_the_derivatives_of_the_stress(plane_stress):
     """By F and by its rate, with damping, fibres, branches and their history."""
     arguments = _arguments(True, plane_stress, (300.0, -200.0, 100.0), (5e3, 4e4))
     elastic, viscous = np.empty((1, 1, 4, 4, 1)), np.empty((1, 1, 4, 4, 1))
-    compiled.moduli(_point(F), _point(RATE), *arguments, elastic, viscous, ONE)
+    constitutive.moduli(_point(F), _point(RATE), *arguments, elastic, viscous, ONE)
     by_deformation = _difference(lambda f: _stress(f, RATE, arguments), F)
     by_rate = _difference(lambda r: _stress(F, r, arguments), RATE)
     assert elastic[0, 0, ..., 0] == pytest.approx(by_deformation, rel=1e-6, abs=1e-3)
@@ -104,11 +104,11 @@ def test_green_stress_and_its_direction_agree():
 
     def value(f):
         out = np.empty((1, 1, 3, 1))
-        compiled.green_stress(_point(f), shear, lame, out, ONE)
+        strain.green_stress(_point(f), shear, lame, out, ONE)
         return out[0, 0, :, 0]
 
     out = np.empty((1, 1, 3, 1))
-    compiled.green_stress_direction(_point(F), _point(RATE), shear, lame, out, ONE)
+    strain.green_stress_direction(_point(F), _point(RATE), shear, lame, out, ONE)
     expected = (value(F + STEP * RATE) - value(F - STEP * RATE)) / (2 * STEP)
     assert out[0, 0, :, 0] == pytest.approx(expected, rel=1e-7)
 

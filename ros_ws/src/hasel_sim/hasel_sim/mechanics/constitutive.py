@@ -1,0 +1,174 @@
+"""Stress of the solid and its muscles at every Gauss point, and its derivatives.
+
+Every array has the lanes as its last axis (see `simd.py`). Indices of a deformation gradient run 00, 01, 10, 11
+(row-major). Coefficients per element, in this order: shear modulus and Lamé's first parameter of the neo-Hookean solid
+[Pa], the same two of the viscous stress [Pa s], the same two of the elastic stress that internal branches add within a
+step [Pa], fibre stiffness [Pa].
+
+Neo-Hookean, W = mu/2 (I1 - 2 - 2 ln J) + lambda/2 (ln J)^2: P = mu (F - F^-T) + lambda ln J F^-T (Bonet and Wood,
+Nonlinear Continuum Mechanics for Finite Element Analysis, section 6.4). Kelvin-Voigt:
+S = lambda_v tr(dE/dt) I + 2 mu_v dE/dt. Fibre along x: 1/2 w (|F m| - (1 - a))^2.
+
+A trial shape with an element of no area gives infinities, which end that trial, and no ZeroDivisionError.
+"""
+
+import numpy as np
+from numba import njit
+
+from hasel_sim.mechanics.simd import (
+    add,
+    four,
+    load,
+    logarithm,
+    of_lane,
+    square_root,
+    store,
+    three,
+    with_lane,
+    zero,
+)
+
+COEFFICIENTS = 7
+SHEAR, LAME, VISCOUS_SHEAR, VISCOUS_LAME, BRANCH_SHEAR, BRANCH_LAME, FIBRE = range(COEFFICIENTS)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def through_thickness_stretch(shear, lame, area_ratio):
+    """Stretch f with no stress through the thickness: mu (f^2 - 1) + lambda ln(area_ratio f) = 0 (Newton)."""
+    f = area_ratio ** (-lame / (lame + 2.0 * shear))
+    for _ in range(50):
+        step = (shear * (f * f - 1.0) + lame * np.log(area_ratio * f)) / (2.0 * shear * f + lame / f)
+        f -= step
+        if abs(step) < 1e-15:
+            break
+    return f
+
+
+@njit(inline="always")
+def thickness(shear, lame, area_ratio, lane):
+    """The same in every lane."""
+    out = zero(lane)
+    for n in range(len(lane)):
+        out = with_lane(
+            out, n, through_thickness_stretch(of_lane(shear, n), of_lane(lame, n), of_lane(area_ratio, n))
+        )
+    return out
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def first_piola(F, rate, coefficients, muscle, contraction, history, plane_stress, P, lane):
+    """First Piola stress [Pa] at every Gauss point.
+
+    F, rate: deformation gradient and its rate, P: result, all [elements, points, 4, lanes]; contraction:
+    [1 + muscles, lanes] with 0 first; history: second Piola stress of the internal branches from earlier steps
+    [elements, points, 3, lanes] (xx, yy, xy).
+    """
+    lanes, points = len(lane), F.shape[1]
+    for e in range(F.shape[0]):
+        own = COEFFICIENTS * lanes * e
+        mu, lam, muv, lamv = four(coefficients, own, lane)
+        mub, lamb, w = three(coefficients, own + 4 * lanes, lane)
+        rest = 1.0 - load(contraction, muscle[e] * lanes, lane)
+        for g in range(points):
+            at = 4 * lanes * (e * points + g)
+            a, b, c, d = four(F, at, lane)
+            ra, rb, rc, rd = four(rate, at, lane)
+            hxx, hyy, hxy = three(history, 3 * lanes * (e * points + g), lane)
+            J = a * d - b * c
+            volume = J
+            if plane_stress:
+                volume = J * thickness(mu, lam, J, lane)
+            q = (lam * logarithm(volume) - mu) / J
+            exx, eyy, exy = a * ra + c * rc, b * rb + d * rd, 0.5 * (a * rb + b * ra + c * rd + d * rc)
+            gxx, gyy = 0.5 * (a * a + c * c - 1.0), 0.5 * (b * b + d * d - 1.0)
+            trace = lamv * (exx + eyy) + lamb * (gxx + gyy)
+            sxx = trace + 2.0 * (muv * exx + mub * gxx) + hxx
+            syy = trace + 2.0 * (muv * eyy + mub * gyy) + hyy
+            sxy = 2.0 * muv * exy + mub * (a * b + c * d) + hxy
+            p0 = mu * a + q * d + a * sxx + b * sxy
+            p2 = mu * c - q * b + c * sxx + d * sxy
+            if muscle[e] != 0:
+                tension = w * (1.0 - rest / square_root(a * a + c * c))
+                p0, p2 = p0 + tension * a, p2 + tension * c
+            store(P, at, p0)
+            store(P, at + lanes, mu * b - q * c + a * sxy + b * syy)
+            store(P, at + 2 * lanes, p2)
+            store(P, at + 3 * lanes, mu * d + q * a + c * sxy + d * syy)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def moduli(F, rate, coefficients, muscle, contraction, history, plane_stress, elastic, viscous, lane):
+    """Derivatives of the first Piola stress by F (elastic) and its rate (viscous), [elements, points, 4, 4, lanes]."""
+    lanes, points = len(lane), F.shape[1]
+    none = zero(lane)
+    for e in range(F.shape[0]):
+        own = COEFFICIENTS * lanes * e
+        mu, lam, muv, lamv = four(coefficients, own, lane)
+        mub, lamb, w = three(coefficients, own + 4 * lanes, lane)
+        rest = 1.0 - load(contraction, muscle[e] * lanes, lane)
+        for g in range(points):
+            point = e * points + g
+            at = 4 * lanes * point
+            a, b, c, d = four(F, at, lane)
+            ra, rb, rc, rd = four(rate, at, lane)
+            S00, S11, S01 = three(history, 3 * lanes * point, lane)
+            deform, speed = ((a, b), (c, d)), ((ra, rb), (rc, rd))
+            J = a * d - b * c
+            inverse = ((d / J, (0.0 - b) / J), ((0.0 - c) / J, a / J))
+            log_volume, bulk = none, lam
+            if plane_stress:
+                f = thickness(mu, lam, J, lane)
+                log_volume, bulk = logarithm(J * f), lam * 2.0 * mu * f * f / (2.0 * mu * f * f + lam)
+            else:
+                log_volume = logarithm(J)
+            exx, eyy, exy = a * ra + c * rc, b * rb + d * rd, 0.5 * (a * rb + b * ra + c * rd + d * rc)
+            gxx, gyy = 0.5 * (a * a + c * c - 1.0), 0.5 * (b * b + d * d - 1.0)
+            trace = lamv * (exx + eyy) + lamb * (gxx + gyy)
+            S00 = S00 + trace + 2.0 * (muv * exx + mub * gxx)
+            S11 = S11 + trace + 2.0 * (muv * eyy + mub * gyy)
+            S01 = S01 + 2.0 * muv * exy + mub * (a * b + c * d)
+            S = ((S00, S01), (S01, S11))
+            pull = mu - lam * log_volume
+            for k in range(2):
+                for L in range(2):
+                    # variation of F (and of its rate) by the unit tensor e_k (x) e_L
+                    dxx, dyy, dxy = none, none, 0.5 * speed[k][1 - L]
+                    hxx, hyy, hxy = none, none, 0.5 * deform[k][1 - L]
+                    if L == 0:
+                        dxx, hxx = speed[k][0], deform[k][0]
+                    else:
+                        dyy, hyy = speed[k][1], deform[k][1]
+                    both = lamv * (dxx + dyy) + lamb * (hxx + hyy)
+                    txx = both + 2.0 * (muv * dxx + mub * hxx)
+                    tyy = both + 2.0 * (muv * dyy + mub * hyy)
+                    txy = 2.0 * (muv * dxy + mub * hxy)
+                    vxx = lamv * (hxx + hyy) + 2.0 * muv * hxx
+                    vyy = lamv * (hxx + hyy) + 2.0 * muv * hyy
+                    vxy = 2.0 * muv * hxy
+                    for i in range(2):
+                        fx, fy = deform[i][0], deform[i][1]
+                        here = (16 * point + 8 * i + 2 * k + L) * lanes
+                        store(viscous, here, fx * vxx + fy * vxy)
+                        store(viscous, here + 4 * lanes, fx * vxy + fy * vyy)
+                        for j in range(2):
+                            value = (
+                                pull * inverse[j][k] * inverse[L][i] + bulk * inverse[j][i] * inverse[L][k]
+                            )
+                            if i == k:
+                                value = value + S[L][j]
+                                if j == L:
+                                    value = value + mu
+                            if j == 0:
+                                value = value + fx * txx + fy * txy
+                            else:
+                                value = value + fx * txy + fy * tyy
+                            store(elastic, here + 4 * j * lanes, value)
+            if muscle[e] != 0:
+                stretch = square_root(a * a + c * c)
+                tension = w * (1.0 - rest / stretch)
+                slope = w * rest / (stretch * stretch * stretch)
+                here = 16 * point * lanes
+                add(elastic, here, tension + slope * a * a)
+                add(elastic, here + 2 * lanes, slope * a * c)
+                add(elastic, here + 8 * lanes, slope * a * c)
+                add(elastic, here + 10 * lanes, tension + slope * c * c)
