@@ -14,7 +14,7 @@ from hasel_sim.mechanics.stepper import Stepper
 from hasel_sim.mechanics.steps import StepPlan, plan_steps
 from hasel_sim.model import Model
 from hasel_sim.model.constants import constants
-from hasel_sim.model.model import response_parameters
+from hasel_sim.model.start_values import response_parameters
 from hasel_sim.run import Run
 
 

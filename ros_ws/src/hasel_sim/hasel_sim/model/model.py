@@ -1,6 +1,6 @@
 """The model: a validated description, its effects and its parameters; never changed, only copied with changes."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import SimpleNamespace
@@ -13,27 +13,12 @@ from hasel_sim.effects.base import Effect
 from hasel_sim.effects.registry import find_effects
 from hasel_sim.errors import ModelError, nearest_name
 from hasel_sim.model.constants import constants, unit_of, with_constants
+from hasel_sim.model.covariance import covariance_of, uncorrelated, with_covariance
 from hasel_sim.model.description import Description, Numerics
-from hasel_sim.model.muscle_law import law_parameters
+from hasel_sim.model.effects_together import check_together
 from hasel_sim.model.parameter import Parameter
+from hasel_sim.model.start_values import amplitude_parameters
 from hasel_sim.model.validation import sentence_for
-
-_AMPLITUDE_START = 0.04
-"""Contraction at which the highest level of a drive is first tried."""
-_START_VOLTAGE = 5500.0
-"""Voltage [V] of a Peano-HASEL at which that contraction is a good first guess."""
-_RESPONSES = {
-    "sloped_box": (("slope", 0.5, "1/s", 0.02, 50.0),),
-    "first_order": (("rise_time", 0.05, "s", 0.0, 2.0), ("fall_time", 0.05, "s", 0.0, 2.0)),
-}
-
-
-def response_parameters(description: Description) -> dict[str, Parameter]:
-    """What a body with muscles always has besides its amplitudes: how fast the contraction follows, and its law's."""
-    if not description.muscles:
-        return {}
-    response = {row[0]: Parameter(*row) for row in _RESPONSES[description.muscle_response]}
-    return {**law_parameters(), **response} if description.muscle else response
 
 
 @dataclass(frozen=True)
@@ -140,37 +125,16 @@ class Model:
         for name, value in values.items():
             error = (standard_errors or {}).get(name, self.parameter(name).standard_error)
             parameters[name] = replace(self.parameter(name), value=float(value), standard_error=error)
-        return replace(self, parameters=_uncorrelated(parameters, standard_errors or ()))
+        return replace(self, parameters=uncorrelated(parameters, standard_errors or ()))
 
     def with_covariance(self, names: Sequence[str], covariance: np.ndarray) -> "Model":
         """A copy in which the errors of these parameters have this covariance [n, n], infinite where not determined."""
-        errors = np.sqrt(np.diag(covariance))
-        parameters = _uncorrelated(self.parameters, names)
-        for row, name in enumerate(names):
-            known = bool(np.isfinite(errors[row]))
-            beside = [column for column in range(row) if known and 0 < errors[row] * errors[column] < np.inf]
-            correlations = {
-                names[column]: round(float(covariance[row, column] / (errors[row] * errors[column])), 6)
-                for column in beside
-            }
-            parameters[name] = replace(
-                self.parameter(name),
-                standard_error=float(errors[row]) if known else None,
-                correlations={other: min(max(value, -1.0), 1.0) for other, value in correlations.items()},
-            )
-        return replace(self, parameters=parameters)
+        checked = [self.parameter(name).name for name in names]
+        return replace(self, parameters=with_covariance(self.parameters, checked, covariance))
 
     def covariance(self, names: Sequence[str]) -> np.ndarray:
         """Covariance [n, n] of the errors of these parameters; infinite where one has none."""
-        own = [self.parameter(name) for name in names]
-        errors = np.array([np.inf if p.standard_error is None else p.standard_error for p in own])
-        out = np.diag(errors**2)
-        for row, p in enumerate(own):
-            for column, other in enumerate(own):
-                between = p.correlations.get(other.name, other.correlations.get(p.name, 0.0))
-                if row != column and between and np.isfinite(errors[row] * errors[column]):
-                    out[row, column] = between * errors[row] * errors[column]
-        return out
+        return covariance_of([self.parameter(name) for name in names])
 
     def with_freed(self, *names: str) -> "Model":
         """A copy in which these constants of the file are parameters, at the file's values.
@@ -207,17 +171,7 @@ class Model:
 
         levels: of every channel in its SI unit, or by the name of a channel for those that contract alike.
         """
-        amplitudes: dict[str, Parameter] = {}
-        for table in self.tables:
-            if isinstance(levels, Mapping):
-                own = np.unique(np.concatenate([[], *(levels[c] for c in table.channels if c in levels)]))
-            else:
-                own = np.unique(levels)
-            for level in own:
-                name = table.name(level)
-                highest = _START_VOLTAGE if table.unit == "V" else float(own[-1])
-                start = Parameter(name, _AMPLITUDE_START * float(level) / highest, "1", 0.0, table.largest)
-                amplitudes[name] = self.parameters.get(name, start)
+        amplitudes = amplitude_parameters(self.tables, levels, self.parameters)
         kept = {name: p for name, p in self.parameters.items() if not self.is_amplitude(name)}
         lawful = [
             levels.get(name, []) if isinstance(levels, Mapping) else levels
@@ -284,56 +238,3 @@ class Model:
                 f"numerics.{problem['loc'][0]} is {problem['input']!r}; {problem['msg'].lower()}: correct it"
             ) from None
         return replace(self, description=self.description.model_copy(update={"numerics": numerics}))
-
-
-def _uncorrelated(parameters: Mapping[str, Parameter], names: Iterable[str]) -> dict[str, Parameter]:
-    """The parameters without what is known of correlations with these."""
-    gone = set(names)
-    return {
-        name: replace(p, correlations={})
-        if name in gone
-        else replace(p, correlations={o: v for o, v in p.correlations.items() if o not in gone})
-        if gone & set(p.correlations)
-        else p
-        for name, p in parameters.items()
-    }
-
-
-def check_together(effects: tuple[Effect, ...], model: Model) -> None:
-    """Refuse effects that cannot stand side by side, or not on this body, with a ModelError."""
-    seen: dict[str, str] = {}
-    for effect in effects:
-        for word in filter(None, (effect.id, effect.exclusive)):
-            if word in seen:
-                reason = "is there twice" if seen[word] == effect.id else f"does the same as '{seen[word]}'"
-                raise ModelError(
-                    f"effect '{effect.id}' {reason}; expected one of each kind: remove one of the two"
-                )
-            seen[word] = effect.id
-        if effect.needs_muscles and not model.has_muscles:
-            raise ModelError(
-                f"effect '{effect.id}' acts on the muscles, and model '{model.name}' has none; "
-                "remove it or use a model with muscles"
-            )
-        if effect.needs_spine and not model.has_spine:
-            raise ModelError(
-                f"effect '{effect.id}' acts on the spine, and model '{model.name}' has none; "
-                "remove it or use a model whose body has a spine"
-            )
-        count = len(model.description.muscles)
-        if effect.needs_antagonists and count != 2:
-            raise ModelError(
-                f"effect '{effect.id}' compares two muscles, and model '{model.name}' has {count}; remove it or use a "
-                "model with two"
-            )
-        if effect.needs_medium and model.description.medium is None:
-            raise ModelError(
-                f"effect '{effect.id}' is a force of the fluid around the body, and model '{model.name}' names none; "
-                "remove it or add a section medium"
-            )
-        quantities = sorted({channel.quantity for channel in model.description.channels})
-        if effect.quantity and effect.quantity not in quantities:
-            raise ModelError(
-                f"effect '{effect.id}' acts on a {effect.quantity}, and model '{model.name}' is driven by "
-                f"{', '.join(quantities) or 'nothing'}; remove it or use a model with such a channel"
-            )

@@ -16,10 +16,11 @@ from hasel_sim.errors import ModelError, nearest_name
 from hasel_sim.model.constants import constants, unit_of
 from hasel_sim.model.description import Description, ParameterEntry
 from hasel_sim.model.former import is_former, translated
-from hasel_sim.model.model import Model, response_parameters
+from hasel_sim.model.model import Model
 from hasel_sim.model.muscle_law import MuscleLaw
 from hasel_sim.model.parameter import Parameter
 from hasel_sim.model.plausible import implausible
+from hasel_sim.model.start_values import response_parameters
 from hasel_sim.model.validation import sentence_for
 
 
