@@ -4,6 +4,7 @@ import json
 
 import pytest
 from hasel_sim.commands import parsers
+from hasel_sim.commands.argument_types import numbers
 from hasel_sim.commands.swim import main
 from hasel_sim.model import load_model, save_model
 
@@ -73,5 +74,5 @@ def test_options_that_make_no_sense_are_refused(capsys, option, value):
 
 def test_ranges_include_their_end():
     """1:10:0.5 are nineteen frequencies."""
-    assert len(parsers.numbers("1:10:0.5")) == 19
-    assert parsers.numbers("1:10:0.5")[-1] == 10.0
+    assert len(numbers("1:10:0.5")) == 19
+    assert numbers("1:10:0.5")[-1] == 10.0

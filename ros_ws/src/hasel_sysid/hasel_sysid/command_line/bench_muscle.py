@@ -23,9 +23,9 @@ from hasel_sysid.bench_muscle.stroke_table import Rival, rival_table
 from hasel_sysid.bench_muscle.swinging import Swinging, swinging
 from hasel_sysid.bench_muscle.where_it_fails import where_it_fails
 from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.parsers import bench_muscle_parser
 from hasel_sysid.command_line.progress import progress_bar
 from hasel_sysid.command_line.running import run_command
+from hasel_sysid.command_line.specimen_parsers import bench_muscle_parser
 from hasel_sysid.errors import SysidError
 
 MUSCLE_FILE, PICTURE_FILE, REPORT_FILE = "muscle.yaml", "bench_muscle.png", "bench_muscle.html"

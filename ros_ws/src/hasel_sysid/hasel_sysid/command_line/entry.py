@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable
 from importlib import import_module
 
-from hasel_sysid.command_line import parsers
+from hasel_sysid.command_line import parsers, specimen_parsers
 
 
 def check() -> int:
@@ -41,12 +41,12 @@ def suggest() -> int:
 
 def bench_muscle() -> int:
     """`bench_muscle RECORDING…`."""
-    return _run(parsers.bench_muscle_parser, "bench_muscle")
+    return _run(specimen_parsers.bench_muscle_parser, "bench_muscle")
 
 
 def measured_fish() -> int:
     """`measured_fish DIR`."""
-    return _run(parsers.measured_fish_parser, "measured_fish")
+    return _run(specimen_parsers.measured_fish_parser, "measured_fish")
 
 
 def workbench() -> int:

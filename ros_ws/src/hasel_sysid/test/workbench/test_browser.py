@@ -12,7 +12,8 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
-from hasel_sysid.workbench.bench.browser import Browser, BrowserPage, find_browser
+from hasel_sysid.workbench.bench.browser import Browser, find_browser
+from hasel_sysid.workbench.bench.browser_page import BrowserPage
 
 pytest.importorskip("nicegui", reason="NiceGUI is not installed: the extra `workbench`")
 pytestmark = [

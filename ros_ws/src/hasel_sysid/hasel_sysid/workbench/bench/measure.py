@@ -4,7 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from hasel_sysid.workbench.bench.browser import Browser, BrowserPage
+from hasel_sysid.workbench.bench.browser import Browser
+from hasel_sysid.workbench.bench.browser_page import BrowserPage
 
 _DRAGS, _PATIENCE_S = 12, 300.0
 _DRAG = (
