@@ -11,10 +11,10 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from hasel_sim.build import marker_points, model_mesh
 from hasel_sim.errors import ModelError
 from hasel_sim.mesh.mesh import Mesh, Region
 from hasel_sim.model import Model
+from hasel_sim.model_mesh import marker_points, model_mesh
 
 SUFFIXES = (".png", ".svg", ".pdf")
 SOFT, SPINE = "#d9d2c5", "#44505c"

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hasel_sim.build import Builder, constant_parameter, difference_points, marker_rows
+from hasel_sim.build import Builder, constant_parameter, difference_points
 from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.schedule import no_drive
 from hasel_sim.effects.base import DriveEffect, EffectParameter, ObservationEffect
@@ -15,6 +15,7 @@ from hasel_sim.mechanics.steps import StepPlan, plan_steps
 from hasel_sim.model import Model
 from hasel_sim.model.constants import constants
 from hasel_sim.model.start_values import response_parameters
+from hasel_sim.model_mesh import marker_rows
 from hasel_sim.run import Run
 
 

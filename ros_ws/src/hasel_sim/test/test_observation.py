@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from hasel_sim.build import Builder, marker_points
+from hasel_sim.build import Builder
+from hasel_sim.model_mesh import marker_points
 from hasel_sim.observation import MarkerRows
 
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from hasel_sim.build import model_mesh
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import Model, load_model
+from hasel_sim.model_mesh import model_mesh
 from hasel_sim.run import Run
 
 FRAMES_PER_SECOND = 120.0

@@ -8,8 +8,8 @@ from collections.abc import Callable
 import numpy as np
 from scipy.linalg import lapack
 
-from hasel_sim.build import model_mesh
 from hasel_sim.model import Model
+from hasel_sim.model_mesh import model_mesh
 
 
 def band_solutions(model: Model, times: int) -> Callable[[], None]:

@@ -12,8 +12,24 @@ from typing import ClassVar
 
 import numpy as np
 
-from hasel_sim.errors import ModelError
+from hasel_sim.effects.material_points import Coefficients, MaterialPoints
+from hasel_sim.effects.site_state import SiteState, Surroundings, normal
 from hasel_sim.mesh.mesh import Region
+
+__all__ = [
+    "Coefficients",
+    "DriveEffect",
+    "DriveStage",
+    "Effect",
+    "EffectParameter",
+    "ForceEffect",
+    "MaterialEffect",
+    "MaterialPoints",
+    "ObservationEffect",
+    "SiteState",
+    "Surroundings",
+    "normal",
+]
 
 
 @dataclass(frozen=True)
@@ -118,76 +134,6 @@ class DriveEffect(Effect):
         return signal
 
 
-@dataclass(frozen=True)
-class Surroundings:
-    """The fluid around a body and what of the body it meets.
-
-    density [kg/m^3]; viscosity: dynamic [Pa s]; depth: of the body, out of the plane [m]; length: nose to tail [m].
-    """
-
-    density: float
-    viscosity: float
-    depth: float
-    length: float
-
-    @property
-    def kinematic_viscosity(self) -> float:
-        """Viscosity over density [m^2/s]."""
-        return self.viscosity / self.density
-
-
-@dataclass(frozen=True)
-class SiteState:
-    """Motion and drive at n places; arrays are [n, 2] unless said.
-
-    position [m], velocity [m/s], acceleration [m/s^2], tangent: derivative of the position along the skin, or along the
-    centre line towards the tail [1]; tangent_rate: the same of the velocity [1/s];
-    reference: position at rest [m]; rest_normal: outward unit normal of the skin at rest; measure [n]: mass [kg per m
-    depth], skin length [m] or 1; voltage (drive [V], [Pa] ...) and contraction [1]: of every muscle, [muscles];
-    time [s]; gravity [m/s^2], shape [2]; surroundings: the fluid, None for a model without `medium`.
-    """
-
-    position: np.ndarray
-    velocity: np.ndarray
-    acceleration: np.ndarray
-    tangent: np.ndarray
-    tangent_rate: np.ndarray
-    reference: np.ndarray
-    rest_normal: np.ndarray
-    measure: np.ndarray
-    voltage: np.ndarray
-    contraction: np.ndarray
-    time: float
-    gravity: np.ndarray
-    surroundings: Surroundings | None = None
-
-    @property
-    def normal(self) -> np.ndarray:
-        """Unit normal as it is now, outward from the skin or to the right of the centre line, [n, 2].
-
-        A force that uses it depends on the tangent.
-        """
-        return normal(self.tangent)
-
-    @property
-    def fluid(self) -> Surroundings:
-        """The fluid around the body, for an effect that needs a medium. Raises ModelError where there is none."""
-        if self.surroundings is None:
-            raise ModelError(
-                "the model says nothing of the fluid around the body; expected a section medium: add one, and set "
-                "needs_medium = True in the effect"
-            )
-        return self.surroundings
-
-
-def normal(tangent: np.ndarray) -> np.ndarray:
-    """Unit normal [n, 2] to the right of these tangents [n, 2], which is outward from the skin."""
-    length = np.hypot(tangent[:, 0], tangent[:, 1])
-    out = np.empty_like(tangent)
-    out[:, 0], out[:, 1] = tangent[:, 1] / length, -tangent[:, 0] / length
-    return out
-
-
 class ForceEffect(Effect):
     """A force on the body, per unit of what a site stands for and per unit depth.
 
@@ -221,70 +167,6 @@ class ForceEffect(Effect):
     def has_flux(self) -> bool:
         """Whether the effect has a flux."""
         return type(self).flux is not ForceEffect.flux
-
-
-@dataclass
-class Coefficients:
-    """Material constants per element, shape [elements]; an effect changes them in place.
-
-    shear, lame: elastic constants [Pa]; equilibrium: share of them that acts for ever [1] (viscosity and branches keep
-    the whole); retardation: Kelvin-Voigt time [s]; fibre: fibre stiffness [Pa]; region: `Region` of each element;
-    rest_stretch: stretch along the body of the stress-free shape [elements, points];
-    height: reference y of the Gauss points [m] [elements, points].
-    """
-
-    shear: np.ndarray
-    lame: np.ndarray
-    equilibrium: np.ndarray
-    retardation: np.ndarray
-    fibre: np.ndarray
-    region: np.ndarray
-    rest_stretch: np.ndarray
-    height: np.ndarray
-
-
-@dataclass(frozen=True)
-class MaterialPoints:
-    """Strain and drive at n material points.
-
-    deformation: gradient F [n, 2, 2] with the first axis along the body at rest, rate: dF/dt [1/s] [n, 2, 2];
-    contraction [1] and voltage (drive [V], [Pa] ...): of the muscle here [n] (0 in none); fibre: stiffness of its
-    fibres [Pa], [n] or one number; time [s]; shear: shear modulus of the soft solid here [Pa], [n] or one number.
-    """
-
-    deformation: np.ndarray
-    rate: np.ndarray
-    contraction: np.ndarray
-    voltage: np.ndarray
-    fibre: np.ndarray
-    time: float
-    shear: np.ndarray | float = 0.0
-
-    @property
-    def volume_ratio(self) -> np.ndarray:
-        """Determinant J of the deformation gradient [1], [n]."""
-        F = self.deformation
-        return F[:, 0, 0] * F[:, 1, 1] - F[:, 0, 1] * F[:, 1, 0]
-
-    @property
-    def distortion(self) -> np.ndarray:
-        """F - F^-T, the first Piola stress per shear modulus of a neo-Hookean solid [n, 2, 2]."""
-        F = self.deformation
-        cofactor = np.empty_like(F)
-        cofactor[:, 0, 0], cofactor[:, 0, 1] = F[:, 1, 1], -F[:, 1, 0]
-        cofactor[:, 1, 0], cofactor[:, 1, 1] = -F[:, 0, 1], F[:, 0, 0]
-        return F - cofactor / self.volume_ratio[:, None, None]
-
-    @property
-    def stretch(self) -> np.ndarray:
-        """Stretch of the fibres [1], [n]."""
-        return np.hypot(self.deformation[:, 0, 0], self.deformation[:, 1, 0])
-
-    def along_fibre(self, tension: np.ndarray) -> np.ndarray:
-        """First Piola stress [Pa] [n, 2, 2] of a tension [Pa] [n] along the fibres."""
-        stress = np.zeros_like(self.deformation)
-        stress[:, :, 0] = (tension / self.stretch)[:, None] * self.deformation[:, :, 0]
-        return stress
 
 
 class MaterialEffect(Effect):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hasel_sim.build import Builder, marker_rows
+from hasel_sim.build import Builder
 from hasel_sim.errors import SimulationError
 from hasel_sim.live.angle_history import AngleHistory
 from hasel_sim.live.drive_history import DriveHistory
@@ -17,6 +17,7 @@ from hasel_sim.mechanics.stepper import Stepper
 from hasel_sim.mechanics.steps import plan_steps
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.model import Model
+from hasel_sim.model_mesh import marker_rows
 
 _SHORTEST = 1e-3
 """Of a usual step: the body is not moved on by less, since in so short a time nothing but rounding accelerates it."""

@@ -23,9 +23,9 @@ from hasel_sim.bench.speed import (
 )
 from hasel_sim.bench.timing import first_run_seconds, processor_seconds
 from hasel_sim.bench.where_time_goes import shares
-from hasel_sim.build import model_mesh
 from hasel_sim.commands import bench
 from hasel_sim.mechanics.banded import BandMatrix
+from hasel_sim.model_mesh import model_mesh
 from hasel_sim.simulate import simulate
 from threadpoolctl import threadpool_limits
 

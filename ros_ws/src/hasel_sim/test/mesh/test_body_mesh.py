@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
-from hasel_sim.build import body_mesh, marker_points, model_mesh
 from hasel_sim.errors import ModelError
 from hasel_sim.mesh.body_mesh import Stretch, StripShape, strip_mesh
 from hasel_sim.mesh.mesh import Region
 from hasel_sim.mesh.outline import half_height
 from hasel_sim.mesh.serendipity import reference_gradients
+from hasel_sim.model_mesh import body_mesh, marker_points, model_mesh
 
 
 def _areas(mesh) -> np.ndarray:

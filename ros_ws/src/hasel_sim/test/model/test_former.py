@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from hasel_sim.build import model_mesh
 from hasel_sim.errors import ModelError
 from hasel_sim.model import load_model
+from hasel_sim.model_mesh import model_mesh
 
 FORMER_SWIMMER = """
 name: swimmer

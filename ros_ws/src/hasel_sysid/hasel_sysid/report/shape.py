@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_sim.build import model_mesh
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.errors import HaselSimError
 from hasel_sim.mechanics.simd import LANES
 from hasel_sim.model import Model
+from hasel_sim.model_mesh import model_mesh
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate_many
 

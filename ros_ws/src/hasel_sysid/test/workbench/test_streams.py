@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from hasel_sim.build import model_mesh
 from hasel_sim.model import load_model
+from hasel_sim.model_mesh import model_mesh
 from hasel_sysid.workbench.curves import curves
 from hasel_sysid.workbench.failure_map import failure_map, stretch
 from hasel_sysid.workbench.film import axial_strain, film
