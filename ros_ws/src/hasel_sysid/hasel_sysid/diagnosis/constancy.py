@@ -9,6 +9,7 @@ from hasel_sysid.diagnosis.conditions import conditions
 from hasel_sysid.drive_match import drive_unit
 from hasel_sysid.fit import FitResult
 from hasel_sysid.fit.between_runs import wider_where_runs_disagree
+from hasel_sysid.fit.directions import seen_directions
 from hasel_sysid.fit.uncertainty import parameter_covariance
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import Evaluation
@@ -54,7 +55,8 @@ def trends(fit: FitResult, noise: NoiseModel, effects: Sequence[str]) -> list[Tr
     """Trends of the effects' fitted sizes with level and frequency of the drive; time constants are left out.
 
     Linear in the logarithm of the condition, to first order in the change; conditions that do not vary are left out.
-    What stands on a bound stays there: beyond it there is no law, and nothing to be constant.
+    What stands on a bound stays there: beyond it there is no law, and nothing to be constant. A trend that finer
+    numerics would bring is the mesh's or the time step's: it counts as one standard error, as in `with_numerical_error`.
     """
     sizes = {
         f"{effect.id}.{p.name}"
@@ -65,18 +67,25 @@ def trends(fit: FitResult, noise: NoiseModel, effects: Sequence[str]) -> list[Tr
     }
     inside = fit.evaluation.by([name for name in fit.evaluation.names if name not in fit.at_bound])
     names = [name for name in inside.names if name in sizes and name not in fit.undetermined]
+    numerical = list(fit.changes_by_refinement.values())
     found = []
     for condition, values in conditions(fit.evaluation.simulations).items():
         if np.isfinite(values).all() and values.max() > _ONE_CONDITION * values.min():
             unit = "Hz" if condition == "frequency" else drive_unit(fit.model)
-            found += [_trend(inside, noise, name, condition, values, unit) for name in names]
+            found += [_trend(inside, noise, name, condition, values, unit, numerical) for name in names]
     return found
 
 
 def _trend(
-    evaluation: Evaluation, noise: NoiseModel, name: str, condition: str, values: np.ndarray, unit: str
+    evaluation: Evaluation,
+    noise: NoiseModel,
+    name: str,
+    condition: str,
+    values: np.ndarray,
+    unit: str,
+    numerical: Sequence[np.ndarray],
 ) -> Trend:
-    """values: the condition of every run."""
+    """values: the condition of every run; numerical: changes of the series [frames] by finer numerics."""
     of_run = np.log(values / np.exp(np.log(values).mean()))
     own = evaluation.jacobian[:, evaluation.names.index(name)]
     columns = np.column_stack([evaluation.jacobian, own * of_run[evaluation.runs]])
@@ -87,6 +96,8 @@ def _trend(
     # what else is wrong in some runs must not pass for a trend of this effect
     left = evaluation.residual - columns @ change
     errors = wider_where_runs_disagree(np.sqrt(np.diag(covariance)), columns, left, evaluation.runs)
+    seen = seen_directions(columns)
+    by_numerics = [seen.estimate(change)[-1] for change in numerical]
     middle = evaluation.model.values[name] + change[evaluation.names.index(name)]
     low, high = float(of_run.min()), float(of_run.max())
     return Trend(
@@ -94,6 +105,6 @@ def _trend(
         condition,
         (float(values.min()), float(values.max())),
         (float(middle + change[-1] * low), float(middle + change[-1] * high)),
-        float((high - low) * errors[-1]),
+        float((high - low) * np.linalg.norm([errors[-1], *by_numerics])),
         unit,
     )

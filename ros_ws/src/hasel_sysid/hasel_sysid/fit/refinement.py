@@ -43,4 +43,6 @@ def with_numerical_error(fit: FitResult, changes: Mapping[str, np.ndarray]) -> F
     covariance = fit.model.covariance(names) + sum(
         (np.outer(shift, shift) for shift in shifts), start=np.zeros((len(names), len(names)))
     )
-    return replace(fit, model=fit.model.with_covariance(names, covariance))
+    return replace(
+        fit, model=fit.model.with_covariance(names, covariance), changes_by_refinement=dict(changes)
+    )

@@ -1,7 +1,9 @@
 """What a fit found, in numbers and in sentences."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
+import numpy as np
 from hasel_sim.model import Model, Parameter
 
 from hasel_sysid.problem import Evaluation
@@ -13,7 +15,8 @@ class FitResult:
 
     model: with fitted values and standard errors; evaluation: at these values; at_bound: parameters on a bound;
     undetermined: parameters that these recordings do not determine; iterations: simulations of all runs;
-    in_step_until: how long after its start [s] the model moves with the body, None for all frames.
+    in_step_until: how long after its start [s] the model moves with the body, None for all frames; changes_by_refinement:
+    what finer numerics do to the simulated series [frames], as far as that was looked at.
     """
 
     model: Model
@@ -23,6 +26,7 @@ class FitResult:
     iterations: int
     method: str
     in_step_until: float | None = None
+    changes_by_refinement: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def mean_absolute_error(self) -> float:

@@ -32,8 +32,11 @@ TIME = np.concatenate([run.time for run in RUNS])
 VOLTAGE, FREQUENCY = np.array(CONDITIONS)[NUMBERS].T
 
 
-def fitted(growth, by=VOLTAGE, runs=RUNS, at_bound=()):
-    """A fit to a `drag` whose true size grows by `growth` from the low to the high end of `by`."""
+def fitted(growth, by=VOLTAGE, runs=RUNS, at_bound=(), by_finer_mesh=0.0):
+    """A fit to a `drag` whose true size grows by `growth` from the low to the high end of `by`.
+
+    by_finer_mesh: what a finer mesh would do looks like a growth by so much.
+    """
     own = np.sin(2 * np.pi * FREQUENCY * TIME) * VOLTAGE / 4500.0
     other = np.cos(2 * np.pi * FREQUENCY * TIME)
     along = (np.log(by) - np.log(by).min()) / np.log(by.max() / by.min()) - 0.5
@@ -49,6 +52,7 @@ def fitted(growth, by=VOLTAGE, runs=RUNS, at_bound=()):
         ),
         undetermined=(),
         at_bound=at_bound,
+        changes_by_refinement={"mesh": VALUE * by_finer_mesh * along * own},
         evaluation=Evaluation(
             model=SimpleNamespace(values={"slope": 0.0, "drag.size": VALUE + change[1]}),
             names=("slope", "drag.size"),
@@ -93,3 +97,18 @@ def test_what_stands_on_a_bound_has_no_trend():
     """Beyond a bound there is no law that could be contradicted; the same growth inside is one."""
     assert any(trend.contradicts for trend in trends(fitted(1.0), NOISE, ["drag"]))
     assert trends(fitted(1.0, at_bound=("drag.size",)), NOISE, ["drag"]) == []
+
+
+def test_what_a_finer_mesh_would_take_away_contradicts_no_law():
+    """A growth by 40 % that the model's own mesh makes is its error; where that makes 5 %, 40 % are no mesh's."""
+    assert any(trend.contradicts for trend in trends(fitted(0.4, by_finer_mesh=0.05), NOISE, ["drag"]))
+    assert not any(trend.contradicts for trend in trends(fitted(0.4, by_finer_mesh=0.4), NOISE, ["drag"]))
+
+
+def test_what_a_finer_mesh_would_do_is_one_standard_error():
+    """It adds to that by noise as squares, to the trend with voltage only, and moves no value."""
+    alone, _ = trends(fitted(0.4), NOISE, ["drag"])
+    by_voltage, by_frequency = trends(fitted(0.4, by_finer_mesh=0.3), NOISE, ["drag"])
+    assert by_voltage.standard_error == pytest.approx(np.hypot(alone.standard_error, 0.3 * VALUE), rel=0.02)
+    assert by_frequency.standard_error < 0.5 * by_voltage.standard_error
+    assert by_voltage.values == alone.values
