@@ -126,7 +126,7 @@ class Builder:
         around = self._described.surroundings
         laws = [ForceLaw(effect, p, self._sites(effect, p), self.nodes, gravity, around)]
         if effect.has_flux:
-            sites = flux_sites(laws[0].sites)
+            sites = flux_sites(laws[0].sites, effect.sheds)
             laws.append(ForceLaw(effect, p, sites, self.nodes, gravity, around, flux=True))
         return laws
 

@@ -140,12 +140,13 @@ class ForceEffect(Effect):
     sites: "body" (per mass [N/kg]), "skin" (per skin length [N/m^2]), "line" (per length of the centre line at rest
     [N/m^2]) or "points" (force itself [N/m]).
     depends_on: which of position, velocity, acceleration, tangent, tangent_rate, contraction the force depends on.
-    An effect at the line may have a `flux` besides.
+    An effect at the line may have a `flux` besides; sheds: whether the tail leaves behind what is handed on to it.
     """
 
     place = "force"
     sites: ClassVar[str] = "body"
     depends_on: ClassVar[tuple[str, ...]] = ("position", "velocity")
+    sheds: ClassVar[bool] = True
 
     def points(self, markers: np.ndarray, p: SimpleNamespace) -> np.ndarray:
         """Reference positions [m] [n, 2] of the points acted on, given the three markers' [3, 2]."""
@@ -159,7 +160,7 @@ class ForceEffect(Effect):
         """What is handed on along the centre line towards the nose [N/m], [n, 2].
 
         Its derivative along the line acts on the body besides the force, and at the tail it enters from behind: the sum
-        of what it does to the body is its value at the tail.
+        of what it does to the body is its value at the tail, or nothing where the effect does not shed.
         """
         raise NotImplementedError
 

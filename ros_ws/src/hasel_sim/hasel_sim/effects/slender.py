@@ -40,6 +40,14 @@ def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1]
 
 
+def growth_of_momentum(at: SiteState) -> np.ndarray:
+    """Rate at which w n grows with the body [m/s^2] [n, 2]: what fluid beside it gains, per mass."""
+    motion = LineMotion.at(at)
+    turning = dot(at.tangent_rate, motion.normal) / np.hypot(at.tangent[:, 0], at.tangent[:, 1])
+    faster = dot(at.acceleration, motion.normal) - turning * motion.along
+    return faster[:, None] * motion.normal - (motion.across * turning)[:, None] * motion.tangent
+
+
 def strip_added_mass(fluid: Surroundings) -> float:
     """Mass of fluid that a long thin strip carries across, per length and depth [kg/m^2]: rho pi H / 4.
 

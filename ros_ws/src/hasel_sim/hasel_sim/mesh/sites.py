@@ -135,14 +135,15 @@ def line_sites(mesh: Mesh) -> Sites:
     return Sites.of(nodes, shape, np.ascontiguousarray(gradient[..., 0]), measure)
 
 
-def flux_sites(line: Sites) -> Sites:
+def flux_sites(line: Sites, sheds: bool = True) -> Sites:
     """The sites of a centre line for a flux along it instead of a force.
 
     A flux G [N/m] acts by its divergence, less what leaves at the tail: on a field phi of displacements it does the
-    work G(L) phi(L) - integral of G dphi/ds, so that the sum of its forces is G at the tail.
+    work G(L) phi(L) - integral of G dphi/ds, so that the sum of its forces is G at the tail. Without shedding the first
+    term is absent, and the sum is 0.
     """
     weight = -line.slope * line.measure[:, None]
-    weight[-1] = line.shape[-1]
+    weight[-1] = line.shape[-1] if sheds else 0.0
     return replace(line, weight=weight)
 
 

@@ -129,7 +129,8 @@ def out_of_balance(swimmer: Swimmer, time: float, state: np.ndarray, acceleratio
         out -= np.einsum("cni,n,kni->kc", directions[:, 0], swimmer.lengths, force)
         if effect.has_flux:
             flux = effect.flux(at, p).reshape(moved.shape)
-            out -= np.einsum("ci,ki->kc", directions[:, 0, -1], flux[:, -1])
+            if effect.sheds:
+                out -= np.einsum("ci,ki->kc", directions[:, 0, -1], flux[:, -1])
             out += np.einsum("cni,n,kni->kc", directions[:, 1], swimmer.lengths, flux)
     return out.reshape(np.shape(acceleration))
 

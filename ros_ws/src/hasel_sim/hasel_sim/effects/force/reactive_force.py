@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from hasel_sim.effects.base import EffectParameter, ForceEffect, SiteState
-from hasel_sim.effects.slender import LineMotion, dot, strip_added_mass
+from hasel_sim.effects.slender import LineMotion, growth_of_momentum, strip_added_mass
 
 
 class ReactiveForce(ForceEffect):
@@ -53,11 +53,7 @@ class ReactiveForce(ForceEffect):
 
     def force(self, at: SiteState, p: SimpleNamespace) -> np.ndarray:
         """What the growth of the fluid's momentum takes, per length and depth [N/m^2], [n, 2]."""
-        motion = LineMotion.at(at)
-        turning = dot(at.tangent_rate, motion.normal) / np.hypot(at.tangent[:, 0], at.tangent[:, 1])
-        growth = dot(at.acceleration, motion.normal) - turning * motion.along
-        change = growth[:, None] * motion.normal - (motion.across * turning)[:, None] * motion.tangent
-        return -p.coefficient * strip_added_mass(at.fluid) * change
+        return -p.coefficient * strip_added_mass(at.fluid) * growth_of_momentum(at)
 
     def flux(self, at: SiteState, p: SimpleNamespace) -> np.ndarray:
         """Momentum that is handed on, and the pressure of the flow across, per depth [N/m], [n, 2]."""
