@@ -40,6 +40,23 @@ def test_a_sweep_ends_in_a_table_a_picture_and_numbers(tmp_path, capsys, model_f
     assert {"swim.csv", "swim.png", "body_depth_m.png", "body_depth_m_0.04.csv"} <= names
 
 
+def test_a_dask_cluster_swims_the_same(tmp_path, model_file):
+    """A sweep and its interval on a cluster of this machine, against the same without one."""
+    from distributed import LocalCluster
+
+    command = ["--model", str(model_file), "--voltage", "5500", "--frequency", "1.5,2,2.5", "--duration", "2.7"]
+    found = []
+    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
+        for name, by in (("here", ["--jobs", "1"]), ("there", ["--scheduler", cluster.scheduler_address])):
+            path = tmp_path / f"{name}.json"
+            assert main([*command, *by, "--output", str(tmp_path / name), "--json", str(path)]) == 0
+            found.append(json.loads(path.read_text())["optima"]["5500 V"])
+    here, there = found
+    assert not here["at_edge"]
+    assert there["interval_hz"] == pytest.approx(here["interval_hz"], rel=1e-6)
+    assert there["speed"] == pytest.approx(here["speed"], rel=1e-9)
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
