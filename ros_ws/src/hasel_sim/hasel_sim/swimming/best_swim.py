@@ -1,7 +1,7 @@
 """What swims best: waveform of two muscles, outline and other numbers of the body, by exact gradients of the swim."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import torch
@@ -12,107 +12,17 @@ from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 from hasel_sim.swimming.boxes import Boxes
 from hasel_sim.swimming.goal import DifferentiableSwim, SwimOf
-from hasel_sim.swimming.variables import Range, Variables
+from hasel_sim.swimming.shape_limits import shape_limits
+from hasel_sim.swimming.task import Task
+from hasel_sim.swimming.tried import BestSwim, Tried
+from hasel_sim.swimming.variables import Variables
 
-GOALS = ("speed", "cost")
 _SETTLED_PERIODS = 2
 _TOLERANCE = 1e-5
 _HARDLY_ANOTHER = 1e-4
 """Two swimmers closer than this are one: half a volt, or a ten-thousandth of a period or a length."""
 _PER_RADIAN = 10.0
 """What a constraint on an angle is scaled with, so that hundredths of a degree count."""
-
-_REACHED = np.radians(0.1)
-"""How far [rad, rad/s] a turning or heading may be from what is wanted."""
-
-
-@dataclass(frozen=True)
-class Task:
-    """What is sought: the fastest swim, or the one with the least cost of transport.
-
-    turning: at a rate [rad/s]; heading: the body points there at the end, to the left of its start [rad]; either as it
-    comes for None. vary, ranges: as of `Variables`; largest: voltage [V]; duration: of the swims that are tried [s].
-    """
-
-    goal: str = "speed"
-    turning: float | None = None
-    vary: tuple[str, ...] = ("first", "second")
-    largest: float = 5500.0
-    duration: float = 4.0
-    heading: float | None = None
-    ranges: Mapping[str, Range] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        if self.goal not in GOALS:
-            raise SimulationError(f"'{self.goal}' is no goal; expected one of {', '.join(GOALS)}")
-        if self.turning is not None and self.heading is not None:
-            raise SimulationError(
-                "both turning and heading are given; expected one of them, since the one sets the other: leave one out"
-            )
-
-
-@dataclass(frozen=True)
-class Tried:
-    """A swimmer with what it came to.
-
-    speed [m/s], turning [rad/s], heading at the end [rad], power [W] and the mass it moved [kg]; body: what of it was
-    varied, in words; values: of the parameters that were.
-    """
-
-    drive: Boxes
-    speed: float
-    turning: float
-    power: float
-    mass: float
-    heading: float = 0.0
-    body: str = ""
-    values: dict[str, float] = field(default_factory=dict, compare=False)
-
-    @property
-    def cost_of_transport(self) -> float:
-        """Work per mass and distance [J/(kg m)]."""
-        return self.power / (self.mass * self.speed) if self.speed > 0 else np.inf
-
-    def __str__(self) -> str:
-        body = f", {self.body}" if self.body else ""
-        return (
-            f"{self.drive}, duty {self.drive.duty:.3f}, phase {self.drive.phase:.3f}{body}: "
-            f"{1e3 * self.speed:.2f} mm/s, {np.degrees(self.turning):+.3f}°/s, heading "
-            f"{np.degrees(self.heading):+.2f}°, {self.cost_of_transport:.3g} J/(kg m)"
-        )
-
-
-@dataclass(frozen=True)
-class BestSwim:
-    """The start and the best, and everything that was tried on the way."""
-
-    start: Tried
-    best: Tried
-    tried: tuple[Tried, ...] = field(repr=False)
-    task: Task = Task()
-
-    @property
-    def missed(self) -> str:
-        """A sentence about a turning or heading that was asked for and is not reached; empty where all is."""
-        for name, unit in (("turning", "°/s"), ("heading", "°")):
-            wanted, reached = getattr(self.task, name), getattr(self.best, name)
-            if wanted is not None and abs(reached - wanted) > _REACHED:
-                return (
-                    f"The {name} of {np.degrees(wanted):g}{unit} is not reached, only {np.degrees(reached):.3g}{unit}: "
-                    "let more vary, in wider ranges or for longer."
-                )
-        return ""
-
-    def __str__(self) -> str:
-        told = f"from {self.start}\nto   {self.best}\nafter {len(self.tried)} swims with gradients."
-        return f"{told} {self.missed}".rstrip()
-
-    def improved(self, model: Model) -> Model:
-        """A model with the body that was found, as a file of its own would describe it."""
-        changed = model.with_freed(*self.best.values).with_values(self.best.values)
-        return changed.with_constants_settled(
-            *(name for name in self.best.values if name not in model.parameters)
-        )
 
 
 class _Settled(Exception):  # noqa: N818  an end, not a fault
@@ -234,7 +144,7 @@ def best_swim(
             variables.start,
             jac=True,
             bounds=variables.bounds,
-            constraints=[*swims.constraints(), *variables.constraints],
+            constraints=[*swims.constraints(), *shape_limits(variables)],
             method="SLSQP",
             options={"maxiter": most, "ftol": _TOLERANCE},
         ).x

@@ -5,7 +5,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.integrate import trapezoid
 
 from hasel_sim.errors import SimulationError, nearest_name
 from hasel_sim.mesh.outline import half_height
@@ -26,11 +25,7 @@ OUTLINE = "outline"
 HALF_OR_DOUBLE: Range = (0.5, 2.0)
 """How far a constant of the body may go where nothing else is said, and the outline at every place, over the start."""
 _VOLTAGES = ("first", "second")
-_LARGEST = "body.outline.largest_half_height_m"
-_THICKNESS = "body.spine.thickness_m"
-_COVER = 1.1
-"""Height of the body over its spine's thickness, at least."""
-_STATIONS = np.linspace(0.0, 1.0, 41)
+LARGEST = "body.outline.largest_half_height_m"
 
 
 @dataclass(frozen=True)
@@ -63,9 +58,9 @@ class Variables:
             raise SimulationError(
                 f"what may vary is {', '.join(self.vary) or 'nothing'}; expected each name once: name some"
             )
-        if OUTLINE in self.vary and (_LARGEST in self.vary or set(self._outline) & set(self.vary)):
+        if OUTLINE in self.vary and (LARGEST in self.vary or set(self._outline) & set(self.vary)):
             raise SimulationError(
-                f"{OUTLINE} is varied beside {_LARGEST} or single coefficients; expected one of them, as the outline "
+                f"{OUTLINE} is varied beside {LARGEST} or single coefficients; expected one of them, as the outline "
                 "sets all: leave the others out"
             )
         for name, (low, high) in self.ranges.items():
@@ -159,31 +154,6 @@ class Variables:
     def values(self, x: np.ndarray) -> dict[str, float]:
         """The values of the parameters `names`."""
         return dict(zip(self.names, (self.matrix @ x).tolist(), strict=True))
-
-    @property
-    def constraints(self) -> list[dict]:
-        """Of x, for a minimiser: an outline keeps its area and half to double its height, and no spine comes out."""
-        out: list[dict] = []
-        start = self._heights(self.start)[0]
-        if OUTLINE in self.vary:
-            low, high = HALF_OR_DOUBLE
-            out = [
-                {"type": "eq", "fun": lambda x: trapezoid(self._heights(x)[0]) / trapezoid(start) - 1.0},
-                {"type": "ineq", "fun": lambda x: self._heights(x)[0] / start - low},
-                {"type": "ineq", "fun": lambda x: high - self._heights(x)[0] / start},
-            ]
-        if {OUTLINE, _LARGEST, _THICKNESS, "body.height_m"} & set(self.vary):
-            out.append({"type": "ineq", "fun": lambda x: self._cover(x)})
-        return out
-
-    def _heights(self, x: np.ndarray) -> tuple[np.ndarray, float]:
-        """Heights [m] along the body, and the spine's thickness [m]."""
-        body = self.freed.with_values(self.values(x)).described.body
-        return 2 * body.half_heights(_STATIONS), body.spine_thickness_m
-
-    def _cover(self, x: np.ndarray) -> np.ndarray:
-        heights, thickness = self._heights(x)
-        return (heights - _COVER * thickness) / heights.max()
 
     def text(self, x: np.ndarray) -> str:
         """What of the body x stands for, in one line; empty where only the boxes vary."""

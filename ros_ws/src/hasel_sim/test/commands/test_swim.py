@@ -44,7 +44,16 @@ def test_a_dask_cluster_swims_the_same(tmp_path, model_file):
     """A sweep and its interval on a cluster of this machine, against the same without one."""
     from distributed import LocalCluster
 
-    command = ["--model", str(model_file), "--voltage", "5500", "--frequency", "1.5,2,2.5", "--duration", "2.7"]
+    command = [
+        "--model",
+        str(model_file),
+        "--voltage",
+        "5500",
+        "--frequency",
+        "1.5,2,2.5",
+        "--duration",
+        "2.7",
+    ]
     found = []
     with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
         for name, by in (("here", ["--jobs", "1"]), ("there", ["--scheduler", cluster.scheduler_address])):

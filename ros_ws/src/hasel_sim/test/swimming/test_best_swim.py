@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import load_model
-from hasel_sim.swimming.best_swim import Task, best_swim
+from hasel_sim.swimming.best_swim import best_swim
 from hasel_sim.swimming.boxes import Boxes, waveform_rows
 from hasel_sim.swimming.free_swim import free_swim
+from hasel_sim.swimming.task import Task
 
 ASYMMETRIC = Path(__file__).parents[2] / "docs" / "bodies" / "asymmetric_fish.yaml"
 START = Boxes(5000.0, 5000.0, 1.5)

@@ -1,13 +1,13 @@
 """Add what a muscle's law lacks, one effect after the other, judged on voltages that the fit did not see."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 from hasel_sim.muscle.catalogue import muscle_catalogue
 from hasel_sim.muscle.muscle import Muscle
 
-from hasel_sysid.bench_muscle.adequacy import Adequacy, adequacy
+from hasel_sysid.bench_muscle.adequacy import adequacy
 from hasel_sysid.bench_muscle.fit import BenchFit, fit_muscle, with_errors
 from hasel_sysid.bench_muscle.left_out import (
     FEWEST_LEVELS,
@@ -18,6 +18,7 @@ from hasel_sysid.bench_muscle.left_out import (
     levels_of,
 )
 from hasel_sysid.bench_muscle.problem import BenchProblem
+from hasel_sysid.bench_muscle.result import BenchImprovement, Stage
 from hasel_sysid.bench_muscle.verdict import Finding, Trial, Verdict
 from hasel_sysid.errors import SysidError
 
@@ -28,50 +29,6 @@ _MATTERS = 1.05
 _MOST_STAGES = 6
 
 Progress = Callable[[str, float], None]
-
-
-@dataclass(frozen=True)
-class Stage:
-    """What was added, the fit with it, and mean |law - measurement| by unit, of fitted and of unseen lifts."""
-
-    added: str
-    fit: BenchFit
-    error: dict[str, float]
-    unseen: dict[str, float]
-    rivals: tuple[str, ...] = ()
-
-    @property
-    def effects(self) -> list[str]:
-        """All that is in the model now."""
-        return [effect.id for effect in self.fit.muscle.effects]
-
-
-@dataclass(frozen=True)
-class BenchImprovement:
-    """stages: the file's own constants, the fitted law, then with every effect added; findings: of all effects."""
-
-    stages: tuple[Stage, ...]
-    findings: tuple[Finding, ...]
-    adequacy: Adequacy
-    first: Adequacy
-    groups: tuple[tuple[str, ...], ...] = field(default=())
-
-    @property
-    def muscle(self) -> Muscle:
-        """With everything that was added."""
-        return self.stages[-1].fit.muscle
-
-    @property
-    def missing(self) -> list[str]:
-        """What was added, in this order."""
-        return [stage.added for stage in self.stages[2:]]
-
-    @property
-    def status(self) -> str:
-        """As of the swimmer's `improve`."""
-        if self.adequacy.describes:
-            return "explained" if self.missing else "nothing_missing"
-        return "partly_explained" if self.missing else "unexplained"
 
 
 def improve_muscle(

@@ -6,8 +6,8 @@ import numpy as np
 from hasel_sim.muscle.muscle import Muscle
 from matplotlib.figure import Figure
 
-from hasel_sysid.bench_muscle.improve import BenchImprovement
 from hasel_sysid.bench_muscle.problem import BenchProblem
+from hasel_sysid.bench_muscle.result import BenchImprovement
 from hasel_sysid.bench_muscle.shown import stage_name
 
 _LEAST_FORCE = 1e-2

@@ -7,7 +7,7 @@ from pathlib import Path
 from hasel_sim.muscle.catalogue import muscle_catalogue
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 
-from hasel_sysid.bench_muscle.improve import BenchImprovement
+from hasel_sysid.bench_muscle.result import BenchImprovement
 from hasel_sysid.bench_muscle.shown import quantity, sentences, stage_name
 from hasel_sysid.bench_muscle.stroke_table import Rival
 from hasel_sysid.bench_muscle.swinging import Swinging

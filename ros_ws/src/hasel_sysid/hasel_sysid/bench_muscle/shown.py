@@ -6,10 +6,11 @@ import numpy as np
 from hasel_sim.muscle.muscle import Muscle
 from rich.table import Table
 
-from hasel_sysid.bench_muscle.improve import BenchImprovement, Stage
+from hasel_sysid.bench_muscle.lifts import WINDOW_S
 from hasel_sysid.bench_muscle.problem import BenchProblem
+from hasel_sysid.bench_muscle.result import BenchImprovement, Stage
 from hasel_sysid.bench_muscle.stroke_table import Rival
-from hasel_sysid.bench_muscle.swinging import WINDOW_S, Swinging
+from hasel_sysid.bench_muscle.swinging import Swinging
 
 _DECIMALS = 6
 """Of millimetres and newtons; what lies below is rounding."""

@@ -8,19 +8,11 @@ from hasel_sim.muscle.muscle import Muscle
 from hasel_sim.muscle.swing import ForceTable, HangingLoad, force_table
 from scipy.optimize import least_squares
 
+from hasel_sysid.bench_muscle.lifts import SAME, WINDOW_S, shows_swings, stretches_of
 from hasel_sysid.bench_muscle.recording import BenchRecording
 from hasel_sysid.fit.between_runs import scatter_between_runs
 
-WINDOW_S = 0.5
-"""After a lift for as long as this it is compared."""
-_REST_S, _HELD_S = 0.3, 0.3
-"""A lift is from a rest as long as this to a voltage that is held as long as this."""
-_SLOWEST_SAMPLES = 200.0
-"""Samples per second below which no swing is seen."""
 _FEWEST_LIFTS = 4
-_SAME = 0.01
-_KEPT_S = 4e-3
-"""Samples are compared this far apart."""
 _NAMES = ("damping", "slowness", "lag")
 _UNITS = {"damping": "N s/m", "slowness": "s/m", "lag": "s"}
 _START = np.array([1.0, 1.0, 0.005])
@@ -106,22 +98,13 @@ class Swinging:
         }
 
 
-@dataclass(frozen=True)
-class _Stretch:
-    """A lift in a recording: level [V], numbers of the samples that are compared, contraction at rest before [m]."""
-
-    level: float
-    samples: np.ndarray
-    zero: float
-
-
 class _Swings:
     """Recordings whose swings are simulated together, with one table of forces each."""
 
     def __init__(self, recordings: Sequence[BenchRecording], muscle: Muscle) -> None:
         self.muscle = muscle
-        self.recordings = [r for r in recordings if _shows_swings(r)]
-        self.stretches = [_stretches(r) for r in self.recordings]
+        self.recordings = [r for r in recordings if shows_swings(r)]
+        self.stretches = [stretches_of(r) for r in self.recordings]
         self._tables: list[ForceTable] = []
         self.loads = [float(np.nanmedian(r.load)) for r in self.recordings]
         self.largest = [float(np.abs(r.voltage).max()) for r in self.recordings]
@@ -154,7 +137,7 @@ class _Swings:
             for each, alone in zip(stretches, settled.tolist(), strict=True):
                 time = recording.time[each.samples] - recording.time[each.samples[0]]
                 measured = recording.contraction[each.samples] - each.zero
-                known = bool(np.any(np.abs(np.array(unseen, dtype=float) - each.level) <= _SAME * each.level))
+                known = bool(np.any(np.abs(np.array(unseen, dtype=float) - each.level) <= SAME * each.level))
                 out.append(Lift(each.level, time, measured, x[each.samples], alone, known))
         return out
 
@@ -185,31 +168,3 @@ def swinging(
     errors = scatter_between_runs(found.jac, found.fun, each) * _START
     pairs = list(zip(_NAMES, numbers.tolist(), errors.tolist(), strict=True))
     return Swinging(tuple(lifts), {n: v for n, v, _ in pairs}, {n: e for n, _, e in pairs})
-
-
-def _shows_swings(recording: BenchRecording) -> bool:
-    step = float(np.median(np.diff(recording.time)))
-    return recording.held == "load" and step > 0 and 1 / step >= _SLOWEST_SAMPLES
-
-
-def _stretches(recording: BenchRecording) -> list[_Stretch]:
-    """Lifts from rest to a voltage that is held."""
-    time, voltage = recording.time, np.abs(recording.voltage)
-    same = _SAME * float(voltage.max())
-    if same == 0:
-        return []
-    rising = np.flatnonzero((voltage[:-1] <= same) & (voltage[1:] > same)) + 1
-    kept = max(1, round(_KEPT_S / float(np.median(np.diff(time)))))
-    found = []
-    for start in rising.tolist():
-        before = (time >= time[start] - _REST_S) & (time < time[start] - 1e-9)
-        held = (time >= time[start] + 0.02) & (time <= time[start] + _HELD_S)
-        window = np.flatnonzero((time >= time[start]) & (time <= time[start] + WINDOW_S))[::kept]
-        rest = recording.contraction[before]
-        if not before.any() or not held.any() or not np.isfinite(rest).any():
-            continue
-        level = float(np.median(voltage[held]))
-        quiet = voltage[before].max() <= same and time[start] - time[0] >= _REST_S
-        if quiet and np.ptp(voltage[held]) <= 2 * same and np.isfinite(recording.contraction[window]).any():
-            found.append(_Stretch(float(f"{level:.3g}"), window, float(np.nanmedian(rest))))
-    return found

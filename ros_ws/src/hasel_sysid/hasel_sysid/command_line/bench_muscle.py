@@ -13,12 +13,13 @@ from rich.console import Console
 from hasel_sysid.bench_muscle import shown
 from hasel_sysid.bench_muscle.adequacy import adequacy
 from hasel_sysid.bench_muscle.fit import fit_muscle
-from hasel_sysid.bench_muscle.improve import BenchImprovement, improve_muscle
+from hasel_sysid.bench_muscle.improve import improve_muscle
 from hasel_sysid.bench_muscle.left_out import levels_of
 from hasel_sysid.bench_muscle.picture import write_picture
 from hasel_sysid.bench_muscle.problem import BenchProblem, bench_problem
 from hasel_sysid.bench_muscle.reading import muscle_for, readable, settled_runs
 from hasel_sysid.bench_muscle.report import write_report
+from hasel_sysid.bench_muscle.result import BenchImprovement
 from hasel_sysid.bench_muscle.stroke_table import Rival, rival_table
 from hasel_sysid.bench_muscle.swinging import Swinging, swinging
 from hasel_sysid.bench_muscle.where_it_fails import where_it_fails

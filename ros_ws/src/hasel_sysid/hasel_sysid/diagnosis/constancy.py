@@ -56,7 +56,7 @@ def trends(fit: FitResult, noise: NoiseModel, effects: Sequence[str]) -> list[Tr
 
     Linear in the logarithm of the condition, to first order in the change; conditions that do not vary are left out.
     What stands on a bound stays there: beyond it there is no law, and nothing to be constant. A trend that finer
-    numerics would bring is the mesh's or the time step's: it counts as one standard error, as in `with_numerical_error`.
+    numerics would bring is that of mesh or time step: one standard error, as in `with_numerical_error`.
     """
     sizes = {
         f"{effect.id}.{p.name}"

@@ -15,8 +15,8 @@ class FitResult:
 
     model: with fitted values and standard errors; evaluation: at these values; at_bound: parameters on a bound;
     undetermined: parameters that these recordings do not determine; iterations: simulations of all runs;
-    in_step_until: how long after its start [s] the model moves with the body, None for all frames; changes_by_refinement:
-    what finer numerics do to the simulated series [frames], as far as that was looked at.
+    in_step_until: how long after its start [s] the model moves with the body, None for all frames;
+    changes_by_refinement: what finer numerics do to the simulated series [frames], as far as that was looked at.
     """
 
     model: Model

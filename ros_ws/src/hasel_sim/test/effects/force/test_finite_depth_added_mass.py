@@ -39,7 +39,7 @@ def test_a_disc_carries_two_thirds_of_what_strips_of_it_would():
 
 @pytest.fixture
 def plate(cantilever):
-    """Places, velocities [nodes, 2] and fluid's mass per length and depth of a straight body that turns as it goes on."""
+    """A straight body that turns as it goes on: model, length, nodes, velocities [nodes, 2], mass of the fluid."""
     beam = cantilever()
     model = beam.model("finite_depth_added_mass", coefficient=1.0)
     nodes = Builder(model).system().nodes
@@ -59,7 +59,7 @@ def _forces(model, velocity, acceleration) -> np.ndarray:
 
 
 def test_what_the_body_spends_is_what_the_fluid_has(plate):
-    """Power of the forces on a body that goes on, drifts and turns, against the rate of the fluid's energy m w^2 / 2."""
+    """Power of the forces on a body that goes on, drifts and turns: minus the rate of the fluid's energy m w^2 / 2."""
     model, length, nodes, velocity, mass = plate
     growth, turning = 0.8, 5.0
     acceleration = np.array([0.3, growth]) + turning * np.stack([-nodes[:, 1], nodes[:, 0]], axis=1)
@@ -82,7 +82,9 @@ def test_a_body_that_drifts_is_turned_across_its_way(plate):
 
 def test_a_free_swimmer_with_it_can_be_followed():
     """Half as many steps again change nothing that one would see: no energy comes from nowhere."""
-    model = load_model("swimmer_in_oil").without_effects("reactive_force").with_effects("finite_depth_added_mass")
+    model = (
+        load_model("swimmer_in_oil").without_effects("reactive_force").with_effects("finite_depth_added_mass")
+    )
     model = model.with_values({"finite_depth_added_mass.coefficient": 1.0})
     run = Boxes(4500, 4500, 2.5).run(model, 2.8)
     usual, fine = (simulate(model.with_numerics(steps_per_second=n), run).sin_theta for n in (240, 480))
