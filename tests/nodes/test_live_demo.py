@@ -100,7 +100,7 @@ def test_the_whole_loop_finds_the_hidden_effect(tmp_path):
     assert code == 0, printed
     found = json.loads((tmp_path / "out" / "improve.json").read_text())
     assert found["stages"][-1]["effects"] == ["quadratic_drag"]
-    before, after = map(float, re.search(r"live error went from ([\d.]+) to ([\d.]+)", printed).groups())
+    before, after = map(float, re.search(r"live error went from (\d+\.\d+) to (\d+\.\d+)", printed).groups())
     assert after < 0.5 * before
     assert re.search(r"hidden: quadratic_drag.coefficient = [\d.]+", printed)
     names = {path.name for path in (tmp_path / "out" / "recordings").glob("*.mcap")}
