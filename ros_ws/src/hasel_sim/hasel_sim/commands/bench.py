@@ -1,4 +1,4 @@
-"""`bench`: speed beside its bars, or convergence."""
+"""`bench`: speed beside its bars, of everything or of swims only, or convergence."""
 
 import argparse
 import json
@@ -12,6 +12,7 @@ from hasel_sim.bench.cases import fitted_swimmer
 from hasel_sim.bench.convergence import mesh_errors, step_errors
 from hasel_sim.bench.report import ConvergenceReport, SpeedReport
 from hasel_sim.bench.speed import by_nodes, by_parameters, free_swim_factor, measure_side_by_side
+from hasel_sim.bench.swimming import SwimmingReport, measure_swimming
 from hasel_sim.bench.timing import first_run_seconds
 from hasel_sim.bench.where_time_goes import shares
 from hasel_sim.commands.parsers import bench_parser
@@ -47,13 +48,19 @@ def run(options: argparse.Namespace) -> int:
     console = Console()
     with threadpool_limits(1):
         if options.convergence:
-            report = ConvergenceReport(mesh_errors(), step_errors())
+            report: ConvergenceReport | SwimmingReport | SpeedReport = ConvergenceReport(
+                mesh_errors(), step_errors()
+            )
+        elif options.swimming:
+            with console.status("timing swims"):
+                report = measure_swimming()
         else:
             report = measure_speeds(console)
     report.print(console)
     if options.json:
         options.json.write_text(json.dumps(report.values(), indent=1))
-    return int(isinstance(report, SpeedReport) and not all(bar.met for bar in report.bars()))
+    measured = isinstance(report, SpeedReport | SwimmingReport)
+    return int(measured and not all(bar.met for bar in report.bars()))
 
 
 if __name__ == "__main__":

@@ -16,8 +16,12 @@ from hasel_sim.commands.argument_types import (
 def bench_parser() -> argparse.ArgumentParser:
     """Options of `bench`."""
     options = argparse.ArgumentParser(prog="bench", description="Speed beside its bars, or convergence.")
-    options.add_argument(
-        "--convergence", action="store_true", help="errors under refinement instead of speed"
+    what = options.add_mutually_exclusive_group()
+    what.add_argument("--convergence", action="store_true", help="errors under refinement instead of speed")
+    what.add_argument(
+        "--swimming",
+        action="store_true",
+        help="only a free swim, and a sweep of 57 swims of 10 s in two processes",
     )
     options.add_argument("--json", type=Path, metavar="FILE", help="write all numbers here")
     return options

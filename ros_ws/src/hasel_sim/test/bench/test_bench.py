@@ -1,6 +1,7 @@
 """The benchmark measures what it says."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from hasel_sim.bench.speed import (
     measure_side_by_side,
     measure_speed,
 )
+from hasel_sim.bench.swimming import measure_swimming
 from hasel_sim.bench.timing import first_run_seconds, processor_seconds
 from hasel_sim.bench.where_time_goes import shares
 from hasel_sim.commands import bench
@@ -158,6 +160,18 @@ def test_the_command_prints_tables_and_writes_json(tmp_path, monkeypatch, capsys
     printed = capsys.readouterr().out.lower()
     assert "where the time goes" in printed
     assert "side by side" in printed
+
+
+def test_swims_alone_are_timed_on_request(tmp_path, monkeypatch, capsys):
+    """A free swim and a sweep beside their bars, and how busy the machine was; exit status 1 when one is missed."""
+    report = measure_swimming(2.0, (5500.0,), (2.0, 2.5))
+    assert report.swims == 2 and report.sweep > 0 and report.free_swim > 0
+    for sweep, missed in ((100.0, 0), (301.0, 1)):
+        slow = replace(report, sweep=sweep, free_swim=6.0)
+        monkeypatch.setattr(bench, "measure_swimming", lambda slow=slow: slow)
+        assert bench.main(["--swimming", "--json", str(tmp_path / "bench.json")]) == missed
+    assert [b["met"] for b in json.loads((tmp_path / "bench.json").read_text())["bars"]] == [True, False]
+    assert "processes were at work" in capsys.readouterr().out
 
 
 def test_a_free_swim_costs_little_more_than_its_effects_must():

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hasel_sim.effects.base import Surroundings
 from hasel_sim.effects.registry import find_effects
+from hasel_sim.effects.slender import finite_length_factor
 from hasel_sim.swimming.given_shape import Shape, Swimmer, out_of_balance, swim
 
 LENGTH, DEPTH, DENSITY = 0.2, 0.05, 920.0
@@ -110,6 +111,21 @@ def test_a_sideways_glide_against_pressure_decays_hyperbolically():
     )  # fmt: skip
     mass = MASS_PER_LENGTH + DENSITY * np.pi * DEPTH / 4
     assert 1 / way.velocity[:, 1] == pytest.approx(1 / 0.3 + 0.5 * DENSITY * drag / mass * times, rel=1e-4)
+
+
+def test_a_plate_that_sheds_nothing_tumbles_for_ever():
+    """Kirchhoff: the moment of its drift turns it round, and the energy of body and fluid together stays."""
+    times = np.linspace(0.0, 4.0, 2001)
+    body = swimmer(rigid, finite_depth_added_mass={"coefficient": 1.0})
+    way = swim(body, times, (-0.2, 0.05), tolerance=1e-9)
+    spin = np.gradient(way.turned, times, edge_order=2)
+    along, across = np.cos(way.turned), np.sin(way.turned)
+    u = way.velocity[:, 0] * along + way.velocity[:, 1] * across
+    w = (way.velocity[:, 1] * along - way.velocity[:, 0] * across)[:, None] + spin[:, None] * PLACES
+    fluid = DENSITY * np.pi * DEPTH / 4 * finite_length_factor(FLUID)
+    energy = 0.5 * (MASS_PER_LENGTH * (u[:, None] ** 2 + w**2) + fluid * w**2) @ LENGTHS
+    assert np.abs(way.turned).max() > 1.0
+    assert energy[1:-1] == pytest.approx(energy[1], rel=1e-3)
 
 
 def test_a_glide_along_a_blasius_layer_ends_with_its_law():
