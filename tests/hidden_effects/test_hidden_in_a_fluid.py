@@ -99,7 +99,7 @@ def test_what_is_hidden_from_a_free_swimmer_is_named(hidden, pool):
 
 
 def test_the_inertia_alone_is_named_where_the_body_is_held(pool):
-    """It is told from the reactive force, which sheds what it carries; at voltages at which the fin does not whip."""
+    """It is told from the reactive force, which sheds what it carries; at voltages whose motion the meshes share."""
     hidden = "finite_depth_added_mass"
     truth = held(with_force(load_model("swimmer_in_oil"), hidden)).with_numerics(mesh_density=1.5)
     assert is_named(found_in(truth, hidden, (2500, 3500, 3500, 2500), 1.0, pool), hidden)
