@@ -54,18 +54,18 @@ def _minimise(
     lower, upper, start = _bounds_and_start(model, names)
     scale = np.maximum(np.abs(start), [_scale(model, name) for name in names])
     start = _first_that_runs(search, start, names)
+    # in units of their scales, for the length of a step ends the search: beside one in Pa no other would count
     found = least_squares(
-        search.residual,
-        start,
-        jac=search.jacobian,
-        bounds=(lower, upper),
-        x_scale=scale,
+        lambda z: search.residual(z * scale),
+        start / scale,
+        jac=lambda z: search.jacobian(z * scale) * scale,
+        bounds=(lower / scale, upper / scale),
         xtol=tolerance,
         ftol=0.1 * tolerance,
         gtol=1e-12,
         max_nfev=most_evaluations,
     )
-    return search.at(found.x), search.count
+    return search.at(np.clip(found.x * scale, lower, upper)), search.count
 
 
 def _first_that_runs(search: "_Search", start: np.ndarray, names: tuple[str, ...]) -> np.ndarray:

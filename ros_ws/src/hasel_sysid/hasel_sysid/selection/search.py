@@ -50,10 +50,11 @@ def search(
     """
     state = _Search(sets, policy, progress, {f.effects: f for f in (sets.baseline(), *begun)})
     state.look_beyond(NOTHING, None)
-    state.fit(sorted(state.additions([NOTHING]), key=lambda p: -p.promised), 1, even_late=True)
+    state.fit(state.singles(), 1, even_late=True)
     while (found := state.judged()).last.chance < policy.level:
         if state.fit(state.better(state.additions([NOTHING])), policy.fits):
             continue
+        state.fit(state.singles(), policy.fits - sum(map(bool, plausible(state.known))))
         beam = sorted(plausible(state.known), key=state.value)[-policy.width :]
         for one in beam:
             state.look_beyond_if_anything_is_missing(one)
@@ -152,6 +153,10 @@ class _Search:
         test = self.tested(effects)
         promising = sorted(test.gains, key=lambda effect: -test.gains[effect])[: 2 * self.policy.trials]
         self.look_beyond(effects, [effect for effect in promising if test.gains[effect] > test.threshold])
+
+    def singles(self) -> list["_Proposal"]:
+        """Sets of one effect, most promising first."""
+        return sorted(self.additions([NOTHING]), key=lambda p: -p.promised)
 
     def additions(self, beam: Sequence[EffectSet]) -> Iterator["_Proposal"]:
         """Sets with one effect more than those of a beam."""

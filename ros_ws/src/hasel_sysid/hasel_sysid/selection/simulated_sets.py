@@ -26,7 +26,7 @@ _RIVAL = 0.5
 """What could take away less than this share of what the best one could gets no further steps."""
 _SIZES = (0.1, 2.0)
 """Smallest and largest start, in typical sizes."""
-_BRIEF = 10
+_BRIEF = 25
 """Evaluations that a full fit is given."""
 
 Rank = Callable[[Prospect], float]
