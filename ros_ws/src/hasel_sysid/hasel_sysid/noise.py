@@ -127,3 +127,14 @@ def estimate_noise(residual: np.ndarray, runs: np.ndarray, fitted: np.ndarray, s
     return NoiseModel(
         float(min(white, most)), float(np.clip(most - white, 0.0, coloured)), float(rho), source
     )
+
+
+def allowed_noise(noise: NoiseModel, discrepancy: float) -> NoiseModel:
+    """What a right model may leave: the noise and the one discrepancy (rms) that is allowed for.
+
+    An upper bound of the noise, which holds some of it already, is only raised where it lies below that discrepancy.
+    """
+    if not noise.upper_bound:
+        return noise.with_discrepancy(discrepancy)
+    missing = discrepancy**2 - noise.standard_deviation**2
+    return noise.with_discrepancy(float(np.sqrt(missing))) if missing > 0 else noise

@@ -11,7 +11,6 @@ from hasel_sim.parallel import executor
 from hasel_sysid.dataset import prepared
 from hasel_sysid.improve import improve
 from hasel_sysid.problem import Problem
-from hasel_sysid.searches import SEARCHES
 
 from hasel_benchmark.bench_far.constants_far_off import BODIES
 from hasel_benchmark.bench_far.far_case import FarCase, baseline, far_cases, measure, value_of
@@ -54,9 +53,7 @@ class FarOutcome:
         )
 
 
-def run_case(
-    case: FarCase, pool: Executor, only: Sequence[str] | None = None, search: str = SEARCHES[0]
-) -> FarOutcome:
+def run_case(case: FarCase, pool: Executor, only: Sequence[str] | None = None) -> FarOutcome:
     """What `improve` says of one case. only: names of the candidate effects (default: all)."""
     value = value_of(case)
     fitted, unseen = measure(case, value, pool)
@@ -66,7 +63,6 @@ def run_case(
         prepared(baseline(case.body), fitted),
         Problem(unseen, pool),
         only,
-        by=search,
     ).to_json()
     missing, groups = found["verdict"]["missing"], found["indistinguishable"]
     added = found["stages"][-1]["effects"]
@@ -94,7 +90,7 @@ def run(options: argparse.Namespace) -> int:
     outcomes = []
     with executor(options.jobs) as pool:
         for case in cases:
-            outcomes.append(run_case(case, pool, options.candidates, options.search))
+            outcomes.append(run_case(case, pool, options.candidates))
             print(outcomes[-1], flush=True)
     right, sure = sum(o.right for o in outcomes), sum(o.sure and not o.right for o in outcomes)
     print(

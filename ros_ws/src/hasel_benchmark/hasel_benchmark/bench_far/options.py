@@ -3,8 +3,6 @@
 import argparse
 from pathlib import Path
 
-from hasel_sysid.searches import SEARCHES
-
 from hasel_benchmark.bench_far.constants_far_off import BODIES, SHIFTS, SIZES
 
 
@@ -23,9 +21,6 @@ def parser() -> argparse.ArgumentParser:
     )
     options.add_argument("--body", choices=BODIES, help="only this body")
     options.add_argument("--candidates", type=_list_of(str), metavar="A,B", help="try only these effects")
-    options.add_argument(
-        "--search", choices=SEARCHES, default=SEARCHES[0], help="how to search (default: %(default)s)"
-    )
     options.add_argument("--jobs", type=int, metavar="N", help="simulations at once (default: one per core)")
     options.add_argument("--json", type=Path, metavar="FILE", help="write the outcomes")
     return options

@@ -4,12 +4,10 @@ import argparse
 import json
 import sys
 from collections.abc import Sequence
-from functools import partial
 from pathlib import Path
 
 from hasel_sim.errors import ModelError, SimulationError
 from hasel_sim.parallel import executor, worker_count
-from hasel_sysid.searches import SEARCHES
 
 from hasel_benchmark.bench_hidden.case import Case
 from hasel_benchmark.bench_hidden.case_list import list_cases, quick_cases
@@ -47,11 +45,10 @@ def _bench(options: argparse.Namespace) -> int:
     known = _known(page) if options.resume else {}
     outcomes: list[Outcome] = []
     stopped = False
-    how = partial(explain, search=options.search)
     try:
         with executor(options.jobs, options.scheduler) as pool:
             at_once = _at_once(options, cases)
-            for outcome in run_cases(cases, how, pool, options.output, _say, at_once, known):
+            for outcome in run_cases(cases, explain, pool, options.output, _say, at_once, known):
                 outcomes.append(outcome)
     except KeyboardInterrupt:
         stopped = True
@@ -80,8 +77,7 @@ def _cases(options: argparse.Namespace) -> list[Case]:
 
 
 def _default_page(options: argparse.Namespace) -> Path:
-    usual = options.search == SEARCHES[0]
-    part = options.quick or options.only or options.effects or options.first_seed or not usual
+    part = options.quick or options.only or options.effects or options.first_seed
     return options.output / PAGE.name if part else PAGE
 
 

@@ -7,14 +7,13 @@ from hasel_sim.model import Model, load_model
 from hasel_sysid.dataset import Experiment, prepared
 from hasel_sysid.improve import improve
 from hasel_sysid.problem import Problem
-from hasel_sysid.searches import SEARCHES
 
 from hasel_benchmark.bench_hidden.generate import Laboratory
 
 
-def explain(laboratory: Laboratory, pool: Executor, search: str = SEARCHES[0]) -> dict:
+def explain(laboratory: Laboratory, pool: Executor) -> dict:
     """The content of `improve --json` for these measurements, starting from the default swimmer."""
-    return answer(load_model("swimmer"), laboratory.fitted, laboratory.unseen, pool, search)
+    return answer(load_model("swimmer"), laboratory.fitted, laboratory.unseen, pool)
 
 
 def answer(
@@ -22,8 +21,7 @@ def answer(
     fitted: Sequence[Experiment],
     unseen: Sequence[Experiment],
     pool: Executor,
-    search: str = SEARCHES[0],
 ) -> dict:
     """The content of `improve --json` for these experiments, starting from a model."""
-    found = improve(Problem(fitted, pool), prepared(model, fitted), Problem(unseen, pool), by=search)
+    found = improve(Problem(fitted, pool), prepared(model, fitted), Problem(unseen, pool))
     return found.to_json()

@@ -3,8 +3,6 @@
 import argparse
 from pathlib import Path
 
-from hasel_sysid.searches import SEARCHES
-
 PAGE = Path("docs/hidden_effects.md")
 KINDS = {"nothing": "nothing", "single": "single", "pairs": "pair", "unlisted": "unlisted"}
 """The kind of a case, by what it is called on the command line."""
@@ -41,9 +39,6 @@ def parser() -> argparse.ArgumentParser:
         "--output", type=Path, default=Path("output/bench_hidden"), metavar="DIR", help="default: %(default)s"
     )
     options.add_argument("--page", type=Path, metavar="FILE", help=f"default: {PAGE}, in DIR for a part")
-    options.add_argument(
-        "--search", choices=SEARCHES, default=SEARCHES[0], help="how to search (default: %(default)s)"
-    )
     options.add_argument("--jobs", type=int, metavar="N", help="cases at once (default: one per core)")
     options.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, instead of processes")
     return options

@@ -104,7 +104,7 @@ def test_command_refuses_to_mix_with_earlier_results(tmp_path, capsys):
 
 def test_command_writes_the_page(tmp_path, monkeypatch):
     """Results go to a page and a JSON file beside it."""
-    monkeypatch.setattr(command, "explain", lambda laboratory, pool, search: ANSWER)
+    monkeypatch.setattr(command, "explain", lambda laboratory, pool: ANSWER)
     assert command.main(["--quick", "--jobs", "1", "--output", str(tmp_path)]) == 0
     assert "nothing hidden, coloured noise: something reported | 0 % | ≤ 5 % | yes" in (
         tmp_path / "hidden_effects.md"
@@ -114,7 +114,7 @@ def test_command_writes_the_page(tmp_path, monkeypatch):
 
 def test_command_goes_on_from_the_page_alone(tmp_path, monkeypatch, measured):
     """The JSON beside the page holds every outcome: with it, another machine need not begin again."""
-    monkeypatch.setattr(command, "explain", lambda laboratory, pool, search: ANSWER)
+    monkeypatch.setattr(command, "explain", lambda laboratory, pool: ANSWER)
     page = tmp_path / "page.md"
     asked = ["--quick", "--jobs", "1", "--page", str(page), "--output"]
     assert command.main([*asked, str(tmp_path / "here")]) == 0
@@ -127,7 +127,7 @@ def test_command_goes_on_from_the_page_alone(tmp_path, monkeypatch, measured):
 def test_command_hides_what_nobody_has_looked_at(tmp_path, monkeypatch, measured):
     """With --first-seed the draws are others, of all kinds, and the page is not the one of the whole benchmark."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(command, "explain", lambda laboratory, pool, search: ANSWER)
+    monkeypatch.setattr(command, "explain", lambda laboratory, pool: ANSWER)
     assert command.main(["--seeds", "2", "--first-seed", "6", "--jobs", "1", "--output", "fresh"]) == 0
     for kind in ("single", "pair", "unlisted"):
         assert {case.seed for case in measured if case.kind == kind} == {6, 7}

@@ -10,11 +10,10 @@ from hasel_sim.parallel import executor
 from hasel_sysid.api.results import Diagnosed, Fitted, Improved, Recordings, Simulated
 from hasel_sysid.compare import compare
 from hasel_sysid.dataset import Experiment, for_model, load_experiments, prepared
-from hasel_sysid.diagnosis import diagnose as diagnosis_of
 from hasel_sysid.fit import fit_from_afar, identify
 from hasel_sysid.improve import improve as improvement_of
 from hasel_sysid.problem import Problem
-from hasel_sysid.searches import SEARCHES
+from hasel_sysid.selection.diagnose import diagnose as diagnosis_of
 
 
 def load(
@@ -103,17 +102,16 @@ def improve(
     unseen: Sequence[Experiment] = (),
     effects: Sequence[str] | None = None,
     jobs: int = 1,
-    search: str = SEARCHES[0],
 ) -> Improved:
     """Fit, diagnose, add, refit, until what is left is noise or nothing known explains it.
 
-    unseen: recordings that are never fitted or chosen by; effects: as of `diagnose`; search: greedy, or sets.
+    unseen: recordings that are never fitted or chosen by; effects: as of `diagnose`.
     Raises SysidError, SimulationError, ModelError.
     """
     start, fitted = _prepared(model, recordings)
     with executor(jobs) as pool:
         validation = Problem(for_model(model, unseen), pool) if unseen else None
-        return Improved(improvement_of(Problem(fitted, pool), start, validation, effects, by=search))
+        return Improved(improvement_of(Problem(fitted, pool), start, validation, effects))
 
 
 def _prepared(model: Model, recordings: Sequence[Experiment]) -> tuple[Model, list[Experiment]]:

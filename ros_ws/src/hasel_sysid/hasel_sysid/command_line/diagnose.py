@@ -14,12 +14,12 @@ from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import code_after, show, summarise, tell
 from hasel_sysid.command_line.summary import diagnosis_lines
 from hasel_sysid.compare import compare
-from hasel_sysid.diagnosis import diagnose
 from hasel_sysid.fit import fit_from_afar
 from hasel_sysid.improve.result import diagnosis_json
 from hasel_sysid.problem import Problem
 from hasel_sysid.report.from_diagnosis import diagnosis_content
 from hasel_sysid.report.write import write_report
+from hasel_sysid.selection.diagnose import diagnose
 from hasel_sysid.time_limit import TimeLimit
 
 

@@ -62,7 +62,6 @@ def _improve(options: argparse.Namespace) -> int:
                 options.effects,
                 progress=part(progress, "", 0.03, 0.97),
                 on_stage=keep,
-                by=options.search,
             )
             stages = [_comparison(stage, experiments, unseen, pool, label) for stage in found.stages]
             suggestions = [] if limit.is_over() else _next_runs(found, pool)

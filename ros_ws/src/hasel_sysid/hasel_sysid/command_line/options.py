@@ -6,8 +6,6 @@ from pathlib import Path
 
 from hasel_recording.reading_options import RecordingsParser, add_reading_options
 
-from hasel_sysid.searches import SEARCHES
-
 DEFAULT_MODEL = "swimmer"
 
 
@@ -131,16 +129,6 @@ def add_time_limit(parser: argparse.ArgumentParser) -> None:
         type=_positive,
         default=math.inf,
         help="begin nothing more after so many seconds, and say what was not tried (default: no limit)",
-    )
-
-
-def add_search(parser: argparse.ArgumentParser) -> None:
-    """--search."""
-    parser.add_argument(
-        "--search",
-        choices=SEARCHES,
-        default=SEARCHES[0],
-        help="add one effect after the other, or choose among sets of effects (default: %(default)s)",
     )
 
 

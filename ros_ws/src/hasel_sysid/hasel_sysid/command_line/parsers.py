@@ -5,7 +5,7 @@ from pathlib import Path
 
 from hasel_recording.reading_options import RecordingsParser, add_reading_options
 
-from hasel_sysid.command_line.options import DEFAULT_MODEL, add_search, add_time_limit, recording_options
+from hasel_sysid.command_line.options import DEFAULT_MODEL, add_time_limit, recording_options
 
 FIT_METHODS = ("adam", "least_squares")
 
@@ -39,7 +39,6 @@ def improve_parser() -> argparse.ArgumentParser:
     """Options of `improve`."""
     what = "Add missing effects until what is left is noise or nothing known explains it."
     options = recording_options("improve", what, effects=True, noise=True, everything=True)
-    add_search(options)
     add_time_limit(options)
     return options
 

@@ -1,7 +1,5 @@
 """Learning which physical effect is missing from a fitted model."""
 
-from hasel_sysid.diagnosis.diagnose import diagnose
-from hasel_sysid.diagnosis.judgement import judged
 from hasel_sysid.diagnosis.result import Diagnosis, Finding, Verdict
 
-__all__ = ["Diagnosis", "Finding", "Verdict", "diagnose", "judged"]
+__all__ = ["Diagnosis", "Finding", "Verdict"]

@@ -10,8 +10,6 @@ from hasel_sim.model import Model
 
 from hasel_sysid.fit.decades import over_range
 
-_LARGER = 2.0
-
 
 @dataclass(frozen=True)
 class Start:
@@ -67,11 +65,6 @@ def starts(effect: Effect) -> list[Start]:
     count = len(nuisance.scan)
     chosen = {nuisance.scan[count // 4], nuisance.scan[(3 * count) // 4]}
     return [_start(effect, {nuisance.name: value}) for value in sorted(chosen)]
-
-
-def larger_starts(effect: Effect) -> list[Start]:
-    """The same starts with whatever is one-sided at twice its typical size; none where nothing is one-sided."""
-    return [larger for start in starts(effect) if (larger := resized(start, _LARGER)).values != start.values]
 
 
 def decade_starts(effect: Effect) -> list[Start]:

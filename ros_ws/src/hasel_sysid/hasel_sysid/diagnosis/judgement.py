@@ -1,15 +1,12 @@
 """From numbers to the verdict on every effect."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
 
 from hasel_sysid.diagnosis.context import Context
-from hasel_sysid.diagnosis.groups import groups
 from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
-from hasel_sysid.diagnosis.probability import probabilities
 from hasel_sysid.diagnosis.result import Diagnosis, Finding, Verdict
 from hasel_sysid.diagnosis.signature import Signature
 from hasel_sysid.diagnosis.suspects import numerical_suspects
@@ -21,19 +18,6 @@ _MATTERS = 0.4
 RULED_OUT = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
 _DETECTION = 3.3
 """Standard errors at which an effect is seen with 95 % certainty at a 5 % false-alarm rate."""
-
-
-def judged(context: Context) -> Diagnosis:
-    """What is said of all effects of a context."""
-    chances, none = probabilities(context)
-    findings = [
-        replace(finding(context, effect), probability=chances.get(effect.id, 0.0))
-        for effect in context.effects
-    ]
-    alike = groups(context)
-    findings = [_one_answer(finding, context.winner, alike) for finding in findings]
-    findings.sort(key=lambda one: (-one.probability, context.squares.get(one.effect, np.inf)))
-    return as_diagnosis(context, findings, alike, none)
 
 
 def as_diagnosis(
@@ -54,14 +38,6 @@ def as_diagnosis(
         numerical_suspects(context.fit, context.changes, context.excess),
         context,
     )
-
-
-def _one_answer(found: Finding, winner: str | None, alike: Sequence[tuple[str, ...]]) -> Finding:
-    """What cannot be told from the winner is not called absent: it could stand in its place."""
-    in_doubt = winner is not None and any(winner in group and found.effect in group for group in alike)
-    if in_doubt and found.effect != winner and found.verdict in RULED_OUT:
-        return replace(found, verdict=Verdict.MISSING_IF_SIZE_MATTERS)
-    return found
 
 
 def finding(context: Context, effect) -> Finding:

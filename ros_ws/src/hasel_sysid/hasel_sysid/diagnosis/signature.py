@@ -72,9 +72,3 @@ def signature(
 
 def _null(effect, name: str) -> float:
     return next(p.null for p in effect.parameters if f"{effect.id}.{p.name}" == name)
-
-
-def alike(first: Signature, second: Signature) -> float:
-    """Absolute cosine between what two effects leave, 0 to 1."""
-    norms = np.linalg.norm(first.left) * np.linalg.norm(second.left)
-    return 0.0 if norms == 0 else float(abs(first.left @ second.left) / norms)

@@ -7,17 +7,22 @@ import numpy as np
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
-from hasel_sysid.diagnosis.candidates import Start
-from hasel_sysid.diagnosis.significance import drops
+from hasel_sysid.diagnosis.candidates import Start, resized
 from hasel_sysid.draft import draft
 from hasel_sysid.fit.bounded import bounded_change
 from hasel_sysid.problem import Evaluation, Problem
-from hasel_sysid.projection import orthonormal
+from hasel_sysid.projection import drops, orthonormal
 
 MOST_CHANGE = 0.5
 """A single step changes no baseline parameter by more than this share: beyond, the derivatives say nothing."""
 _TOO_ROUGH = 0.15
 """Share of the simulated motion by which a draft may be wrong."""
+_FAR = 2.0
+"""A start that makes the sum of squares this many times worse is too far off for its promise to be believed, or not."""
+_HALVINGS = 2
+"""How often what starts too far off is tried again from half of its size."""
+_SOME_HOPE = 0.2
+"""What by its change and derivatives from far off could lower the sum of squares by less than this share is not."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,6 +125,25 @@ class Trials:
         spanned = float(drops(looks, self._imitable, self.fitted.residual))
         promised = max(spanned, self.fitted.sum_of_squares - predicted)
         return Trial(start, model, names, residual, evaluation.jacobian, step, predicted, promised)
+
+
+def nearer(trials: Trials, tried: Sequence[Start], found: Sequence[Trial]) -> list[Trial]:
+    """Trials from half the size, or a quarter, of what could not be simulated or made the sum of squares far worse."""
+    squares = trials.fitted.sum_of_squares
+    every: list[Trial] = []
+    for _ in range(_HALVINGS):
+        done = {
+            id(t.start)
+            for t in found
+            if t.sum_of_squares <= _FAR * squares or t.promised < _SOME_HOPE * squares
+        }
+        halved = [(start, resized(start, 0.5)) for start in tried if id(start) not in done]
+        tried = [half for start, half in halved if half.values != start.values]
+        if not tried or trials.time_is_over():
+            break
+        found = trials.first(tried)
+        every += found
+    return every
 
 
 def _source(start: Start) -> str:

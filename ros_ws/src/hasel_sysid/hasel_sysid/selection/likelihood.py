@@ -38,11 +38,13 @@ class Likelihood:
         runs: np.ndarray,
         discrepancy: float = 0.0,
         slack: np.ndarray | None = None,
+        misfit: float = 0.0,
     ) -> None:
         """runs [frames]; discrepancy: rms of what no model has, as slow as noise can be; slack [frames, n]: changes
-        that are in the error of every run, each in an unknown amount with a standard deviation of one.
+        that are in the error of every run, each in an unknown amount with a standard deviation of one; misfit: variance
+        of what is still missing from the models that are compared, of which nothing else is known.
         """
-        self.noise, self.runs, self.discrepancy = noise, runs, discrepancy
+        self.noise, self.runs, self.discrepancy, self.misfit = noise, runs, discrepancy, misfit
         self._slack = np.zeros((len(runs), 0)) if slack is None else slack
 
     def whiten(self, columns: np.ndarray) -> np.ndarray:
@@ -72,7 +74,7 @@ class Likelihood:
     def _innovations(self, columns: np.ndarray) -> np.ndarray:
         """Of the frames of one run."""
         slow = np.array([self.noise.coloured, self.discrepancy**2])
-        white = max(self.noise.white, 1e-9 * float(slow.sum()))
+        white = max(self.noise.white + self.misfit, 1e-9 * float(slow.sum()))
         memory = np.array([self.noise.correlation, LONGEST_CORRELATION])
         return _filtered(np.ascontiguousarray(columns, dtype=float), white, slow, memory)
 

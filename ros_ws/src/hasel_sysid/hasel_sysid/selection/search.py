@@ -15,7 +15,7 @@ Progress = Callable[[str, float], None]
 
 @dataclass(frozen=True)
 class Searched:
-    """known: every set that was fitted; likelihood: by which all are judged; worths, whitened: of every known set;
+    """known: every set that was fitted; likelihood: by which they are compared; worths, whitened: of every known set;
     first: the test of the baseline; last: of the best set; prospects: of every single effect beside the baseline;
     level: of the tests; tested: the test of any known set.
     """
@@ -81,10 +81,19 @@ class _Search:
         self.use_noise()
 
     def use_noise(self) -> None:
-        """Judge by what the best fits so far tell of the noise."""
+        """Judge by what the best fits so far tell of the noise, and compare by what the best one lacks as well.
+
+        Noise alone says whether anything is missing. As long as something is, sets differ by far more than noise, and
+        most where it is quietest: there a likelihood of noise would compare them by a few fast frames only. What the
+        best one lacks counts as an error of its own, so that then it is mostly the squares that are compared.
+        """
         noise = self.sets.noise(list(self.known.values()))
         discrepancy = self.policy.discrepancy * self.sets.swing
-        self.likelihood = Likelihood(noise, self.sets.runs, discrepancy, self.sets.slack)
+        best = min((self.known[s] for s in plausible(self.known)), key=lambda f: f.squares)
+        left = best.squares / max(len(best.residual) - best.jacobian.shape[1], 1)
+        misfit = max(0.0, left - noise.standard_deviation**2 - discrepancy**2)
+        self.noise_alone = Likelihood(noise, self.sets.runs, discrepancy, self.sets.slack)
+        self.likelihood = Likelihood(noise, self.sets.runs, discrepancy, self.sets.slack, misfit)
         self.whitened = {effects: self.likelihood.whitened(f) for effects, f in self.known.items()}
 
     def say(self, text: str, done: float) -> None:
@@ -94,8 +103,7 @@ class _Search:
     def judged(self) -> Searched:
         """All known sets by the noise as it is known now."""
         self.use_noise()
-        dispersion = self.dispersion
-        worths = {s: worth(w, self.policy.prior_runs, dispersion) for s, w in self.whitened.items()}
+        worths = {s: worth(w, self.policy.prior_runs) for s, w in self.whitened.items()}
         best = max(plausible(self.known), key=lambda s: worths[s].total)
         first = self.tested(NOTHING)
         last = self.tested(best) if best else first
@@ -115,7 +123,8 @@ class _Search:
 
     def tested(self, effects: EffectSet) -> Missing:
         """Whether anything is missing from a known set."""
-        return missing(self.whitened[effects], self.looks(effects), self.likelihood, self.policy.level)
+        fitted = self.noise_alone.whitened(self.known[effects])
+        return missing(fitted, self.looks(effects), self.noise_alone, self.policy.level)
 
     def looks(self, beside: EffectSet) -> dict:
         """What the effects that are not in a set look like: there, or at least beside the baseline."""
@@ -128,16 +137,7 @@ class _Search:
 
     def value(self, effects: EffectSet) -> float:
         """Of a known set: likelier by what noise alone may gain, for every effect more."""
-        return self.whitened[effects].logarithm - self.threshold * self.dispersion * len(effects)
-
-    @property
-    def dispersion(self) -> float:
-        """What the likeliest set leaves over what its noise explains, at least one (Wedderburn 1974).
-
-        As long as no set describes the runs, differences between sets are worth as much less.
-        """
-        best = max((self.whitened[s] for s in plausible(self.known)), key=lambda w: w.logarithm)
-        return max(1.0, -2 * best.logarithm / max(len(best.residual) - best.basis.shape[1], 1))
+        return self.whitened[effects].logarithm - self.threshold * len(effects)
 
     def look_beyond(self, effects: EffectSet, wanted: list[str] | None) -> None:
         """Learn what one more effect could do to a set."""
@@ -186,7 +186,7 @@ class _Search:
     def rivals(self, found: Searched) -> list["_Proposal"]:
         """Sets of the best one's size that come so near to it that they may not be told apart."""
         # at d standard errors the error itself is at most 2 d, and the ratio 2 d^2: half its square is what it costs
-        reach = found.whitened[found.best].logarithm - 2 * self.policy.doubt**2 * self.dispersion
+        reach = found.whitened[found.best].logarithm - 2 * self.policy.doubt**2
         smaller = [rest for gone in found.best if (rest := found.best - {gone}) in self.known]
         near = [p for p in self.additions(smaller) if p.promised > reach]
         return sorted(near, key=lambda p: -p.promised)
@@ -194,8 +194,7 @@ class _Search:
     def better(self, proposals: Iterable["_Proposal"]) -> list["_Proposal"]:
         """Those that promise more than the best known set, most promising first."""
         best = max(map(self.value, plausible(self.known)))
-        cost = self.threshold * self.dispersion
-        valued = [(p.promised - cost * len(p.effects), p) for p in proposals]
+        valued = [(p.promised - self.threshold * len(p.effects), p) for p in proposals]
         return [p for value, p in sorted(valued, key=lambda pair: -pair[0]) if value > best]
 
     def _proposal(

@@ -11,8 +11,7 @@ from hasel_sim.model import Model
 from hasel_sysid.diagnosis.candidates import Start, decade_starts, resized, starts
 from hasel_sysid.diagnosis.context import on_own_bound
 from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
-from hasel_sysid.diagnosis.search import nearer
-from hasel_sysid.diagnosis.trial import MOST_CHANGE, Trial, Trials, limited
+from hasel_sysid.diagnosis.trial import MOST_CHANGE, Trial, Trials, limited, nearer
 from hasel_sysid.fit import FitResult, fit_least_squares
 from hasel_sysid.noise import NoiseModel, estimate_noise
 from hasel_sysid.noise_sources.above_the_band import noise_above_the_band

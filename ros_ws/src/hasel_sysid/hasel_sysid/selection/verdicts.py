@@ -1,35 +1,22 @@
 """What a search among sets says of every effect, in the terms that report, node and commands know."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 
 import numpy as np
 
 from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict
 from hasel_sysid.diagnosis.context import Context, expected_squares
 from hasel_sysid.diagnosis.explained import share_left
-from hasel_sysid.diagnosis.finals import allowed_noise
 from hasel_sysid.diagnosis.judgement import RULED_OUT, as_diagnosis, finding
 from hasel_sysid.diagnosis.reached import squares_reached
 from hasel_sysid.diagnosis.signature import signature
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.noise import NoiseModel, allowed_noise
 from hasel_sysid.selection.choice import Choice
+from hasel_sysid.selection.policy import POLICY
 from hasel_sysid.selection.search import Searched
 from hasel_sysid.selection.sets import NOTHING
 from hasel_sysid.selection.simulated_sets import SimulatedSets
-
-
-@dataclass(frozen=True)
-class ChosenContext(Context):
-    """A context whose first effect was chosen by a search among sets; named: that effect, or None."""
-
-    named: str | None = None
-
-    @cached_property
-    def winner(self) -> str | None:
-        """The first effect of the chosen set."""
-        return self.named
 
 
 def diagnosis(
@@ -51,7 +38,7 @@ def diagnosis(
 
 def _context(
     sets: SimulatedSets, found: Searched, choice: Choice, changes: Mapping[str, np.ndarray]
-) -> ChosenContext:
+) -> Context:
     fit = sets.fitted
     finals = {next(iter(s)): f.fit for s, f in found.known.items() if len(s) == 1}
     of_effect = {effect: prospect.start for effect, prospect in found.prospects.items()}
@@ -61,9 +48,9 @@ def _context(
         for t in reversed(sets.first)
     }
     measured = found.likelihood.noise
-    noise = allowed_noise(sets.problem, measured)
+    noise = allowed_noise(measured, POLICY.discrepancy * sets.swing)
     named = next((next(iter(s)) for s in choice.path if len(s) == 1), None)
-    return ChosenContext(
+    return Context(
         list(sets.effects.values()),
         fit,
         finals,
@@ -76,7 +63,7 @@ def _context(
         measured,
         of_effect,
         frozenset(sets.effects) - sets.tried,
-        named=named,
+        winner=named,
     )
 
 

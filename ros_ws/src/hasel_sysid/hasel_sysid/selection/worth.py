@@ -64,22 +64,20 @@ def _error_of_sum(series: np.ndarray) -> float:
     return float(np.sqrt(power * (1 + memory) / (1 - memory)))
 
 
-def worth(fitted: Whitened, prior_runs: float, dispersion: float = 1.0) -> Worth:
+def worth(fitted: Whitened, prior_runs: float) -> Worth:
     """The leave-one-run-out log predictive density, linearised at the fit to all runs.
 
-    prior_runs: what is known of the parameters beforehand, as the information of so many average runs; dispersion: of
-    the errors of the best set, over their noise's.
+    prior_runs: what is known of the parameters beforehand, as the information of so many average runs.
     """
     folds = fitted.runs
     alone = len(np.unique(folds)) == 1
     if alone:
         folds = _PARTS * np.arange(len(folds)) // len(folds)
     numbers = np.unique(folds)
-    residual = fitted.residual / np.sqrt(dispersion)
     densities = [
-        _density(fitted.basis, residual, folds == fold, prior_runs / len(numbers)) for fold in numbers
+        _density(fitted.basis, fitted.residual, folds == fold, prior_runs / len(numbers)) for fold in numbers
     ]
-    return Worth(np.array(densities), residual, not alone)
+    return Worth(np.array(densities), fitted.residual, not alone)
 
 
 def _density(basis: np.ndarray, residual: np.ndarray, here: np.ndarray, prior: float) -> float:

@@ -24,7 +24,7 @@ SHAPES = {
 
 @pytest.fixture
 def context():
-    """Make the context in which `hidden` of the effect "sine" is there and every effect is fitted exactly."""
+    """Make the context in which `hidden` of the effect "sine" is there, and named, and all are fitted exactly."""
 
     def make(hidden: float, chance: float = 0.002) -> Context:
         residual = hidden * SHAPES["sine"] + NOISE.sample(RUNS, 1, np.random.default_rng(0))[:, 0]
@@ -41,7 +41,7 @@ def context():
         floor = expected_squares(FITTED, NOISE, RUNS)
         effects = [_effect(name) for name in SHAPES]
         base = _fit("", residual, FITTED)
-        return Context(effects, base, finals, signatures, squares, NOISE, floor, chance, {})
+        return Context(effects, base, finals, signatures, squares, NOISE, floor, chance, {}, winner="sine")
 
     return make
 

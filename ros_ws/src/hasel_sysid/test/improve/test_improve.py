@@ -1,4 +1,4 @@
-"""The loop in a made-up world, where it is known what every effect does."""
+"""The search among sets of effects in a made-up world, where it is known what every effect does."""
 
 import math
 
@@ -8,25 +8,36 @@ from hasel_sysid.improve import Status, improve
 from hasel_sysid.testing.made_up_world import MadeUpWorld
 
 
-def improved(hidden, stranger=0.0, most_effects=3, seed=1, most_evaluations=math.inf):
+def improved(hidden, stranger=0.0, most_effects=3, seed=1, most_evaluations=math.inf, on_stage=None):
     """What is found when these effects, of typical size, and a stranger of so much rms are hidden."""
     world = MadeUpWorld(seed, shared=16)
-    truth = world.with_typical(*hidden)
-    return improve(
-        world.measured(truth, stranger=stranger, most_evaluations=most_evaluations),
-        world.model,
-        most_effects=most_effects,
+    measured = world.measured(
+        world.with_typical(*hidden), stranger=stranger, most_evaluations=most_evaluations
     )
+    return improve(measured, world.model, most_effects=most_effects, on_stage=on_stage)
 
 
 @pytest.mark.parametrize(
     "hidden", [("payload",), ("quadratic_drag", "drive_creep"), ("slow_creep", "pre_bend", "gravity_tilt")]
 )
 def test_what_is_hidden_is_named(hidden):
-    """One, two or three effects, and nothing beside them."""
-    found = improved(hidden)
+    """One, two or three effects, and nothing beside them; each is said to be missing, the rest is not."""
+    written = []
+    found = improved(hidden, on_stage=written.append)
     assert set(found.missing) == set(hidden)
     assert found.status is Status.EXPLAINED
+    said = {f.effect for f in found.diagnosis.findings if f.verdict is Verdict.MISSING}
+    assert said == set(hidden)
+    assert found.diagnosis.findings[0].effect in hidden
+    assert [stage.effects for stage in written] == [stage.effects for stage in found.stages]
+    assert [len(stage.effects) for stage in found.stages] == sorted({len(s.effects) for s in found.stages})
+
+
+def test_nothing_hidden_is_nothing_missing():
+    """The model is left as it was fitted."""
+    found = improved(())
+    assert found.status is Status.NOTHING_MISSING
+    assert [stage.effects for stage in found.stages] == [()]
 
 
 def test_a_stranger_is_not_explained():
@@ -35,7 +46,7 @@ def test_a_stranger_is_not_explained():
 
 
 def test_the_number_of_effects_is_kept_to():
-    """Three are hidden, two may be added: the search says that it ends there and does not call it explained."""
+    """Three are hidden, two may be added: what is left is not called explained."""
     found = improved(("slow_creep", "pre_bend", "gravity_tilt"), most_effects=2)
     assert len(found.stages[-1].effects) <= 2
     assert found.status is not Status.EXPLAINED
@@ -44,17 +55,30 @@ def test_the_number_of_effects_is_kept_to():
 def test_a_search_whose_time_is_over_ends_in_good_order():
     """From no time at all to enough: it says what it had no time for, and never that this is absent."""
     hidden = ("quadratic_drag", "drive_creep")
-    found = [improved(hidden, most_evaluations=most) for most in (0, 20, 40, math.inf)]
-    for one in found[:3]:
-        assert "The search ended at the limit" in one.reason
-        assert one.status is not Status.EXPLAINED or set(one.missing) == set(hidden)
-    for one in found[:2]:
-        untried = [f for f in one.diagnosis.findings if f.verdict is Verdict.NOT_TRIED]
-        assert untried
-        assert {f.effect for f in untried} <= set(one.not_tried)
-        assert all("was not tried" in str(f) for f in untried)
-        assert untried[0].effect in one.reason
-    assert len(found[0].not_tried) > len(found[1].not_tried) > len(found[2].not_tried)
-    assert set(found[3].missing) == set(hidden)
-    assert "The search ended" not in found[3].reason
-    assert found[3].not_tried == []
+    found = [improved(hidden, most_evaluations=most) for most in (0, math.inf)]
+    assert "The search ended at the limit" in found[0].reason
+    assert found[0].status is not Status.EXPLAINED
+    untried = [f for f in found[0].diagnosis.findings if f.verdict is Verdict.NOT_TRIED]
+    assert untried
+    assert {f.effect for f in untried} <= set(found[0].not_tried)
+    assert set(found[1].missing) == set(hidden)
+    assert "The search ended" not in found[1].reason
+    assert found[1].not_tried == []
+
+
+def test_without_candidates_the_baseline_stays():
+    """The only effect that was named is in the model already."""
+    world = MadeUpWorld(1, shared=16)
+    model = world.model.with_effects("payload")
+    found = improve(world.measured(world.with_typical("payload")), model, only=("payload",))
+    assert [stage.effects for stage in found.stages] == [()]
+    assert found.diagnosis.findings == []
+
+
+def test_unseen_runs_are_only_compared_with():
+    """Every stage tells its error on them."""
+    world = MadeUpWorld(2, shared=16)
+    truth = world.with_typical("payload")
+    found = improve(world.measured(truth), world.model, world.measured(truth))
+    assert found.missing == ("payload",)
+    assert found.stages[-1].mae_validation < 0.5 * found.stages[0].mae_validation
