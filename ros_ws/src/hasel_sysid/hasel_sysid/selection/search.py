@@ -1,5 +1,6 @@
 """The search over sets of effects: add, exchange, drop; what promises most is fitted in full."""
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
@@ -63,6 +64,8 @@ def search(
             break
     state.fit(state.smaller(found.best), policy.most_effects)
     state.fit(state.rivals(found), policy.fits)
+    for one in state.near_the_best(found):
+        state.exchange(one)
     return state.judged()
 
 
@@ -183,6 +186,12 @@ class _Search:
         for gone in best if len(best) > 1 else ():
             yield from self._proposal(best, (), (gone,))
 
+    def near_the_best(self, found: Searched) -> list[EffectSet]:
+        """The sets that are worth most of those with as many effects as the best one, and with one effect less."""
+        by_worth = sorted(plausible(found.known), key=lambda one: -found.worths[one].total)
+        sizes = (len(found.best), len(found.best) - 1)
+        return [one for size in sizes for one in [s for s in by_worth if len(s) == size][: self.policy.fits]]
+
     def rivals(self, found: Searched) -> list["_Proposal"]:
         """Sets of the best one's size that come so near to it that they may not be told apart."""
         # at d standard errors the error itself is at most 2 d, and the ratio 2 d^2: half its square is what it costs
@@ -190,6 +199,19 @@ class _Search:
         smaller = [rest for gone in found.best if (rest := found.best - {gone}) in self.known]
         near = [p for p in self.additions(smaller) if p.promised > reach]
         return sorted(near, key=lambda p: -p.promised)
+
+    def exchange(self, best: EffectSet) -> None:
+        """Fit a set with another effect for one of its own that does no more, each alone, than that other one does."""
+        alone = {next(iter(s)): w.logarithm for s, w in self.whitened.items() if len(s) == 1}
+        for gone in sorted(best) if len(best) > 1 else ():
+            others = [e for e in alone if e not in best and alone[e] >= alone.get(gone, -math.inf)]
+            for effect in sorted(others, key=lambda e: -alone[e])[: self.policy.width]:
+                effects = best - {gone} | {effect}
+                if effects in self.tried or not self.sets.compatible(effects) or self.sets.out_of_time():
+                    continue
+                self.tried.add(effects)
+                self.say(f"fitting {name_of(effects)}", 0.9)
+                self._keep(self.sets.exchanged(self.known[best], gone, self.known[frozenset({effect})]))
 
     def better(self, proposals: Iterable["_Proposal"]) -> list["_Proposal"]:
         """Those that promise more than the best known set, most promising first."""

@@ -106,6 +106,9 @@ class Sets(Protocol):
     def fit(self, effects: EffectSet, near: FittedSet, added: Collection[Prospect]) -> FittedSet | None:
         """Fitted in full, from where the prospects of what is new point to; None where that cannot be simulated."""
 
+    def exchanged(self, of: FittedSet, gone: str, by: FittedSet) -> FittedSet | None:
+        """Fitted in full with the effect of another set in the place of one of its own, from where both have led."""
+
     def out_of_time(self) -> bool:
         """Whether what has not been begun is to be left out."""
 

@@ -1,6 +1,6 @@
 """Sets of effects of the simulator: drafts for a first look, full fits for what is compared."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -176,12 +176,19 @@ class SimulatedSets:
                     values[name] = value
                 elif beside:
                     values[name] += value - base.model.values[name]
+        return self._fit(effects, near, values)
+
+    def exchanged(self, of: FittedSet, gone: str, by: FittedSet) -> FittedSet | None:
+        """The same from a fitted set, with the effect of another one, as large as it is there, for one of its own."""
+        return self._fit(of.effects - {gone} | by.effects, of, {**by.fit.model.values, **of.fit.model.values})
+
+    def _fit(self, effects: EffectSet, near: FittedSet, values: Mapping[str, float]) -> FittedSet | None:
         try:
-            model = self._model(base.model, effects, near.effects).with_values({})
-            values = {name: _inside(model, name, values[name]) for name in model.free if name in values}
+            model = self._model(near.fit.model, effects, near.effects).with_values({})
+            start = {name: _inside(model, name, values[name]) for name in model.free if name in values}
             found = fit_least_squares(
                 self.problem,
-                model.with_values(values),
+                model.with_values(start),
                 tolerance=1e-3,
                 most_evaluations=_BRIEF,
                 drafts=False,

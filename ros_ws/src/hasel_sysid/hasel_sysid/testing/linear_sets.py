@@ -84,6 +84,10 @@ class LinearSets:
         self.fits += 1
         return self._fitted(effects)
 
+    def exchanged(self, of: FittedSet, gone: str, by: FittedSet) -> FittedSet | None:
+        """Least squares, which needs no start."""
+        return self.fit(of.effects - {gone} | by.effects, of, ())
+
     def out_of_time(self) -> bool:
         """Whether as many fits were made as may be."""
         return self.fits >= self._most_fits
