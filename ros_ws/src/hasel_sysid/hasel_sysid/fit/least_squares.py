@@ -32,7 +32,7 @@ def fit_least_squares(
     """Minimise the squared residuals over the model's free parameters within their bounds.
 
     A draft of the model (coarse mesh, long steps) leads most of the way; the model itself goes the rest.
-    tolerance: relative change of the parameters or of the sum of squares at which to stop; drafts: whether to start
+    tolerance: ten times the relative change of the sum of squares at which to stop; drafts: whether to start
     with the draft, which is a waste of time when the start is already good.
     Raises SimulationError when even the start cannot be simulated.
     """
@@ -54,13 +54,13 @@ def _minimise(
     lower, upper, start = _bounds_and_start(model, names)
     scale = np.maximum(np.abs(start), [_scale(model, name) for name in names])
     start = _first_that_runs(search, start, names)
-    # in units of their scales, for the length of a step ends the search: beside one in Pa no other would count
+    # in units of their scales, for a step that is short beside all values ends the search: beside a value in Pa, any is
     found = least_squares(
         lambda z: search.residual(z * scale),
         start / scale,
         jac=lambda z: search.jacobian(z * scale) * scale,
         bounds=(lower / scale, upper / scale),
-        xtol=tolerance,
+        xtol=0.01 * tolerance,
         ftol=0.1 * tolerance,
         gtol=1e-12,
         max_nfev=most_evaluations,

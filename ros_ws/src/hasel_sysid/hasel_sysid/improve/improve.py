@@ -18,7 +18,7 @@ from hasel_sysid.improve.result import Improvement, Stage
 from hasel_sysid.improve.set_up import opposed_runs
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection import POLICY, Choice, FittedSet, Policy, Searched, choose, search
-from hasel_sysid.selection.search import plausible
+from hasel_sysid.selection.search import worth_most
 from hasel_sysid.selection.sets import EffectSet, name_of
 from hasel_sysid.selection.simulated_sets import SimulatedSets
 from hasel_sysid.selection.verdicts import diagnosis
@@ -106,8 +106,7 @@ def _from_afar(
         found = search(sets, policy.wider(), report, begun)
         choice = choose(found, policy)
         # a few frames do not tell how well a set foretells all of them
-        by_worth = sorted(plausible(found.known), key=lambda one: -found.worths[one].total)
-        wanted = dict.fromkeys([choice.chosen, *choice.alike, *choice.path, *by_worth])
+        wanted = dict.fromkeys([choice.chosen, *choice.alike, *choice.path, *worth_most(found)])
         rivals = [found.known[one].fit.model for one in wanted if one][: 2 * policy.wider().fits]
     return _fitted(SimulatedSets(problem, fit, effects), problem, rivals)
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from hasel_sysid.projection import orthonormal
 from hasel_sysid.selection.policy import Policy
 from hasel_sysid.selection.search import Searched, plausible
 from hasel_sysid.selection.sets import NOTHING, EffectSet
@@ -89,8 +88,7 @@ def _likeness(found: Searched, one: str, other: str) -> float:
     """Cosine of the angle between what two effects can look like beside the baseline; zero where that is not known."""
     if one not in found.prospects or other not in found.prospects:
         return 0.0
-    looks = [orthonormal(found.likelihood.whiten(found.prospects[effect].looks)) for effect in (one, other)]
-    return float(np.linalg.norm(looks[0].T @ looks[1], 2))
+    return found.likelihood.likeness(found.prospects[one].looks, found.prospects[other].looks)
 
 
 def weights(found: Searched) -> dict[EffectSet, float]:

@@ -102,6 +102,11 @@ class Likelihood:
         )
         return -0.5 * squares
 
+    def likeness(self, one: np.ndarray, other: np.ndarray) -> float:
+        """Cosine of the angle between what two effects can look like [frames, n], 0 to 1."""
+        looks = [orthonormal(self.whiten(columns)) for columns in (one, other)]
+        return float(np.linalg.norm(looks[0].T @ looks[1], 2))
+
     def gains(self, fitted: Whitened, looks: Collection[np.ndarray]) -> list["Look"]:
         """What effects that look like this [frames, n] could gain beside a fitted set."""
         return [Look(_beside(fitted, self.whiten(columns)), fitted.residual) for columns in looks]

@@ -42,6 +42,14 @@ def plausible(known: dict[EffectSet, FittedSet]) -> list[EffectSet]:
     return [effects for effects, fitted in known.items() if fitted.plausible]
 
 
+def worth_most(found: Searched) -> list[EffectSet]:
+    """The plausible sets that are worth more than every known part of them, those that are worth most first."""
+    every = plausible(found.known)
+    worths = {one: found.worths[one].total for one in every}
+    lasting = [one for one in every if all(worths[one] > worths[part] for part in every if part < one)]
+    return sorted(lasting, key=lambda one: -worths[one])
+
+
 def search(
     sets: Sets, policy: Policy, progress: Progress | None = None, begun: tuple[FittedSet, ...] = ()
 ) -> Searched:
@@ -201,17 +209,24 @@ class _Search:
         return sorted(near, key=lambda p: -p.promised)
 
     def exchange(self, best: EffectSet) -> None:
-        """Fit a set with another effect for one of its own that does no more, each alone, than that other one does."""
+        """Fit a set with an effect that looks most like one of its own, and alone does no less, in that one's place."""
         alone = {next(iter(s)): w.logarithm for s, w in self.whitened.items() if len(s) == 1}
         for gone in sorted(best) if len(best) > 1 else ():
             others = [e for e in alone if e not in best and alone[e] >= alone.get(gone, -math.inf)]
-            for effect in sorted(others, key=lambda e: -alone[e])[: self.policy.width]:
+            for effect in sorted(others, key=lambda e: -self._likeness(gone, e))[: self.policy.width]:
                 effects = best - {gone} | {effect}
                 if effects in self.tried or not self.sets.compatible(effects) or self.sets.out_of_time():
                     continue
                 self.tried.add(effects)
                 self.say(f"fitting {name_of(effects)}", 0.9)
                 self._keep(self.sets.exchanged(self.known[best], gone, self.known[frozenset({effect})]))
+
+    def _likeness(self, one: str, other: str) -> float:
+        """Of two effects beside the baseline, 0 to 1; 0 where it is not known."""
+        seen = self.prospects[NOTHING]
+        if one not in seen or other not in seen:
+            return 0.0
+        return self.likelihood.likeness(seen[one].looks, seen[other].looks)
 
     def better(self, proposals: Iterable["_Proposal"]) -> list["_Proposal"]:
         """Those that promise more than the best known set, most promising first."""
