@@ -33,7 +33,7 @@ def fit_from_afar(problem: Problem, model: Model, progress: Progress | None = No
             raise
         return far
     if in_step(near.evaluation) or not _sizes(model):
-        return near
+        return near if near.converged else fit_least_squares(problem, near.model, progress, drafts=False)
     try:
         return _on_growing_openings(problem, model, progress) or near
     except SimulationError:

@@ -1,6 +1,7 @@
 """Trust-region least squares with exact sensitivities (scipy), the default way to fit."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from hasel_sim.errors import SimulationError
@@ -40,15 +41,15 @@ def fit_least_squares(
         return fitted_result(problem.evaluate(model), 1)
     count = 0
     if drafts:
-        led, count = _minimise(problem, draft(model), progress, 1e-2, most_evaluations)
+        led, count, _ = _minimise(problem, draft(model), progress, 1e-2, most_evaluations)
         model = model.with_values({name: led.model.values[name] for name in model.free})
-    evaluation, more = _minimise(problem, model, progress, tolerance, most_evaluations)
-    return fitted_result(evaluation, count + more)
+    evaluation, more, ended = _minimise(problem, model, progress, tolerance, most_evaluations)
+    return replace(fitted_result(evaluation, count + more), converged=ended)
 
 
 def _minimise(
     problem: Problem, model: Model, progress: Progress | None, tolerance: float, most_evaluations: int
-) -> tuple[Evaluation, int]:
+) -> tuple[Evaluation, int, bool]:
     names = model.free
     search = _Search(problem, model, names, progress, most_evaluations)
     lower, upper, start = _bounds_and_start(model, names)
@@ -65,7 +66,7 @@ def _minimise(
         gtol=1e-12,
         max_nfev=most_evaluations,
     )
-    return search.at(np.clip(found.x * scale, lower, upper)), search.count
+    return search.at(np.clip(found.x * scale, lower, upper)), search.count, found.status > 0
 
 
 def _first_that_runs(search: "_Search", start: np.ndarray, names: tuple[str, ...]) -> np.ndarray:

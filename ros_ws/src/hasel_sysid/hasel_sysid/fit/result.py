@@ -16,7 +16,8 @@ class FitResult:
     model: with fitted values and standard errors; evaluation: at these values; at_bound: parameters on a bound;
     undetermined: parameters that these recordings do not determine; iterations: simulations of all runs;
     in_step_until: how long after its start [s] the model moves with the body, None for all frames;
-    changes_by_refinement: what finer numerics do to the simulated series [frames], as far as that was looked at.
+    changes_by_refinement: what finer numerics do to the simulated series [frames], as far as that was looked at;
+    converged: whether the fit ended by itself, not by a number of simulations.
     """
 
     model: Model
@@ -27,6 +28,7 @@ class FitResult:
     method: str
     in_step_until: float | None = None
     changes_by_refinement: Mapping[str, np.ndarray] = field(default_factory=dict)
+    converged: bool = True
 
     @property
     def mean_absolute_error(self) -> float:

@@ -204,7 +204,7 @@ class SimulatedSets:
 
     def finished(self, fitted: FittedSet) -> FittedSet:
         """The same, where its fit was broken off before it had converged."""
-        if fitted.fit.iterations < _BRIEF or self.out_of_time():
+        if fitted.fit.converged or self.out_of_time():
             return fitted
         fit = fit_least_squares(self.problem, fitted.fit.model, tolerance=1e-3, drafts=False)
         return replace(self.known_as(fit), effects=fitted.effects)
