@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.diagnosis.adequacy import Misfit
 from hasel_sysid.diagnosis.context import SIGNIFICANT
-from hasel_sysid.diagnosis.explained import NEAR_NOISE, NOISE, Status, share_left, status_with
+from hasel_sysid.diagnosis.explained import NEAR_NOISE, Status, share_left, status_with
 from hasel_sysid.fit import FitResult
 from hasel_sysid.improve.result import Improvement, Stage
 
@@ -19,11 +19,6 @@ def left_over(stages: Sequence[Stage]) -> float:
     """Share of the baseline's mean error above the noise that the last stage leaves, 0 to 1."""
     before, after = stages[0].fit.mean_absolute_error, stages[-1].fit.mean_absolute_error
     return share_left(before, after, last_diagnosis(stages).noise.mean_absolute)
-
-
-def is_noise(fit: FitResult, found: Diagnosis) -> bool:
-    """Whether what a fit leaves is no more than the noise."""
-    return fit.mean_absolute_error <= NOISE * found.noise.mean_absolute
 
 
 def near_noise(fit: FitResult, found: Diagnosis) -> bool:

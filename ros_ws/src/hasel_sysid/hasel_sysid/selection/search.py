@@ -202,17 +202,17 @@ class _Search:
 
     def rivals(self, found: Searched) -> list["_Proposal"]:
         """Sets of the best one's size that come so near to it that they may not be told apart."""
-        # at d standard errors the error itself is at most 2 d, and the ratio 2 d^2: half its square is what it costs
-        reach = found.whitened[found.best].logarithm - 2 * self.policy.doubt**2
+        reach = found.whitened[found.best].logarithm - self._reach
         smaller = [rest for gone in found.best if (rest := found.best - {gone}) in self.known]
         near = [p for p in self.additions(smaller) if p.promised > reach]
         return sorted(near, key=lambda p: -p.promised)
 
     def exchange(self, best: EffectSet) -> None:
-        """Fit a set with an effect that looks most like one of its own, and alone does no less, in that one's place."""
+        """Fit a set with an effect that looks most like one of its own, and alone does hardly less, in that one's place."""
         alone = {next(iter(s)): w.logarithm for s, w in self.whitened.items() if len(s) == 1}
         for gone in sorted(best) if len(best) > 1 else ():
-            others = [e for e in alone if e not in best and alone[e] >= alone.get(gone, -math.inf)]
+            least = alone.get(gone, -math.inf) - self._reach
+            others = [e for e in alone if e not in best and alone[e] >= least]
             for effect in sorted(others, key=lambda e: -self._likeness(gone, e))[: self.policy.width]:
                 effects = best - {gone} | {effect}
                 if effects in self.tried or not self.sets.compatible(effects) or self.sets.out_of_time():
@@ -220,6 +220,12 @@ class _Search:
                 self.tried.add(effects)
                 self.say(f"fitting {name_of(effects)}", 0.9)
                 self._keep(self.sets.exchanged(self.known[best], gone, self.known[frozenset({effect})]))
+
+    @property
+    def _reach(self) -> float:
+        """By how much two sets may differ in the logarithm of their likelihood and perhaps not be told apart."""
+        # at d standard errors the error itself is at most 2 d, and the ratio 2 d^2: half its square is what it costs
+        return 2 * self.policy.doubt**2
 
     def _likeness(self, one: str, other: str) -> float:
         """Of two effects beside the baseline, 0 to 1; 0 where it is not known."""

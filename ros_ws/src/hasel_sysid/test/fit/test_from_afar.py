@@ -56,13 +56,3 @@ def test_a_model_that_lacks_something_else_is_fitted_as_far_as_it_keeps_step():
     assert any("in step with the first" in sentence for sentence in found.sentences)
     near = fit_least_squares(swinging, beam("payload"))
     assert near.model.values["payload.mass"] < 0.5
-
-
-def test_a_stiffness_in_pascal_does_not_end_the_fit_of_what_is_small_beside_it():
-    """A retardation time of milliseconds is found beside a modulus of 264 kPa that is free as well."""
-    swinging = problem({"material_damping.retardation_time": 0.003})
-    model = beam("material_damping").with_values({"material_damping.retardation_time": 0.02})
-    model = model.with_freed("material.soft.youngs_modulus_pa")
-    found = fit_least_squares(swinging, model, drafts=False)
-    assert found.converged
-    assert found.model.values["material_damping.retardation_time"] == pytest.approx(0.003, rel=0.02)

@@ -1,9 +1,11 @@
 """What is added to a fit once it has converged."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hasel_sim.model import load_model, save_model
-from hasel_sysid.fit.least_squares import fitted_result
+from hasel_sysid.fit.least_squares import fit_least_squares, fitted_result
 from hasel_sysid.problem import Evaluation
 
 
@@ -41,3 +43,36 @@ def test_a_parameter_that_is_no_longer_determined_keeps_no_standard_error():
     assert result.undetermined == ("amplitude_4500",)
     assert result.model.parameters["amplitude_4500"].standard_error is None
     assert result.model.parameters["slope"].standard_error is not None
+
+
+class Growing:
+    """Runs in which a time constant shows as its exponential, beside a stiffness that is right from the start."""
+
+    def evaluate(self, model, names):
+        """As of a problem's, at the model's values."""
+        stiffness, time = model.values["material.soft.youngs_modulus_pa"], model.values[TIME]
+        seen = {"material.soft.youngs_modulus_pa": [1e-5, -1e-5], TIME: np.exp(time) * np.array([1.0, 1.0])}
+        residual = np.array([np.e - np.exp(time), np.e - np.exp(time)])
+        residual -= (stiffness - 264e3) * np.array(seen["material.soft.youngs_modulus_pa"])
+        frames, jacobian = np.ones(2, bool), np.column_stack([seen[name] for name in names])
+        return Evaluation(model, names, (), residual, jacobian, np.zeros(2, int), np.zeros(1), (frames,))
+
+
+TIME = "material_damping.retardation_time"
+
+
+def test_a_stiffness_in_pascal_does_not_end_the_fit_of_what_is_small_beside_it():
+    """Steps of a second are short beside 264 kPa, and yet they are not the end."""
+    model = load_model("beam").with_effects("material_damping").with_freed("material.soft.youngs_modulus_pa")
+    model = replace(model, parameters={**model.parameters, TIME: replace(model.parameters[TIME], upper=10.0)})
+    found = fit_least_squares(Growing(), model.with_values({TIME: 4.0}), drafts=False)
+    assert found.converged
+    assert found.model.values[TIME] == pytest.approx(1.0, rel=1e-3)
+
+
+def test_a_fit_that_ran_out_of_simulations_says_so():
+    """It has not converged."""
+    model = load_model("beam").with_effects("material_damping").with_freed("material.soft.youngs_modulus_pa")
+    model = replace(model, parameters={**model.parameters, TIME: replace(model.parameters[TIME], upper=10.0)})
+    found = fit_least_squares(Growing(), model.with_values({TIME: 4.0}), most_evaluations=2, drafts=False)
+    assert not found.converged

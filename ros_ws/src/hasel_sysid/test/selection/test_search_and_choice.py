@@ -71,6 +71,27 @@ def test_twins_are_a_group():
         assert 0.02 < choice.weight_of("a") < 0.98
 
 
+def test_what_stands_for_one_of_two_effects_is_its_group():
+    """Two are hidden, and a third looks like one of them: it is fitted beside the other one, and named with its double."""
+    for seed in range(3):
+        series = made_up(seed)
+        series["b"] = series["a"] + 0.02 * series["b"]
+        name, choice, _ = chosen(LinearSets(series, {"a": 0.1, "d": 0.2}, WHITE, seed))
+        assert name in ("ad", "bd")
+        assert choice.groups == (("a", "b"),)
+
+
+def test_while_much_is_missing_it_is_squares_that_are_compared():
+    """A slow swing is a hundred times the power of a fast one, which noise that is slow as well shows more clearly."""
+    time = np.tile(np.arange(80) / 120.0, 8)
+    series = {"a": np.sin(2 * np.pi * 0.8 * time + 0.5), "b": np.sin(2 * np.pi * 20.0 * time)}
+    noise = NoiseModel(1e-6, 0.05**2, 0.99)
+    sets = LinearSets(series, {"a": 1.0, "b": 0.1}, noise)
+    found = search(sets, replace(POLICY, most_effects=1))
+    assert choose(found, POLICY).chosen == {"a"}
+    assert chosen(sets)[0] == "ab"
+
+
 def test_what_the_recordings_tell_apart_is_no_group():
     """Its weight is that of certainty."""
     _, choice, _ = chosen(LinearSets(made_up(1), {"a": 0.05}, WHITE, 1))
