@@ -208,7 +208,7 @@ class _Search:
         return sorted(near, key=lambda p: -p.promised)
 
     def exchange(self, best: EffectSet) -> None:
-        """Fit a set with an effect that looks most like one of its own, and alone does hardly less, in that one's place."""
+        """Fit a set with what looks most like one of its effects, and alone does hardly less, in that one's place."""
         alone = {next(iter(s)): w.logarithm for s, w in self.whitened.items() if len(s) == 1}
         for gone in sorted(best) if len(best) > 1 else ():
             least = alone.get(gone, -math.inf) - self._reach

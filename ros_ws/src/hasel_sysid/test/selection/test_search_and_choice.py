@@ -72,10 +72,10 @@ def test_twins_are_a_group():
 
 
 def test_what_stands_for_one_of_two_effects_is_its_group():
-    """Two are hidden, and a third looks like one of them: it is fitted beside the other one, and named with its double."""
+    """Two are hidden, and a third looks like one of them: it is fitted beside the other, and named with its double."""
     for seed in range(3):
         series = made_up(seed)
-        series["b"] = series["a"] + 0.02 * series["b"]
+        series["b"] = series["a"] + 0.01 * series["b"]
         name, choice, _ = chosen(LinearSets(series, {"a": 0.1, "d": 0.2}, WHITE, seed))
         assert name in ("ad", "bd")
         assert choice.groups == (("a", "b"),)
