@@ -83,3 +83,25 @@ def test_error_falls_on_the_run_that_was_not_fitted(found):
     first, last = found["stages"][0], found["stages"][-1]
     assert last["mae_fit"] < 0.2 * first["mae_fit"]
     assert last["mae_validation"] < 0.2 * first["mae_validation"]
+
+
+@pytest.fixture(scope="module")
+def loaded(pool):
+    """The same of the beam with 52 g at its tip, of which its model does not know."""
+    runs = [load_experiments([FOLDER / f"load52_{run}.csv"]) for run in "ab"]
+    return answer(load_model("beam"), *runs, pool)
+
+
+def test_a_load_at_the_tip_is_named_or_stands_for_what_is(loaded):
+    """One swing tells stiffness and mass by their ratio only; with the damping, the unseen run is met to a tenth."""
+    named = set(loaded["verdict"]["missing"])
+    groups = [set(group) for group in loaded["indistinguishable"] if set(group) & named]
+    assert "payload" in set().union(named, *groups)
+    first, last = loaded["stages"][0], loaded["stages"][-1]
+    assert last["mae_validation"] < 0.11 * first["mae_validation"]
+
+
+def test_the_loaded_beam_is_not_called_explained(loaded):
+    """What is left is far above the noise of its rest frames, and the answer says so."""
+    assert not loaded["verdict"]["adequate"]
+    assert loaded["verdict"]["status"] != "explained"
