@@ -124,6 +124,16 @@ class Problem:
                 )
             difference = (experiment.sin_theta - simulation.sin_theta)[used]
             slopes = simulation.slopes[used]
+            if not np.isfinite(slopes).all():
+                lost = [
+                    name
+                    for name, column in zip(names, slopes.T, strict=True)
+                    if not np.isfinite(column).all()
+                ]
+                raise SimulationError(
+                    f"{experiment.name}: the derivatives by {', '.join(lost)} are not finite there; "
+                    "choose another start, or leave these parameters as they are"
+                )
             offsets.append(difference.mean())
             residuals.append(difference - difference.mean())
             jacobians.append(slopes - slopes.mean(axis=0))

@@ -1,0 +1,36 @@
+"""Models against runs."""
+
+from concurrent.futures import Executor, Future
+
+import numpy as np
+import pytest
+from hasel_recording import Recording
+from hasel_sim.errors import SimulationError
+from hasel_sim.model import load_model
+from hasel_sim.run import Run, Simulation
+from hasel_sysid.dataset import Experiment
+from hasel_sysid.problem import Problem
+
+RUN = Run("let go", np.linspace(0.0, 1.0, 20), None)
+NAMES = ("first", "second")
+
+
+class Lost(Executor):
+    """Simulates nothing: angles that are finite, and derivatives by the second parameter that are not."""
+
+    def submit(self, function, /, *arguments, **keywords):
+        """A finished batch of one run."""
+        slopes = np.column_stack([RUN.time, np.full(20, np.nan)])
+        nothing = np.zeros((20, 0))
+        future: Future = Future()
+        future.set_result([Simulation(RUN, np.sin(RUN.time), NAMES, slopes, nothing, nothing)])
+        return future
+
+
+def test_derivatives_that_are_not_finite_are_an_error_of_that_model_alone():
+    """It is told by the parameter's name, and a search goes on with other models."""
+    problem = Problem([Experiment(Recording("let go", RUN.time, RUN.time), RUN)], Lost())
+    (found,) = problem.evaluate_each([load_model("beam")], [NAMES])
+    assert isinstance(found, SimulationError)
+    with pytest.raises(SimulationError, match="let go: the derivatives by second are not finite"):
+        problem.evaluate(load_model("beam"), NAMES)
