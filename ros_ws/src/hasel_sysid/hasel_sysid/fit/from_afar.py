@@ -8,7 +8,7 @@ from hasel_sim.model import Model
 
 from hasel_sysid.draft import draft
 from hasel_sysid.fit.decades import decades
-from hasel_sysid.fit.least_squares import Progress, fit_least_squares, fitted_result
+from hasel_sysid.fit.least_squares import Progress, finished, fit_least_squares, fitted_result
 from hasel_sysid.fit.opening import in_step, openings
 from hasel_sysid.fit.result import FitResult
 from hasel_sysid.problem import Problem
@@ -33,7 +33,7 @@ def fit_from_afar(problem: Problem, model: Model, progress: Progress | None = No
             raise
         return far
     if in_step(near.evaluation) or not _sizes(model):
-        return near if near.converged else fit_least_squares(problem, near.model, progress, drafts=False)
+        return finished(problem, near, progress)
     try:
         return _on_growing_openings(problem, model, progress) or near
     except SimulationError:

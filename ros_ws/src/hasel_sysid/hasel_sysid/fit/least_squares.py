@@ -47,6 +47,13 @@ def fit_least_squares(
     return replace(fitted_result(evaluation, count + more), converged=ended)
 
 
+def finished(problem: Problem, fit: FitResult, progress: Progress | None = None, **options) -> FitResult:
+    """The fit, gone on with where it was broken off by its number of evaluations; options: as of a fit."""
+    if fit.converged:
+        return fit
+    return fit_least_squares(problem, fit.model, progress, drafts=False, **options)
+
+
 def _minimise(
     problem: Problem, model: Model, progress: Progress | None, tolerance: float, most_evaluations: int
 ) -> tuple[Evaluation, int, bool]:

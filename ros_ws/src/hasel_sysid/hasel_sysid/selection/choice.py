@@ -2,12 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from hasel_sysid.selection.policy import Policy
-from hasel_sysid.selection.search import Searched, plausible
+from hasel_sysid.selection.search import Searched, likeness, plausible
 from hasel_sysid.selection.sets import NOTHING, EffectSet
 from hasel_sysid.selection.worth import Worth
 
@@ -75,20 +76,14 @@ def _alike(found: Searched, chosen: EffectSet, other: EffectSet, policy: Policy)
 def _groups(found: Searched, chosen: EffectSet, alike: Sequence[EffectSet]) -> tuple[tuple[str, ...], ...]:
     """Where a set that cannot be told apart differs in several effects, each stands for the one it looks most like."""
     groups = {effect: {effect} for effect in sorted(chosen)}
+    alike_to = partial(likeness, found.likelihood, found.prospects)
     for other in alike:
         gone, new = sorted(chosen - other), sorted(other - chosen)
-        likeness = [[_likeness(found, one, another) for another in new] for one in gone]
-        pairs = linear_sum_assignment(np.reshape(likeness, (len(gone), len(new))), maximize=True)
+        table = [[alike_to(one, another) for another in new] for one in gone]
+        pairs = linear_sum_assignment(np.reshape(table, (len(gone), len(new))), maximize=True)
         for row, column in zip(*pairs, strict=True):
             groups[gone[row]].add(new[column])
     return tuple(tuple(sorted(group)) for group in groups.values() if len(group) > 1)
-
-
-def _likeness(found: Searched, one: str, other: str) -> float:
-    """Cosine of the angle between what two effects can look like beside the baseline; zero where that is not known."""
-    if one not in found.prospects or other not in found.prospects:
-        return 0.0
-    return found.likelihood.likeness(found.prospects[one].looks, found.prospects[other].looks)
 
 
 def weights(found: Searched) -> dict[EffectSet, float]:

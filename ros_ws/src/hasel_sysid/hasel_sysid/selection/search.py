@@ -1,8 +1,9 @@
 """The search over sets of effects: add, exchange, drop; what promises most is fitted in full."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import combinations
 
 from hasel_sysid.selection.likelihood import Likelihood, Whitened
@@ -40,6 +41,13 @@ class Searched:
 def plausible(known: dict[EffectSet, FittedSet]) -> list[EffectSet]:
     """The sets, the empty one among them, whose values lie inside their ranges."""
     return [effects for effects, fitted in known.items() if fitted.plausible]
+
+
+def likeness(likelihood: Likelihood, seen: Mapping[str, Prospect], one: str, other: str) -> float:
+    """Cosine of the angle between what two effects can look like beside the baseline; 0 where that is not known."""
+    if one not in seen or other not in seen:
+        return 0.0
+    return likelihood.likeness(seen[one].looks, seen[other].looks)
 
 
 def worth_most(found: Searched) -> list[EffectSet]:
@@ -211,9 +219,10 @@ class _Search:
         """Fit a set with what looks most like one of its effects, and alone does hardly less, in that one's place."""
         alone = {next(iter(s)): w.logarithm for s, w in self.whitened.items() if len(s) == 1}
         for gone in sorted(best) if len(best) > 1 else ():
+            like_it = partial(likeness, self.likelihood, self.prospects[NOTHING], gone)
             least = alone.get(gone, -math.inf) - self._reach
             others = [e for e in alone if e not in best and alone[e] >= least]
-            for effect in sorted(others, key=lambda e: -self._likeness(gone, e))[: self.policy.width]:
+            for effect in sorted(others, key=like_it, reverse=True)[: self.policy.width]:
                 effects = best - {gone} | {effect}
                 if effects in self.tried or not self.sets.compatible(effects) or self.sets.out_of_time():
                     continue
@@ -226,13 +235,6 @@ class _Search:
         """By how much two sets may differ in the logarithm of their likelihood and perhaps not be told apart."""
         # at d standard errors the error itself is at most 2 d, and the ratio 2 d^2: half its square is what it costs
         return 2 * self.policy.doubt**2
-
-    def _likeness(self, one: str, other: str) -> float:
-        """Of two effects beside the baseline, 0 to 1; 0 where it is not known."""
-        seen = self.prospects[NOTHING]
-        if one not in seen or other not in seen:
-            return 0.0
-        return self.likelihood.likeness(seen[one].looks, seen[other].looks)
 
     def better(self, proposals: Iterable["_Proposal"]) -> list["_Proposal"]:
         """Those that promise more than the best known set, most promising first."""

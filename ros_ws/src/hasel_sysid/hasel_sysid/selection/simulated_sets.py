@@ -13,6 +13,7 @@ from hasel_sysid.diagnosis.context import on_own_bound
 from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
 from hasel_sysid.diagnosis.trial import MOST_CHANGE, Trial, Trials, limited, nearer
 from hasel_sysid.fit import FitResult, fit_least_squares
+from hasel_sysid.fit.least_squares import finished
 from hasel_sysid.noise import NoiseModel, estimate_noise
 from hasel_sysid.noise_sources.above_the_band import noise_above_the_band
 from hasel_sysid.noise_sources.between_periods import noise_between_periods
@@ -206,7 +207,7 @@ class SimulatedSets:
         """The same, where its fit was broken off before it had converged."""
         if fitted.fit.converged or self.out_of_time():
             return fitted
-        fit = fit_least_squares(self.problem, fitted.fit.model, tolerance=1e-3, drafts=False)
+        fit = finished(self.problem, fitted.fit, tolerance=1e-3)
         return replace(self.known_as(fit), effects=fitted.effects)
 
 
