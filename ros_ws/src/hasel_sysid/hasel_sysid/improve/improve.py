@@ -2,29 +2,25 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
-from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.diagnosis.candidates import candidate_effects
 from hasel_sysid.diagnosis.explained import Status
-from hasel_sysid.fit import FitResult, fit_from_afar, fit_least_squares, in_step
-from hasel_sysid.fit.opening import openings
+from hasel_sysid.fit import FitResult, fit_from_afar, in_step
 from hasel_sysid.fit.refinement import changes_by_refinement, with_numerical_error
 from hasel_sysid.improve.conclusion import conclude, last_diagnosis, near_noise
+from hasel_sysid.improve.from_afar import from_afar
 from hasel_sysid.improve.lawful import without_contradictions
 from hasel_sysid.improve.result import Improvement, Stage
 from hasel_sysid.improve.set_up import opposed_runs
 from hasel_sysid.problem import Problem
-from hasel_sysid.selection import POLICY, Choice, FittedSet, Policy, Searched, choose, search
-from hasel_sysid.selection.search import worth_most
+from hasel_sysid.selection import POLICY, Choice, Policy, Searched, choose, search
 from hasel_sysid.selection.sets import EffectSet, name_of
 from hasel_sysid.selection.simulated_sets import SimulatedSets
 from hasel_sysid.selection.verdicts import diagnosis
-
-_BRIEF = 12
-"""Evaluations for a fit to an opening."""
 
 _CREDIT = (
     "takes away a tenth of the squared error that finer numerics leave and foretells left-out runs better"
@@ -55,7 +51,7 @@ def improve(
     changes = changes_by_refinement(problem, fit.evaluation)
     near = in_step(fit.evaluation)
     effects = candidate_effects(fit.model, tuple(only) if only else None)
-    begun = () if near or opposed else _from_afar(problem, fit, effects, policy, progress)
+    begun = () if near or opposed else from_afar(problem, fit, effects, policy, partial(_part, progress))
     sets = SimulatedSets(problem, fit, effects, list(changes.values()) if near else ())
     found = search(sets, policy, _part(progress, "search", 0.25, 0.95), begun)
     choice = choose(found, policy)
@@ -83,44 +79,6 @@ def improve(
         what = f"not tried: {', '.join(untried)}" if untried else "not every set of effects was tried"
         reason = f"{reason} The search ended at {problem.time_limit}; {what}."
     return _concluded(stages, reason, done, bool(opposed))
-
-
-def _from_afar(
-    problem: Problem, fit: FitResult, effects: Sequence, policy: Policy, progress: Progress | None
-) -> tuple[FittedSet, ...]:
-    """Sets of effects that bring the model into step with all frames, found in openings that grow."""
-    base = fit.model
-    rivals: list[Model] = []
-    every = openings(problem)
-    for number, opening in enumerate(every[:-1]):
-        if problem.time_limit.is_over():
-            break
-        here = fit_least_squares(opening, base, most_evaluations=_BRIEF, drafts=False)
-        sets = SimulatedSets(opening, here, effects, decades=True)
-        begun = _fitted(sets, opening, rivals)
-        reached = [here, *(one.fit for one in begun[:1])][-1]
-        if in_step(reached.evaluation) or len(sets.known_as(reached).effects) >= policy.most_effects:
-            rivals = [one.fit.model for one in begun]
-            continue
-        report = _part(progress, f"opening {number + 1} of {len(every)}", 0.15, 0.25)
-        found = search(sets, policy.wider(), report, begun)
-        choice = choose(found, policy)
-        # a few frames do not tell how well a set foretells all of them
-        wanted = dict.fromkeys([choice.chosen, *choice.alike, *choice.path, *worth_most(found)])
-        rivals = [found.known[one].fit.model for one in wanted if one][: 2 * policy.wider().fits]
-    return _fitted(SimulatedSets(problem, fit, effects), problem, rivals)
-
-
-def _fitted(sets: SimulatedSets, problem: Problem, models: Sequence[Model]) -> tuple[FittedSet, ...]:
-    """Models with effects, fitted to all frames of a problem; those that cannot be simulated there are left out."""
-    found = []
-    for model in models:
-        try:
-            fit = fit_least_squares(problem, model, most_evaluations=_BRIEF, drafts=False)
-        except SimulationError:
-            continue
-        found.append(sets.known_as(fit))
-    return tuple(found)
 
 
 def _why_here(found: Searched, choice: Choice, policy: Policy, first: Stage) -> tuple[str, bool]:

@@ -203,10 +203,9 @@ class _Search:
             yield from self._proposal(best, (), (gone,))
 
     def near_the_best(self, found: Searched) -> list[EffectSet]:
-        """The sets that are worth most of those with as many effects as the best one, and with one effect less."""
-        by_worth = sorted(plausible(found.known), key=lambda one: -found.worths[one].total)
-        sizes = (len(found.best), len(found.best) - 1)
-        return [one for size in sizes for one in [s for s in by_worth if len(s) == size][: self.policy.fits]]
+        """The best set, and the one that is worth most of those with one effect less."""
+        smaller = [one for one in plausible(found.known) if len(one) == len(found.best) - 1]
+        return [found.best, *sorted(smaller, key=lambda one: -found.worths[one].total)[:1]]
 
     def rivals(self, found: Searched) -> list["_Proposal"]:
         """Sets of the best one's size that come so near to it that they may not be told apart."""

@@ -28,6 +28,8 @@ _SIZES = (0.1, 2.0)
 """Smallest and largest start, in typical sizes."""
 _BRIEF = 25
 """Evaluations that a full fit is given."""
+_RIVAL_FIT = 12
+"""The same where one effect takes another's place: where that needs more, it is not as good."""
 
 Rank = Callable[[Prospect], float]
 
@@ -181,9 +183,12 @@ class SimulatedSets:
 
     def exchanged(self, of: FittedSet, gone: str, by: FittedSet) -> FittedSet | None:
         """The same from a fitted set, with the effect of another one, as large as it is there, for one of its own."""
-        return self._fit(of.effects - {gone} | by.effects, of, {**by.fit.model.values, **of.fit.model.values})
+        values = {**by.fit.model.values, **of.fit.model.values}
+        return self._fit(of.effects - {gone} | by.effects, of, values, _RIVAL_FIT)
 
-    def _fit(self, effects: EffectSet, near: FittedSet, values: Mapping[str, float]) -> FittedSet | None:
+    def _fit(
+        self, effects: EffectSet, near: FittedSet, values: Mapping[str, float], most: int = _BRIEF
+    ) -> FittedSet | None:
         try:
             model = self._model(near.fit.model, effects, near.effects).with_values({})
             start = {name: _inside(model, name, values[name]) for name in model.free if name in values}
@@ -191,7 +196,7 @@ class SimulatedSets:
                 self.problem,
                 model.with_values(start),
                 tolerance=1e-3,
-                most_evaluations=_BRIEF,
+                most_evaluations=most,
                 drafts=False,
             )
         except (HaselSimError, ModelError):
