@@ -10,7 +10,7 @@ from hasel_sim.model import Model, load_model
 from hasel_sim.simulate import simulate_many
 from hasel_sim.swimming.boxes import Boxes
 from hasel_sysid.dataset import experiment
-from hasel_sysid.improve import improve
+from hasel_sysid.improvement import improve
 from hasel_sysid.problem import Problem
 
 SECONDS, NOISE = 2.8, 0.003

@@ -12,7 +12,7 @@ from std_msgs.msg import Header
 
 from hasel_sysid.diagnosis import Finding, Verdict
 from hasel_sysid.diagnosis import result as diagnosis_result
-from hasel_sysid.fit import FitResult
+from hasel_sysid.estimation import FitResult
 from hasel_sysid.live import running_error
 
 

@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 
 from hasel_sim.parallel import executor
 from hasel_sysid.dataset import prepared
-from hasel_sysid.improve import improve
+from hasel_sysid.improvement import improve
 from hasel_sysid.problem import Problem
 
 from hasel_benchmark.bench_far.constants_far_off import BODIES

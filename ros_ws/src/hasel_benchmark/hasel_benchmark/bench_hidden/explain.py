@@ -5,7 +5,7 @@ from concurrent.futures import Executor
 
 from hasel_sim.model import Model, load_model
 from hasel_sysid.dataset import Experiment, prepared
-from hasel_sysid.improve import improve
+from hasel_sysid.improvement import improve
 from hasel_sysid.problem import Problem
 
 from hasel_benchmark.bench_hidden.generate import Laboratory

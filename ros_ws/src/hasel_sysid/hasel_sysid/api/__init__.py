@@ -1,4 +1,4 @@
-"""The steps in Python: `import hasel_sysid.api as h`, then h.load, h.model, h.simulate, h.fit, h.diagnose, h.improve.
+"""The façade behind `import hasel_sysid as h`: h.load, h.model, h.simulate, h.fit, h.diagnose, h.improve.
 
 Results print as sentences and plot; docs/api.md lists them.
 """

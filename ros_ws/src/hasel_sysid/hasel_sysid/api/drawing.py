@@ -10,7 +10,7 @@ from hasel_sysid.api.picture import Picture
 from hasel_sysid.compare import Comparison
 from hasel_sysid.dataset import Experiment
 from hasel_sysid.diagnosis import Diagnosis
-from hasel_sysid.improve import Stage
+from hasel_sysid.improvement import Stage
 from hasel_sysid.report.figures.style import DROP, FITTED, MEASURED, MODELS, NOISE, UNSEEN
 
 _COLUMNS, _MOST_EFFECTS = 3, 8

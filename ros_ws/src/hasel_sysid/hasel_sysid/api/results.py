@@ -10,8 +10,8 @@ from hasel_sysid.api.picture import Picture
 from hasel_sysid.compare import Comparison
 from hasel_sysid.dataset import Experiment
 from hasel_sysid.diagnosis import Diagnosis
-from hasel_sysid.fit import FitResult
-from hasel_sysid.improve import Improvement
+from hasel_sysid.estimation import FitResult
+from hasel_sysid.improvement import Improvement
 
 
 class Recordings(tuple[Experiment, ...]):

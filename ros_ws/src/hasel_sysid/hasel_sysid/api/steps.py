@@ -10,8 +10,8 @@ from hasel_sim.parallel import executor
 from hasel_sysid.api.results import Diagnosed, Fitted, Improved, Recordings, Simulated
 from hasel_sysid.compare import compare
 from hasel_sysid.dataset import Experiment, for_model, load_experiments, prepared
-from hasel_sysid.fit import fit_from_afar, identify
-from hasel_sysid.improve import improve as improvement_of
+from hasel_sysid.estimation import fit_from_afar, identify
+from hasel_sysid.improvement import improve as improvement_of
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.diagnose import diagnose as diagnosis_of
 

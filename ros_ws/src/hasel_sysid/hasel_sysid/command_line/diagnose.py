@@ -14,8 +14,8 @@ from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import code_after, show, summarise, tell
 from hasel_sysid.command_line.summary import diagnosis_lines
 from hasel_sysid.compare import compare
-from hasel_sysid.fit import fit_from_afar
-from hasel_sysid.improve.result import diagnosis_json
+from hasel_sysid.estimation import fit_from_afar
+from hasel_sysid.improvement.result import diagnosis_json
 from hasel_sysid.problem import Problem
 from hasel_sysid.report.from_diagnosis import diagnosis_content
 from hasel_sysid.report.write import write_report

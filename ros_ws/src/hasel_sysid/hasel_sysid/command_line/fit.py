@@ -18,7 +18,7 @@ from hasel_sysid.command_line.shown import code_after, show
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.data_gate import Finding
 from hasel_sysid.errors import SysidError
-from hasel_sysid.fit import FitResult, identify
+from hasel_sysid.estimation import FitResult, identify
 from hasel_sysid.report.from_results import fit_content
 from hasel_sysid.report.write import write_report
 

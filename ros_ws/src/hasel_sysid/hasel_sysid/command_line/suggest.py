@@ -17,7 +17,7 @@ from hasel_sysid.command_line.progress import progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.drive_match import drive_unit
 from hasel_sysid.errors import SysidError
-from hasel_sysid.fit import fit_from_afar
+from hasel_sysid.estimation import fit_from_afar
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.diagnose import diagnose
 from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest

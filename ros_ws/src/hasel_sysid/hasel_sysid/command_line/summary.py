@@ -7,7 +7,7 @@ from hasel_sim.model import Parameter
 
 from hasel_sysid.compare import Comparison
 from hasel_sysid.diagnosis import Diagnosis, Verdict
-from hasel_sysid.improve import Improvement
+from hasel_sysid.improvement import Improvement
 from hasel_sysid.report.from_improvement import said_of
 from hasel_sysid.report.numbers import error_text, interval_text
 from hasel_sysid.suggest import Suggestion

@@ -8,7 +8,7 @@ from hasel_sim.effects.registry import catalogue, find_effects
 from hasel_sim.errors import ModelError
 from hasel_sim.model import Model
 
-from hasel_sysid.fit.decades import over_range
+from hasel_sysid.estimation.decades import over_range
 
 
 @dataclass(frozen=True)

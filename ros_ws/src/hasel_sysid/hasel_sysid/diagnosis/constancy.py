@@ -7,10 +7,10 @@ import numpy as np
 
 from hasel_sysid.diagnosis.conditions import conditions
 from hasel_sysid.drive_match import drive_unit
-from hasel_sysid.fit import FitResult
-from hasel_sysid.fit.between_runs import wider_where_runs_disagree
-from hasel_sysid.fit.directions import seen_directions
-from hasel_sysid.fit.uncertainty import parameter_covariance
+from hasel_sysid.estimation import FitResult
+from hasel_sysid.estimation.between_runs import wider_where_runs_disagree
+from hasel_sysid.estimation.directions import seen_directions
+from hasel_sysid.estimation.uncertainty import parameter_covariance
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import Evaluation
 

@@ -9,7 +9,7 @@ from hasel_sim.effects.base import Effect
 from hasel_sysid.diagnosis.explained import share_left
 from hasel_sysid.diagnosis.signature import Signature
 from hasel_sysid.diagnosis.trial import Trial
-from hasel_sysid.fit.result import FitResult
+from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.projection import orthonormal
 

@@ -10,7 +10,7 @@ from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
 from hasel_sysid.diagnosis.result import Diagnosis, Finding, Verdict
 from hasel_sysid.diagnosis.signature import Signature
 from hasel_sysid.diagnosis.suspects import numerical_suspects
-from hasel_sysid.fit.refinement import with_numerical_error
+from hasel_sysid.estimation.refinement import with_numerical_error
 from hasel_sysid.projection import orthonormal
 
 _MATTERS = 0.4

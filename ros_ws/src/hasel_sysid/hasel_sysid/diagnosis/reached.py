@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from hasel_sysid.diagnosis.trial import Trial
-from hasel_sysid.fit.result import FitResult
+from hasel_sysid.estimation.result import FitResult
 
 
 def squares_reached(

@@ -10,7 +10,7 @@ import numpy as np
 from hasel_sysid.diagnosis.adequacy import Adequacy
 from hasel_sysid.diagnosis.context import Context
 from hasel_sysid.diagnosis.signature import Signature
-from hasel_sysid.fit.result import FitResult
+from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.noise import NoiseModel
 
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from hasel_sysid.fit.result import FitResult
+from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.projection import orthonormal
 
 

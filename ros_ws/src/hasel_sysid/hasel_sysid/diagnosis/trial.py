@@ -9,7 +9,7 @@ from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis.candidates import Start, resized
 from hasel_sysid.draft import draft
-from hasel_sysid.fit.bounded import bounded_change
+from hasel_sysid.estimation.bounded import bounded_change
 from hasel_sysid.problem import Evaluation, Problem
 from hasel_sysid.projection import drops, orthonormal
 

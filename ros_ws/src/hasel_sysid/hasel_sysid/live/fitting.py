@@ -11,8 +11,8 @@ from hasel_sysid.dataset import for_model, prepared, usable
 from hasel_sysid.diagnosis import Diagnosis, Verdict
 from hasel_sysid.diagnosis.context import SIGNIFICANT
 from hasel_sysid.diagnosis.explained import Status, status_with
-from hasel_sysid.fit import FitResult, fit_from_afar, identify
-from hasel_sysid.fit.least_squares import Progress
+from hasel_sysid.estimation import FitResult, fit_from_afar, identify
+from hasel_sysid.estimation.least_squares import Progress
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.diagnose import diagnose
 

@@ -8,7 +8,7 @@ from hasel_sim.model.value_text import value_with_error
 
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.diagnosis import Verdict
-from hasel_sysid.improve.result import Improvement, Status
+from hasel_sysid.improvement.result import Improvement, Status
 from hasel_sysid.report.content import KeyNumber, NextRun, RankedRow, ReportContent, Stage
 from hasel_sysid.report.from_diagnosis import ranked_rows, what_remains
 from hasel_sysid.report.from_results import comparison_content, parameter_rows

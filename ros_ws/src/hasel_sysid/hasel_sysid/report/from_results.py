@@ -15,7 +15,7 @@ from hasel_sysid.report.parameter_words import meaning, plausible
 from hasel_sysid.report.shape import Shapes, simulated_shapes
 
 if TYPE_CHECKING:
-    from hasel_sysid.fit.result import FitResult
+    from hasel_sysid.estimation.result import FitResult
 
 _RMS_TO_MEAN = 0.798
 """Mean magnitude of Gaussian noise of unit standard deviation."""

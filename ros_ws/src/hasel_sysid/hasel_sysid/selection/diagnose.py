@@ -6,8 +6,8 @@ from dataclasses import replace
 from hasel_sysid.diagnosis import Diagnosis, Verdict
 from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.diagnosis.candidates import candidate_effects
-from hasel_sysid.fit import FitResult, in_step
-from hasel_sysid.fit.refinement import changes_by_refinement
+from hasel_sysid.estimation import FitResult, in_step
+from hasel_sysid.estimation.refinement import changes_by_refinement
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.choice import choose
 from hasel_sysid.selection.policy import POLICY

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 from numba import njit
 
-from hasel_sysid.fit.bounded import bounded_change
+from hasel_sysid.estimation.bounded import bounded_change
 from hasel_sysid.noise import LONGEST_CORRELATION, NoiseModel
 from hasel_sysid.projection import orthonormal
 from hasel_sysid.selection.sets import FittedSet, Prospect

@@ -12,8 +12,8 @@ from hasel_sysid.diagnosis.candidates import Start, decade_starts, resized, star
 from hasel_sysid.diagnosis.context import on_own_bound
 from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
 from hasel_sysid.diagnosis.trial import MOST_CHANGE, Trial, Trials, limited, nearer
-from hasel_sysid.fit import FitResult, fit_least_squares
-from hasel_sysid.fit.least_squares import finished
+from hasel_sysid.estimation import FitResult, fit_least_squares
+from hasel_sysid.estimation.least_squares import finished
 from hasel_sysid.noise import NoiseModel, estimate_noise
 from hasel_sysid.noise_sources.above_the_band import noise_above_the_band
 from hasel_sysid.noise_sources.between_periods import noise_between_periods

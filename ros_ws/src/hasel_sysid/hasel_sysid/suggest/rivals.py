@@ -7,7 +7,7 @@ from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.errors import SysidError
-from hasel_sysid.fit import fit_least_squares
+from hasel_sysid.estimation import fit_least_squares
 from hasel_sysid.problem import Problem
 
 _BRIEF = 8

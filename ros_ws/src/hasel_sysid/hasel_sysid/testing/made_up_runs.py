@@ -9,7 +9,7 @@ from hasel_sim.run import Run, Simulation
 
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.compare.run_comparison import RunComparison
-from hasel_sysid.fit.result import FitResult
+from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.problem import Evaluation
 from hasel_sysid.where_it_fails.analyse import where_it_fails
 from hasel_sysid.where_it_fails.run_series import run_series

@@ -11,8 +11,8 @@ from hasel_sim.model import Model
 from hasel_sysid.dataset import prepared
 from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.errors import SysidError
-from hasel_sysid.fit import identify
-from hasel_sysid.fit.result import FitResult
+from hasel_sysid.estimation import identify
+from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.selection.diagnose import diagnose
 from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest
 from hasel_sysid.workbench.cards import source_of

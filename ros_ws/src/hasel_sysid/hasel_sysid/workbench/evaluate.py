@@ -6,7 +6,7 @@ from concurrent.futures import Executor
 from hasel_sim.model import Model
 
 from hasel_sysid.dataset import Experiment
-from hasel_sysid.fit.result import FitResult
+from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.problem import Evaluation, Problem
 from hasel_sysid.workbench.step import Step
 

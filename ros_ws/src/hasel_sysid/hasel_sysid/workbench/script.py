@@ -17,7 +17,7 @@ Writes {again} beside itself, the model that the session ended with.
 
 from pathlib import Path
 
-import hasel_sysid.api as h
+import hasel_sysid as h
 
 HERE = Path(__file__).resolve().parent
 

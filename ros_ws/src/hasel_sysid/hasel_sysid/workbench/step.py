@@ -9,7 +9,7 @@ from hasel_sim.run import Simulation
 from hasel_sysid.compare.compare import comparison_of
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.dataset import Experiment
-from hasel_sysid.fit.result import FitResult
+from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.problem import Evaluation
 
 

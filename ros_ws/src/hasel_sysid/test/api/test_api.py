@@ -1,4 +1,4 @@
-"""`import hasel_sysid.api as h` and the notebook that uses it."""
+"""`import hasel_sysid as h` and the notebook that uses it."""
 
 import inspect
 import json
@@ -8,7 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-import hasel_sysid.api as h
+import hasel_sysid as h
 import pytest
 from hasel_sim.errors import ModelError
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from hasel_sysid.command_line import parsers
-from hasel_sysid.fit import METHODS
+from hasel_sysid.estimation import METHODS
 
 HEAVY = ("torch", "statsmodels", "scipy.stats", "scipy.signal", "pandas", "dask")
 

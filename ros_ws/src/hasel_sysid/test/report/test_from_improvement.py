@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from hasel_sim.model import load_model
 from hasel_sysid.diagnosis.result import Diagnosis, Finding, Verdict
-from hasel_sysid.fit.result import FitResult
-from hasel_sysid.improve.result import Improvement, Stage, Status
+from hasel_sysid.estimation.result import FitResult
+from hasel_sysid.improvement.result import Improvement, Stage, Status
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.report.from_diagnosis import diagnosis_content, ranked_rows
 from hasel_sysid.report.from_improvement import improvement_content

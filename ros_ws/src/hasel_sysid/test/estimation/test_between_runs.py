@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from hasel_sysid.fit.between_runs import scatter_between_runs, wider_where_runs_disagree
-from hasel_sysid.fit.uncertainty import parameter_covariance
+from hasel_sysid.estimation.between_runs import scatter_between_runs, wider_where_runs_disagree
+from hasel_sysid.estimation.uncertainty import parameter_covariance
 from hasel_sysid.noise import NoiseModel
 from scipy.linalg import fractional_matrix_power
 

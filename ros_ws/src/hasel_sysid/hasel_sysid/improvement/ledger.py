@@ -5,7 +5,7 @@ from pathlib import Path
 
 from hasel_sim.model import save_model
 
-from hasel_sysid.improve.result import Stage
+from hasel_sysid.improvement.result import Stage
 
 
 class Ledger:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sim.model import load_model
-from hasel_sysid.fit import FitResult
+from hasel_sysid.estimation import FitResult
 from hasel_sysid.problem import Evaluation
 
 

@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass
 from hasel_sysid.diagnosis import Diagnosis, Finding
 from hasel_sysid.diagnosis.adequacy import Adequacy
 from hasel_sysid.diagnosis.explained import Status
-from hasel_sysid.fit import FitResult
+from hasel_sysid.estimation import FitResult
 from hasel_sysid.noise import NoiseModel
 
 

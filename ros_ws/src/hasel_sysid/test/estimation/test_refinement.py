@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from hasel_sim.model import load_model
 from hasel_sim.run import Simulation
-from hasel_sysid.fit.least_squares import fitted_result
-from hasel_sysid.fit.refinement import with_numerical_error
+from hasel_sysid.estimation.least_squares import fitted_result
+from hasel_sysid.estimation.refinement import with_numerical_error
 from hasel_sysid.problem import Evaluation
 
 _NAMES = ("slope", "amplitude_4500")

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_sysid.fit.bounded import bounded_change
+from hasel_sysid.estimation.bounded import bounded_change
 
 JACOBIAN = np.random.default_rng(0).standard_normal((50, 3)) * [1.0, 1e-4, 1e3]
 TRUE = np.array([0.5, 200.0, -1e-3])

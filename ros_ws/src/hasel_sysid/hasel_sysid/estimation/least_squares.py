@@ -9,9 +9,9 @@ from hasel_sim.model import Model
 from scipy.optimize import least_squares
 
 from hasel_sysid.draft import draft
-from hasel_sysid.fit.between_runs import wider_where_runs_disagree
-from hasel_sysid.fit.result import FitResult
-from hasel_sysid.fit.uncertainty import parameter_covariance
+from hasel_sysid.estimation.between_runs import wider_where_runs_disagree
+from hasel_sysid.estimation.result import FitResult
+from hasel_sysid.estimation.uncertainty import parameter_covariance
 from hasel_sysid.noise import estimate_noise
 from hasel_sysid.problem import Evaluation, Problem
 

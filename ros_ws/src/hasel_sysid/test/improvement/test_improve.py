@@ -4,7 +4,7 @@ import math
 
 import pytest
 from hasel_sysid.diagnosis import Verdict
-from hasel_sysid.improve import Status, improve
+from hasel_sysid.improvement import Status, improve
 from hasel_sysid.testing.made_up_world import MadeUpWorld
 
 

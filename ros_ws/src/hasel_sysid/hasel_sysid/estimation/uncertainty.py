@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hasel_sysid.fit.directions import seen_directions
+from hasel_sysid.estimation.directions import seen_directions
 from hasel_sysid.noise import NoiseModel
 
 

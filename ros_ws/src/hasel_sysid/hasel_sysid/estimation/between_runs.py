@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hasel_sysid.fit.directions import seen_directions
+from hasel_sysid.estimation.directions import seen_directions
 
 _FEWEST_RUNS = 4
 _ALONE = 1e-6

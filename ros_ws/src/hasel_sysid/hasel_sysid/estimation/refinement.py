@@ -7,8 +7,8 @@ import numpy as np
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
-from hasel_sysid.fit.directions import seen_directions
-from hasel_sysid.fit.result import FitResult
+from hasel_sysid.estimation.directions import seen_directions
+from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.problem import Evaluation, Problem
 
 

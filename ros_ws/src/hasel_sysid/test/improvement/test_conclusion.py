@@ -3,8 +3,8 @@
 from types import SimpleNamespace
 
 import pytest
-from hasel_sysid.improve import Stage, Status
-from hasel_sysid.improve.conclusion import conclude, left_over
+from hasel_sysid.improvement import Stage, Status
+from hasel_sysid.improvement.conclusion import conclude, left_over
 
 FLOOR = 0.0024
 NOISE_FLOOR = SimpleNamespace(mean_absolute=FLOOR)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hasel_sim.model import load_model, save_model
-from hasel_sysid.fit.least_squares import fit_least_squares, fitted_result
+from hasel_sysid.estimation.least_squares import fit_least_squares, fitted_result
 from hasel_sysid.problem import Evaluation
 
 

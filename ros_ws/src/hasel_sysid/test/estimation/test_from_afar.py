@@ -8,8 +8,8 @@ from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 from hasel_sysid.dataset import Experiment
-from hasel_sysid.fit import fit_from_afar, fit_least_squares, in_step
-from hasel_sysid.fit.opening import openings
+from hasel_sysid.estimation import fit_from_afar, fit_least_squares, in_step
+from hasel_sysid.estimation.opening import openings
 from hasel_sysid.problem import Problem
 
 RUN = Run("let go", np.arange(0.0, 1.5, 0.01), None, "static_equilibrium", 1.5)

@@ -7,9 +7,9 @@ from hasel_sim.effects.base import Effect
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
-from hasel_sysid.fit import FitResult, fit_least_squares, in_step
-from hasel_sysid.fit.least_squares import fitted_result
-from hasel_sysid.fit.opening import openings
+from hasel_sysid.estimation import FitResult, fit_least_squares, in_step
+from hasel_sysid.estimation.least_squares import fitted_result
+from hasel_sysid.estimation.opening import openings
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection import FittedSet, Policy, Searched, choose, search
 from hasel_sysid.selection.search import worth_most

@@ -6,11 +6,11 @@ from hasel_sim.errors import nearest_name
 from hasel_sim.model import Model
 
 from hasel_sysid.errors import SysidError
-from hasel_sysid.fit.adam import fit_adam
-from hasel_sysid.fit.from_afar import fit_from_afar
-from hasel_sysid.fit.least_squares import Progress
-from hasel_sysid.fit.refinement import changes_by_refinement, with_numerical_error
-from hasel_sysid.fit.result import FitResult
+from hasel_sysid.estimation.adam import fit_adam
+from hasel_sysid.estimation.from_afar import fit_from_afar
+from hasel_sysid.estimation.least_squares import Progress
+from hasel_sysid.estimation.refinement import changes_by_refinement, with_numerical_error
+from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.problem import Problem
 
 METHODS: dict[str, Callable[..., FitResult]] = {"least_squares": fit_from_afar, "adam": fit_adam}

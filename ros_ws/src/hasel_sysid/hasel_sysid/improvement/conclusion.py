@@ -6,8 +6,8 @@ from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.diagnosis.adequacy import Misfit
 from hasel_sysid.diagnosis.context import SIGNIFICANT
 from hasel_sysid.diagnosis.explained import NEAR_NOISE, Status, share_left, status_with
-from hasel_sysid.fit import FitResult
-from hasel_sysid.improve.result import Improvement, Stage
+from hasel_sysid.estimation import FitResult
+from hasel_sysid.improvement.result import Improvement, Stage
 
 
 def last_diagnosis(stages: Sequence[Stage]) -> Diagnosis:

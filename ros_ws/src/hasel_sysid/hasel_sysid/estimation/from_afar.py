@@ -7,10 +7,10 @@ from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
 from hasel_sysid.draft import draft
-from hasel_sysid.fit.decades import decades
-from hasel_sysid.fit.least_squares import Progress, finished, fit_least_squares, fitted_result
-from hasel_sysid.fit.opening import in_step, openings
-from hasel_sysid.fit.result import FitResult
+from hasel_sysid.estimation.decades import decades
+from hasel_sysid.estimation.least_squares import Progress, finished, fit_least_squares, fitted_result
+from hasel_sysid.estimation.opening import in_step, openings
+from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.problem import Problem
 
 _SWEEPS = 2

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sim.effects.registry import catalogue
-from hasel_sysid.fit.decades import over_range
+from hasel_sysid.estimation.decades import over_range
 
 
 def test_a_mass_is_tried_from_its_typical_size_to_the_heaviest():

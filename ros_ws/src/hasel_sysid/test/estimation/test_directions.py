@@ -1,7 +1,7 @@
 """What residuals see of the parameters."""
 
 import numpy as np
-from hasel_sysid.fit.directions import seen_directions
+from hasel_sysid.estimation.directions import seen_directions
 
 COLUMNS = np.random.default_rng(0).normal(size=(50, 3))
 

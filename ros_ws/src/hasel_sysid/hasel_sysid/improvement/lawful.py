@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from hasel_sysid.diagnosis.constancy import trends
-from hasel_sysid.improve.conclusion import last_diagnosis
-from hasel_sysid.improve.result import Stage
+from hasel_sysid.improvement.conclusion import last_diagnosis
+from hasel_sysid.improvement.result import Stage
 
 
 def without_contradictions(stages: Sequence[Stage]) -> tuple[list[Stage], tuple[str, ...], list[str]]:

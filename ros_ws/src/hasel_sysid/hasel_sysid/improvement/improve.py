@@ -9,13 +9,13 @@ from hasel_sim.model import Model
 from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.diagnosis.candidates import candidate_effects
 from hasel_sysid.diagnosis.explained import Status
-from hasel_sysid.fit import FitResult, fit_from_afar, in_step
-from hasel_sysid.fit.refinement import changes_by_refinement, with_numerical_error
-from hasel_sysid.improve.conclusion import conclude, last_diagnosis, near_noise
-from hasel_sysid.improve.from_afar import from_afar
-from hasel_sysid.improve.lawful import without_contradictions
-from hasel_sysid.improve.result import Improvement, Stage
-from hasel_sysid.improve.set_up import opposed_runs
+from hasel_sysid.estimation import FitResult, fit_from_afar, in_step
+from hasel_sysid.estimation.refinement import changes_by_refinement, with_numerical_error
+from hasel_sysid.improvement.conclusion import conclude, last_diagnosis, near_noise
+from hasel_sysid.improvement.from_afar import from_afar
+from hasel_sysid.improvement.lawful import without_contradictions
+from hasel_sysid.improvement.result import Improvement, Stage
+from hasel_sysid.improvement.set_up import opposed_runs
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection import POLICY, Choice, Policy, Searched, choose, search
 from hasel_sysid.selection.sets import EffectSet, name_of

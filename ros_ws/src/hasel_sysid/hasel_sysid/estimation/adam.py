@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from hasel_sim.model import Model
 
-from hasel_sysid.fit.least_squares import Progress, fitted_result
-from hasel_sysid.fit.result import FitResult
+from hasel_sysid.estimation.least_squares import Progress, fitted_result
+from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.problem import Problem
 
 _AMPLITUDE_RATE, _OTHER_RATE = 0.05, 0.005

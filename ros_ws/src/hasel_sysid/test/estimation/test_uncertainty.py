@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import statsmodels.api as sm
-from hasel_sysid.fit.uncertainty import parameter_covariance
+from hasel_sysid.estimation.uncertainty import parameter_covariance
 from hasel_sysid.noise import NoiseModel
 
 RUNS = np.repeat(np.arange(4), 300)
