@@ -12,7 +12,7 @@ from hasel_sysid.estimation.least_squares import fitted_result
 from hasel_sysid.estimation.opening import openings
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection import FittedSet, Policy, Searched, choose, search
-from hasel_sysid.selection.search import worth_most
+from hasel_sysid.selection.searched import worth_most
 from hasel_sysid.selection.sets import EffectSet
 from hasel_sysid.selection.simulated_sets import SimulatedSets
 

@@ -1,13 +1,15 @@
 """Which effects a model lacks: a choice among sets of effects, by one currency.
 
 Read in this order: `policy` (every number there is), `sets` (what is chosen among), `likelihood` (the currency),
-`missing` (is anything missing?), `search` (add, drop, swap), `worth` (what runs left out say of a set), `choice` (where
-to stop, and what cannot be told apart). None of these knows a simulator; `simulated_sets` joins them to one.
+`missing` (is anything missing?), `proposals` and `search` (add, drop, swap), `worth` (what runs left out say of a set),
+`choice` (where to stop, and what cannot be told apart). None of these knows a simulator; `simulated_sets` joins them to
+one.
 """
 
 from hasel_sysid.selection.choice import Choice, choose
 from hasel_sysid.selection.policy import POLICY, Policy
-from hasel_sysid.selection.search import Searched, search
+from hasel_sysid.selection.search import search
+from hasel_sysid.selection.searched import Searched
 from hasel_sysid.selection.sets import FittedSet, Prospect, Sets
 
 __all__ = [

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from hasel_sysid.selection.policy import Policy
-from hasel_sysid.selection.search import Searched, likeness, plausible
+from hasel_sysid.selection.searched import Searched, likeness, plausible
 from hasel_sysid.selection.sets import NOTHING, EffectSet
 from hasel_sysid.selection.worth import Worth
 

@@ -1,61 +1,19 @@
 """The search over sets of effects: add, exchange, drop; what promises most is fitted in full."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from itertools import combinations
 
-from hasel_sysid.selection.likelihood import Likelihood, Whitened
+from hasel_sysid.selection.likelihood import Likelihood
 from hasel_sysid.selection.missing import Missing, missing
 from hasel_sysid.selection.policy import Policy
-from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect, Sets, name_of, together
-from hasel_sysid.selection.worth import Worth, worth
+from hasel_sysid.selection.proposals import Proposal, additions, exchanges, pairs, smaller
+from hasel_sysid.selection.searched import Searched, likeness, plausible
+from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect, Sets, name_of
+from hasel_sysid.selection.worth import worth
 
 Progress = Callable[[str, float], None]
-
-
-@dataclass(frozen=True)
-class Searched:
-    """known: every set that was fitted; likelihood: by which they are compared; worths, whitened: of every known set;
-    first: the test of the baseline; last: of the best set; prospects: of every single effect beside the baseline;
-    level: of the tests; tested: the test of any known set.
-    """
-
-    known: dict[EffectSet, FittedSet]
-    likelihood: Likelihood
-    whitened: dict[EffectSet, Whitened]
-    worths: dict[EffectSet, Worth]
-    first: Missing
-    last: Missing
-    prospects: dict[str, Prospect]
-    level: float
-    tested: Callable[[EffectSet], Missing]
-
-    @property
-    def best(self) -> EffectSet:
-        """The set that is worth most, of those with plausible values."""
-        return max(plausible(self.known), key=lambda effects: self.worths[effects].total)
-
-
-def plausible(known: dict[EffectSet, FittedSet]) -> list[EffectSet]:
-    """The sets, the empty one among them, whose values lie inside their ranges."""
-    return [effects for effects, fitted in known.items() if fitted.plausible]
-
-
-def likeness(likelihood: Likelihood, seen: Mapping[str, Prospect], one: str, other: str) -> float:
-    """Cosine of the angle between what two effects can look like beside the baseline; 0 where that is not known."""
-    if one not in seen or other not in seen:
-        return 0.0
-    return likelihood.likeness(seen[one].looks, seen[other].looks)
-
-
-def worth_most(found: Searched) -> list[EffectSet]:
-    """The plausible sets that are worth more than every known part of them, those that are worth most first."""
-    every = plausible(found.known)
-    worths = {one: found.worths[one].total for one in every}
-    lasting = [one for one in every if all(worths[one] > worths[part] for part in every if part < one)]
-    return sorted(lasting, key=lambda one: -worths[one])
 
 
 def search(
@@ -75,10 +33,9 @@ def search(
         beam = sorted(plausible(state.known), key=state.value)[-policy.width :]
         for one in beam:
             state.look_beyond_if_anything_is_missing(one)
-        around = [*state.additions(beam), *state.exchanges(beam), *state.pairs()]
-        if not state.fit(state.better(around), policy.fits):
+        if not state.fit(state.better(state.around(beam)), policy.fits):
             break
-    state.fit(state.smaller(found.best), policy.most_effects)
+    state.fit(state.possible(smaller(found.known, found.best)), policy.most_effects)
     state.fit(state.rivals(found), policy.fits)
     for one in state.near_the_best(found):
         state.exchange(one)
@@ -173,46 +130,32 @@ class _Search:
         promising = sorted(test.gains, key=lambda effect: -test.gains[effect])[: 2 * self.policy.trials]
         self.look_beyond(effects, [effect for effect in promising if test.gains[effect] > test.threshold])
 
-    def singles(self) -> list["_Proposal"]:
+    def singles(self) -> list[Proposal]:
         """Sets of one effect, most promising first."""
-        return sorted(self.additions([NOTHING]), key=lambda p: -p.promised)
+        return self.ranked(self.additions([NOTHING]))
 
-    def additions(self, beam: Sequence[EffectSet]) -> Iterator["_Proposal"]:
+    def additions(self, beam: Sequence[EffectSet]) -> Iterator[Proposal]:
         """Sets with one effect more than those of a beam."""
-        for one in beam:
-            for prospect in self.prospects.get(one, {}).values():
-                yield from self._proposal(one, (prospect,), ())
+        return additions(self.known, self.prospects, beam)
 
-    def exchanges(self, beam: Sequence[EffectSet]) -> Iterator["_Proposal"]:
-        """Sets with one effect in the place of another."""
-        for one in beam:
-            for prospect in self.prospects.get(one, {}).values():
-                for gone in one:
-                    yield from self._proposal(one, (prospect,), (gone,))
-
-    def pairs(self) -> Iterator["_Proposal"]:
-        """Two effects at once, which may hide each other, as seen from the baseline."""
+    def around(self, beam: Sequence[EffectSet]) -> Iterator[Proposal]:
+        """One effect more than a beam, one in another's place, or two at once, which may hide each other."""
+        yield from self.additions(beam)
+        yield from exchanges(self.known, self.prospects, beam)
         base = self.prospects[NOTHING]
-        hopeful = sorted(base.values(), key=lambda p: -self.likelihood.promised(p))[: self.policy.trials]
-        for pair in combinations(hopeful, 2):
-            yield from self._proposal(NOTHING, pair, ())
-
-    def smaller(self, best: EffectSet) -> Iterator["_Proposal"]:
-        """The best set without one of its effects."""
-        for gone in best if len(best) > 1 else ():
-            yield from self._proposal(best, (), (gone,))
+        hopeful = sorted(base.values(), key=self.likelihood.promised, reverse=True)[: self.policy.trials]
+        yield from pairs(self.known[NOTHING], hopeful)
 
     def near_the_best(self, found: Searched) -> list[EffectSet]:
         """The best set, and the one that is worth most of those with one effect less."""
-        smaller = [one for one in plausible(found.known) if len(one) == len(found.best) - 1]
-        return [found.best, *sorted(smaller, key=lambda one: -found.worths[one].total)[:1]]
+        less = [one for one in plausible(found.known) if len(one) == len(found.best) - 1]
+        return [found.best, *sorted(less, key=lambda one: -found.worths[one].total)[:1]]
 
-    def rivals(self, found: Searched) -> list["_Proposal"]:
+    def rivals(self, found: Searched) -> list[Proposal]:
         """Sets of the best one's size that come so near to it that they may not be told apart."""
         reach = found.whitened[found.best].logarithm - self._reach
-        smaller = [rest for gone in found.best if (rest := found.best - {gone}) in self.known]
-        near = [p for p in self.additions(smaller) if p.promised > reach]
-        return sorted(near, key=lambda p: -p.promised)
+        parts = [part for gone in found.best if (part := found.best - {gone}) in self.known]
+        return self.ranked(self.additions(parts), reach)
 
     def exchange(self, best: EffectSet) -> None:
         """Fit a set with what looks most like one of its effects, and alone does hardly less, in that one's place."""
@@ -235,24 +178,31 @@ class _Search:
         # at d standard errors the error itself is at most 2 d, and the ratio 2 d^2: half its square is what it costs
         return 2 * self.policy.doubt**2
 
-    def better(self, proposals: Iterable["_Proposal"]) -> list["_Proposal"]:
+    def better(self, proposals: Iterable[Proposal]) -> list[Proposal]:
         """Those that promise more than the best known set, most promising first."""
         best = max(map(self.value, plausible(self.known)))
-        valued = [(p.promised - self.threshold * len(p.effects), p) for p in proposals]
-        return [p for value, p in sorted(valued, key=lambda pair: -pair[0]) if value > best]
+        return self.ranked(proposals, best, self.threshold)
 
-    def _proposal(
-        self, of: EffectSet, added: tuple[Prospect, ...], dropped: tuple[str, ...]
-    ) -> Iterator["_Proposal"]:
-        effects = (of - set(dropped)) | {p.effect for p in added}
-        if effects in self.tried or len(effects) > self.policy.most_effects:
-            return
-        if self.sets.compatible(effects):
-            alone = len(added) == 1 and not dropped
-            whole = added[0] if alone else together(self.known[of], added, dropped)
-            yield _Proposal(effects, self.known[of], added, self.likelihood.promised(whole))
+    def ranked(
+        self, proposals: Iterable[Proposal], least: float = -math.inf, of_each: float = 0.0
+    ) -> list[Proposal]:
+        """Those whose promise, less so much for each effect, is more than the least; most promising first."""
+        valued = [(self.promised(p) - of_each * len(p.effects), p) for p in self.possible(proposals)]
+        return [p for value, p in sorted(valued, key=lambda pair: -pair[0]) if value > least]
 
-    def fit(self, proposals: Iterable["_Proposal"], most: int, even_late: bool = False) -> int:
+    def possible(self, proposals: Iterable[Proposal]) -> Iterator[Proposal]:
+        """Those that were not tried yet, are not too large, and whose effects go together."""
+        for proposal in proposals:
+            effects = proposal.effects
+            small = effects not in self.tried and len(effects) <= self.policy.most_effects
+            if small and self.sets.compatible(effects):
+                yield proposal
+
+    def promised(self, proposal: Proposal) -> float:
+        """The logarithm of its likelihood, to first order."""
+        return self.likelihood.promised(proposal.whole)
+
+    def fit(self, proposals: Iterable[Proposal], most: int, even_late: bool = False) -> int:
         """Fit the first of these in full; how many were."""
         count = 0
         for proposal in proposals:
@@ -269,10 +219,10 @@ class _Search:
 
     def _again(self, effects: EffectSet) -> FittedSet | None:
         """From its best smaller set, where it ended with larger squares than that one: then it was lost on its way."""
-        below = [smaller for gone in effects if (smaller := effects - {gone}) in self.known]
+        below = [part for gone in effects if (part := effects - {gone}) in self.known]
         if not below:
             return None
-        best = min(below, key=lambda smaller: self.known[smaller].squares)
+        best = min(below, key=lambda part: self.known[part].squares)
         if effects in self.known and self.known[effects].squares <= self.known[best].squares:
             return None
         (new,) = effects - best
@@ -287,13 +237,3 @@ class _Search:
         if known is None or fitted.squares < known.squares:
             self.known[fitted.effects] = fitted
             self.whitened[fitted.effects] = self.likelihood.whitened(fitted)
-
-
-@dataclass(frozen=True)
-class _Proposal:
-    """A set to be fitted, from where; promised: the logarithm of its likelihood, to first order."""
-
-    effects: EffectSet
-    of: FittedSet
-    added: tuple[Prospect, ...]
-    promised: float

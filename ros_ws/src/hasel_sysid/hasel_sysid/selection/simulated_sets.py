@@ -1,6 +1,6 @@
 """Sets of effects of the simulator: drafts for a first look, full fits for what is compared."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +11,7 @@ from hasel_sim.model import Model
 from hasel_sysid.diagnosis.candidates import Start, decade_starts, resized, starts
 from hasel_sysid.diagnosis.context import on_own_bound
 from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
-from hasel_sysid.diagnosis.trial import MOST_CHANGE, Trial, Trials, limited, nearer
+from hasel_sysid.diagnosis.trial import Trial, Trials, nearer
 from hasel_sysid.estimation import FitResult, fit_least_squares
 from hasel_sysid.estimation.least_squares import finished
 from hasel_sysid.noise import NoiseModel, estimate_noise
@@ -20,6 +20,7 @@ from hasel_sysid.noise_sources.between_periods import noise_between_periods
 from hasel_sysid.problem import Problem
 from hasel_sysid.projection import orthonormal
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect
+from hasel_sysid.selection.trial_prospects import Rank, best_of_each, looks_of, prospect_of, room
 
 _BATCH = 8
 _RIVAL = 0.5
@@ -30,8 +31,6 @@ _BRIEF = 25
 """Evaluations that a full fit is given."""
 _RIVAL_FIT = 12
 """The same where one effect takes another's place: where that needs more, it is not as good."""
-
-Rank = Callable[[Prospect], float]
 
 
 class SimulatedSets:
@@ -81,7 +80,7 @@ class SimulatedSets:
             own,
             evaluation.residual,
             inside.jacobian,
-            *_room(model, moving),
+            *room(model, moving),
             tuple(owner.get(name, "") for name in moving),
             without,
             not any(on_own_bound(effect, fit) for effect in own),
@@ -127,15 +126,15 @@ class SimulatedSets:
             self.trials, self.first, self.tried = trials, first, set(trials.tried)
         else:
             first, rounds = trials.first(self._sized(of, names)), (most // 2, most // 4)
-        looks = {t.start.effect.id: _looks(t, trials) for t in reversed(first)}
-        best = _best_of_each([_prospect(t, looks, of.effects) for t in first], rank)
+        looks = {t.start.effect.id: looks_of(t, trials) for t in reversed(first)}
+        best = best_of_each([prospect_of(t, looks, of.effects) for t in first], rank)
         for keep in rounds:
             if not keep or self.out_of_time():
                 break
             most_hope = max(prospect.start.promised for prospect in best)
             going_on = [p for p in best[:keep] if p.start.promised >= _RIVAL * most_hope]
-            moved = [_prospect(t, looks, of.effects) for t in trials.further([p.start for p in going_on])]
-            best = _best_of_each([*moved, *(p for p in best if p not in going_on)], rank)
+            moved = [prospect_of(t, looks, of.effects) for t in trials.further([p.start for p in going_on])]
+            best = best_of_each([*moved, *(p for p in best if p not in going_on)], rank)
         return {prospect.effect: prospect for prospect in best}
 
     def _sized(self, of: FittedSet, names: Collection[str]) -> list[Start]:
@@ -216,49 +215,6 @@ class SimulatedSets:
         return replace(self.known_as(fit), effects=fitted.effects)
 
 
-def _room(model: Model, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-    """By how much parameters may change: within their ranges, and the model's own by a share of their value."""
-    parameters = [model.parameters[name] for name in names]
-    value = np.array([p.value for p in parameters])
-    reach = np.where(limited(model, names), MOST_CHANGE * np.abs(value), np.inf)
-    lower = np.array([p.lower for p in parameters]) - value
-    upper = np.array([p.upper for p in parameters]) - value
-    return np.maximum(lower, -reach), np.minimum(upper, reach)
-
-
 def _inside(model: Model, name: str, value: float) -> float:
     p = model.parameters[name]
     return float(np.clip(value, p.lower, p.upper))
-
-
-def _best_of_each(prospects: Sequence[Prospect], rank: Rank) -> list[Prospect]:
-    """The best prospect of every effect, best first."""
-    ranked = sorted(((rank(p), n) for n, p in enumerate(prospects)), key=lambda pair: -pair[0])
-    best: dict[str, Prospect] = {}
-    for _, number in ranked:
-        best.setdefault(prospects[number].effect, prospects[number])
-    return list(best.values())
-
-
-def _looks(trial: Trial, trials: Trials) -> np.ndarray:
-    """What an effect does to the series at its first trial, and its derivatives there."""
-    own = [index for index, name in enumerate(trial.names) if name in trial.start.values]
-    return np.column_stack([trials.fitted.residual - trial.residual, trial.jacobian[:, own]])
-
-
-def _prospect(trial: Trial, looks: dict[str, np.ndarray], beside: EffectSet) -> Prospect:
-    effect = trial.start.effect.id
-    own = [name in trial.start.values for name in trial.names]
-    order = np.argsort(own, kind="stable")
-    lower, upper = _room(trial.model, trial.names)
-    return Prospect(
-        effect,
-        trial.residual,
-        trial.jacobian[:, order],
-        sum(own),
-        lower[order],
-        upper[order],
-        looks[effect],
-        beside,
-        trial,
-    )

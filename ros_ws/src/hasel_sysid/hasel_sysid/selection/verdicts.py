@@ -14,7 +14,7 @@ from hasel_sysid.diagnosis.signature import signature
 from hasel_sysid.noise import NoiseModel, allowed_noise
 from hasel_sysid.selection.choice import Choice
 from hasel_sysid.selection.policy import POLICY
-from hasel_sysid.selection.search import Searched
+from hasel_sysid.selection.searched import Searched
 from hasel_sysid.selection.sets import NOTHING
 from hasel_sysid.selection.simulated_sets import SimulatedSets
 

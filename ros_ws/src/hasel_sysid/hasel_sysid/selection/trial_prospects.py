@@ -1,0 +1,56 @@
+"""What trials of effects on a draft of the model promise."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from hasel_sim.model import Model
+
+from hasel_sysid.diagnosis.trial import MOST_CHANGE, Trial, Trials, limited
+from hasel_sysid.selection.sets import EffectSet, Prospect
+
+Rank = Callable[[Prospect], float]
+"""How much a prospect is worth, by which the best of each effect is told."""
+
+
+def room(model: Model, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """By how much parameters may change: within their ranges, and the model's own by a share of their value."""
+    parameters = [model.parameters[name] for name in names]
+    value = np.array([p.value for p in parameters])
+    reach = np.where(limited(model, names), MOST_CHANGE * np.abs(value), np.inf)
+    lower = np.array([p.lower for p in parameters]) - value
+    upper = np.array([p.upper for p in parameters]) - value
+    return np.maximum(lower, -reach), np.minimum(upper, reach)
+
+
+def best_of_each(prospects: Sequence[Prospect], rank: Rank) -> list[Prospect]:
+    """The best prospect of every effect, best first."""
+    ranked = sorted(((rank(p), n) for n, p in enumerate(prospects)), key=lambda pair: -pair[0])
+    best: dict[str, Prospect] = {}
+    for _, number in ranked:
+        best.setdefault(prospects[number].effect, prospects[number])
+    return list(best.values())
+
+
+def looks_of(trial: Trial, trials: Trials) -> np.ndarray:
+    """What an effect does to the series at its first trial, and its derivatives there."""
+    own = [index for index, name in enumerate(trial.names) if name in trial.start.values]
+    return np.column_stack([trials.fitted.residual - trial.residual, trial.jacobian[:, own]])
+
+
+def prospect_of(trial: Trial, looks: Mapping[str, np.ndarray], beside: EffectSet) -> Prospect:
+    """A trial as the search sees it; looks: of every effect; beside: the effects of the set that was looked beyond."""
+    effect = trial.start.effect.id
+    own = [name in trial.start.values for name in trial.names]
+    order = np.argsort(own, kind="stable")
+    lower, upper = room(trial.model, trial.names)
+    return Prospect(
+        effect,
+        trial.residual,
+        trial.jacobian[:, order],
+        sum(own),
+        lower[order],
+        upper[order],
+        looks[effect],
+        beside,
+        trial,
+    )
