@@ -35,6 +35,7 @@ def fit_least_squares(
     A draft of the model (coarse mesh, long steps) leads most of the way; the model itself goes the rest.
     tolerance: ten times the relative change of the sum of squares at which to stop; drafts: whether to start
     with the draft, which is a waste of time when the start is already good.
+    A fit that ends with an effect's parameter on a bound where nothing shows it is tried again from its typical value.
     Raises SimulationError when even the start cannot be simulated.
     """
     if not model.free:
@@ -44,7 +45,20 @@ def fit_least_squares(
         led, count, _ = _minimise(problem, draft(model), progress, 1e-2, most_evaluations)
         model = model.with_values({name: led.model.values[name] for name in model.free})
     evaluation, more, ended = _minimise(problem, model, progress, tolerance, most_evaluations)
-    return replace(fitted_result(evaluation, count + more), converged=ended)
+    found = replace(fitted_result(evaluation, count + more), converged=ended)
+    lifted = _off_flat_bounds(found)
+    if not lifted:
+        return found
+    try:
+        again, more, ended = _minimise(
+            problem, found.model.with_values(lifted), progress, tolerance, most_evaluations
+        )
+    except SimulationError:
+        return found
+    count = found.iterations + more
+    if again.sum_of_squares < evaluation.sum_of_squares:
+        return replace(fitted_result(again, count), converged=ended)
+    return replace(found, iterations=count)
 
 
 def finished(problem: Problem, fit: FitResult, progress: Progress | None = None, **options) -> FitResult:
@@ -122,11 +136,22 @@ class _Search:
 
 
 def _scale(model: Model, name: str) -> float:
-    for effect in model.effects:
-        for p in effect.parameters:
-            if f"{effect.id}.{p.name}" == name:
-                return abs(p.typical) or 1.0
-    return 1e-3
+    typical = _typical(model)
+    return abs(typical[name]) or 1.0 if name in typical else 1e-3
+
+
+def _typical(model: Model) -> dict[str, float]:
+    """Of every parameter of an effect."""
+    return {f"{effect.id}.{p.name}": p.typical for effect in model.effects for p in effect.parameters}
+
+
+def _off_flat_bounds(fit: FitResult) -> dict[str, float]:
+    """Typical values of what lies on a bound where nothing shows it: of a time far below a step there is no slope.
+
+    A step of the search that overshot has put it there, and no derivative leads back.
+    """
+    flat = set(fit.at_bound) & set(fit.undetermined)
+    return {name: value for name, value in _typical(fit.model).items() if name in flat}
 
 
 def _bounds_and_start(model: Model, names: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

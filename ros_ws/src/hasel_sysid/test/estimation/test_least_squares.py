@@ -79,3 +79,29 @@ def test_a_fit_that_ran_out_of_simulations_says_so():
     """It has not converged."""
     found = fit_least_squares(Growing(), far_start(), most_evaluations=2, drafts=False)
     assert not found.converged
+
+
+class Lagging(Growing):
+    """Runs in which a lag of 0.01 s shows, and one below a millisecond does not."""
+
+    def evaluate(self, model, names):
+        """As of a problem's, at the model's values."""
+        lag, stiffness = model.values[TIME], model.values["material.soft.youngs_modulus_pa"] - 264e3
+        left, slope = np.exp(-1e-3 / lag), 1e-3 / lag**2 * np.exp(-1e-3 / lag)
+        seen = {
+            "material.soft.youngs_modulus_pa": 1e-6 * np.array([1.0, 0.0, -1.0]),
+            TIME: slope * np.ones(3),
+        }
+        noise = 1e-5 * np.array([1.0, -2.0, 1.0])
+        residual = np.exp(-0.1) - left + noise - stiffness * seen["material.soft.youngs_modulus_pa"]
+        frames, jacobian = np.ones(3, bool), np.column_stack([seen[name] for name in names])
+        return Evaluation(model, names, (), residual, jacobian, np.zeros(3, int), np.zeros(1), (frames,))
+
+
+def test_a_value_on_a_bound_where_nothing_shows_it_is_tried_again_from_its_typical_size():
+    """Of a time far below a step there is no slope, and yet a larger one describes the runs."""
+    model = load_model("beam").with_effects("material_damping").with_freed("material.soft.youngs_modulus_pa")
+    lost = model.with_values({TIME: model.parameters[TIME].lower + 1e-9})
+    assert lost.values[TIME] < 1e-6
+    found = fit_least_squares(Lagging(), lost, drafts=False)
+    assert found.model.values[TIME] == pytest.approx(0.01, rel=1e-3)
