@@ -1,51 +1,26 @@
 """Compare the model with measurements, fit it, and learn which physical effect it lacks.
 
 In Python: `import hasel_sysid as h`, then h.load, h.model, h.simulate, h.fit, h.diagnose, h.improve; docs/api.md lists
-all of it. The façade is read when one of its names is first asked for, so that a command imports only what it needs.
+all of it. The façade, `hasel_sysid.api`, is read when one of its names is first asked for: a command imports only what
+it needs.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from hasel_sysid.api import (
-        Diagnosed,
-        Fitted,
-        Improved,
-        Recordings,
-        Simulated,
-        diagnose,
-        fit,
-        improve,
-        load,
-        model,
-        save,
-        simulate,
-    )
-
-__all__ = [
-    "Diagnosed",
-    "Fitted",
-    "Improved",
-    "Recordings",
-    "Simulated",
-    "diagnose",
-    "fit",
-    "improve",
-    "load",
-    "model",
-    "save",
-    "simulate",
-]
+    from hasel_sysid.api import *  # noqa: F403
 
 
 def __getattr__(name: str) -> Any:
-    if name not in __all__:
-        raise AttributeError(
-            f"module 'hasel_sysid' has no attribute {name!r}; expected one of {', '.join(__all__)}"
-        )
-    return getattr(import_module("hasel_sysid.api"), name)
+    missing = f"module 'hasel_sysid' has no attribute {name!r}"
+    if name.startswith("_"):
+        raise AttributeError(missing)
+    facade = import_module("hasel_sysid.api")
+    if name not in facade.__all__:
+        raise AttributeError(f"{missing}; expected one of {', '.join(facade.__all__)}")
+    return getattr(facade, name)
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted({*globals(), *import_module("hasel_sysid.api").__all__})

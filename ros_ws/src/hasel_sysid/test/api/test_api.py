@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import hasel_sysid as h
+import hasel_sysid.api
 import pytest
 from hasel_sim.errors import ModelError
 
@@ -64,7 +65,7 @@ def test_the_notebook_is_kept_without_results():
 def test_every_step_is_on_the_page_with_its_arguments():
     """Names, order and defaults as in the code."""
     page = (PACKAGE / "docs" / "api.md").read_text(encoding="utf-8")
-    for name in filter(str.islower, h.__all__):
+    for name in filter(str.islower, hasel_sysid.api.__all__):
         parts = []
         for p in inspect.signature(getattr(h, name)).parameters.values():
             star = "*" if p.kind is p.VAR_POSITIONAL else ""
