@@ -1,6 +1,7 @@
 """Identification as a user asks for it: a fit by a named method, with honest standard errors."""
 
 from collections.abc import Callable
+from functools import partial
 
 from hasel_sim.errors import nearest_name
 from hasel_sim.model import Model
@@ -11,6 +12,7 @@ from hasel_sysid.estimation.from_afar import fit_from_afar
 from hasel_sysid.estimation.least_squares import Progress
 from hasel_sysid.estimation.refinement import changes_by_refinement, with_numerical_error
 from hasel_sysid.estimation.result import FitResult
+from hasel_sysid.estimation.second_start import better_from, left_without_effect
 from hasel_sysid.problem import Problem
 
 METHODS: dict[str, Callable[..., FitResult]] = {"least_squares": fit_from_afar, "adam": fit_adam}
@@ -26,26 +28,7 @@ def identify(problem: Problem, model: Model, method: str, progress: Progress | N
     """
     if method not in METHODS:
         raise SysidError(f"unknown method '{method}'; {nearest_name(method, METHODS)}")
-    fit = METHODS[method](problem, model, progress)
-    asleep = _left_without_effect(fit)
-    if asleep:
-        again = METHODS[method](problem, fit.model.with_values(asleep), progress)
-        fit = min(fit, again, key=lambda result: result.evaluation.sum_of_squares)
+    fitted = partial(METHODS[method], problem, progress=progress)
+    first = fitted(model)
+    fit = better_from(first, left_without_effect(first), fitted)
     return with_numerical_error(fit, changes_by_refinement(problem, fit.evaluation))
-
-
-def _left_without_effect(fit: FitResult) -> dict[str, float]:
-    """Typical values of the effects of which every fitted parameter ended on a bound that is its null, by name."""
-    typical: dict[str, float] = {}
-    for effect in fit.model.effects:
-        sizes = [
-            p for p in effect.parameters if not p.scan and f"{effect.id}.{p.name}" in fit.evaluation.names
-        ]
-        names = [f"{effect.id}.{p.name}" for p in sizes]
-        null = all(
-            name in fit.at_bound and abs(fit.model.values[name] - p.null) < 1e-3 * abs(p.typical - p.null)
-            for name, p in zip(names, sizes, strict=True)
-        )
-        if sizes and null:
-            typical |= {name: p.typical for name, p in zip(names, sizes, strict=True)}
-    return typical

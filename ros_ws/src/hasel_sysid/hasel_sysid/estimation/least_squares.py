@@ -11,6 +11,7 @@ from scipy.optimize import least_squares
 from hasel_sysid.draft import draft
 from hasel_sysid.estimation.between_runs import wider_where_runs_disagree
 from hasel_sysid.estimation.result import FitResult
+from hasel_sysid.estimation.second_start import better_from, on_flat_bounds, typical_values
 from hasel_sysid.estimation.uncertainty import parameter_covariance
 from hasel_sysid.noise import estimate_noise
 from hasel_sysid.problem import Evaluation, Problem
@@ -44,21 +45,14 @@ def fit_least_squares(
     if drafts:
         led, count, _ = _minimise(problem, draft(model), progress, 1e-2, most_evaluations)
         model = model.with_values({name: led.model.values[name] for name in model.free})
-    evaluation, more, ended = _minimise(problem, model, progress, tolerance, most_evaluations)
-    found = replace(fitted_result(evaluation, count + more), converged=ended)
-    lifted = _off_flat_bounds(found)
-    if not lifted:
-        return found
-    try:
-        again, more, ended = _minimise(
-            problem, found.model.with_values(lifted), progress, tolerance, most_evaluations
-        )
-    except SimulationError:
-        return found
-    count = found.iterations + more
-    if again.sum_of_squares < evaluation.sum_of_squares:
-        return replace(fitted_result(again, count), converged=ended)
-    return replace(found, iterations=count)
+
+    def fitted(start: Model) -> FitResult:
+        evaluation, more, ended = _minimise(problem, start, progress, tolerance, most_evaluations)
+        return replace(fitted_result(evaluation, more), converged=ended)
+
+    first = fitted(model)
+    found = better_from(first, on_flat_bounds(first), fitted)
+    return replace(found, iterations=count + found.iterations)
 
 
 def finished(problem: Problem, fit: FitResult, progress: Progress | None = None, **options) -> FitResult:
@@ -136,22 +130,8 @@ class _Search:
 
 
 def _scale(model: Model, name: str) -> float:
-    typical = _typical(model)
+    typical = typical_values(model)
     return abs(typical[name]) or 1.0 if name in typical else 1e-3
-
-
-def _typical(model: Model) -> dict[str, float]:
-    """Of every parameter of an effect."""
-    return {f"{effect.id}.{p.name}": p.typical for effect in model.effects for p in effect.parameters}
-
-
-def _off_flat_bounds(fit: FitResult) -> dict[str, float]:
-    """Typical values of what lies on a bound where nothing shows it: of a time far below a step there is no slope.
-
-    A step of the search that overshot has put it there, and no derivative leads back.
-    """
-    flat = set(fit.at_bound) & set(fit.undetermined)
-    return {name: value for name, value in _typical(fit.model).items() if name in flat}
 
 
 def _bounds_and_start(model: Model, names: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -35,7 +35,7 @@ def from_afar(
         here = _fitted(opening, fit.model)
         sets = SimulatedSets(opening, here, effects, decades=True)
         begun = _known(sets, rivals, partial(_in_step, opening))
-        reached = [here, *(one.fit for one in begun[:1])][-1]
+        reached = begun[0].fit if begun else here
         if in_step(reached.evaluation) or len(sets.known_as(reached).effects) >= policy.most_effects:
             rivals = [one.fit.model for one in begun]
             continue

@@ -45,25 +45,31 @@ def test_a_parameter_that_is_no_longer_determined_keeps_no_standard_error():
     assert result.model.parameters["slope"].standard_error is not None
 
 
+def evaluated(model, names, residual, slopes):
+    """A problem's answer for one run, whose series have these slopes by the parameters named."""
+    jacobian, frames = np.column_stack([slopes[name] for name in names]), np.ones(len(residual), bool)
+    runs = np.zeros(len(residual), int)
+    return Evaluation(model, names, (), residual, jacobian, runs, np.zeros(1), (frames,))
+
+
 class Growing:
     """Runs in which a time constant shows as its exponential, beside a stiffness that is right from the start."""
 
     def evaluate(self, model, names):
         """As of a problem's, at the model's values."""
-        stiffness, time = model.values["material.soft.youngs_modulus_pa"], model.values[TIME]
-        seen = {"material.soft.youngs_modulus_pa": [1e-5, -1e-5], TIME: np.exp(time) * np.array([1.0, 1.0])}
-        residual = np.array([np.e - np.exp(time), np.e - np.exp(time)])
-        residual -= (stiffness - 264e3) * np.array(seen["material.soft.youngs_modulus_pa"])
-        frames, jacobian = np.ones(2, bool), np.column_stack([seen[name] for name in names])
-        return Evaluation(model, names, (), residual, jacobian, np.zeros(2, int), np.zeros(1), (frames,))
+        growth = np.exp(model.values[TIME])
+        slopes = {STIFFNESS: 1e-5 * np.array([1.0, -1.0]), TIME: growth * np.ones(2)}
+        residual = np.e - growth - (model.values[STIFFNESS] - 264e3) * slopes[STIFFNESS]
+        return evaluated(model, names, residual, slopes)
 
 
+STIFFNESS = "material.soft.youngs_modulus_pa"
 TIME = "material_damping.retardation_time"
 
 
 def far_start():
     """A beam whose stiffness is free and right, and whose time constant is far off."""
-    model = load_model("beam").with_effects("material_damping").with_freed("material.soft.youngs_modulus_pa")
+    model = load_model("beam").with_effects("material_damping").with_freed(STIFFNESS)
     model = replace(model, parameters={**model.parameters, TIME: replace(model.parameters[TIME], upper=10.0)})
     return model.with_values({TIME: 4.0})
 
@@ -81,26 +87,21 @@ def test_a_fit_that_ran_out_of_simulations_says_so():
     assert not found.converged
 
 
-class Lagging(Growing):
+class Lagging:
     """Runs in which a lag of 0.01 s shows, and one below a millisecond does not."""
 
     def evaluate(self, model, names):
         """As of a problem's, at the model's values."""
-        lag, stiffness = model.values[TIME], model.values["material.soft.youngs_modulus_pa"] - 264e3
-        left, slope = np.exp(-1e-3 / lag), 1e-3 / lag**2 * np.exp(-1e-3 / lag)
-        seen = {
-            "material.soft.youngs_modulus_pa": 1e-6 * np.array([1.0, 0.0, -1.0]),
-            TIME: slope * np.ones(3),
-        }
-        noise = 1e-5 * np.array([1.0, -2.0, 1.0])
-        residual = np.exp(-0.1) - left + noise - stiffness * seen["material.soft.youngs_modulus_pa"]
-        frames, jacobian = np.ones(3, bool), np.column_stack([seen[name] for name in names])
-        return Evaluation(model, names, (), residual, jacobian, np.zeros(3, int), np.zeros(1), (frames,))
+        lag = model.values[TIME]
+        left, noise = np.exp(-1e-3 / lag), 1e-5 * np.array([1.0, -2.0, 1.0])
+        slopes = {STIFFNESS: 1e-6 * np.array([1.0, 0.0, -1.0]), TIME: 1e-3 / lag**2 * left * np.ones(3)}
+        residual = np.exp(-0.1) - left + noise - (model.values[STIFFNESS] - 264e3) * slopes[STIFFNESS]
+        return evaluated(model, names, residual, slopes)
 
 
 def test_a_value_on_a_bound_where_nothing_shows_it_is_tried_again_from_its_typical_size():
     """Of a time far below a step there is no slope, and yet a larger one describes the runs."""
-    model = load_model("beam").with_effects("material_damping").with_freed("material.soft.youngs_modulus_pa")
+    model = load_model("beam").with_effects("material_damping").with_freed(STIFFNESS)
     lost = model.with_values({TIME: model.parameters[TIME].lower + 1e-9})
     assert lost.values[TIME] < 1e-6
     found = fit_least_squares(Lagging(), lost, drafts=False)
