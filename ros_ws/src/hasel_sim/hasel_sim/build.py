@@ -95,13 +95,14 @@ class Builder:
 
     def _solid(self, values: dict[str, SimpleNamespace]) -> Solid:
         coefficients, _ = _material(self._described, self.mesh, self.nodes)
-        branches = []
+        branches, fading = [], []
         for effect in self._of(MaterialEffect):
             effect.modify(coefficients, values[effect.id])
             branches += effect.branches(values[effect.id])
+            fading += effect.fading(values[effect.id])
         plane_stress = self.model.description.material.plane == "stress"
         order = self.model.description.numerics.quadrature_order
-        return Solid(self.mesh, self.nodes, coefficients, Branches(branches), plane_stress, order)
+        return Solid(self.mesh, self.nodes, coefficients, Branches(branches, fading), plane_stress, order)
 
     def _sites(self, effect: ForceEffect, p: SimpleNamespace) -> Sites:
         if effect.sites == "points":

@@ -6,8 +6,9 @@ import numpy as np
 
 from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.generalised_alpha import StepCoefficients
+from hasel_sim.mechanics.initial import memory_at_start
 from hasel_sim.mechanics.marcher import Drives, Marcher
-from hasel_sim.mechanics.motion import DriveState, Memory, Motion
+from hasel_sim.mechanics.motion import DriveState, Motion
 from hasel_sim.mechanics.part import Part
 from hasel_sim.mechanics.residual_slopes import NoSlope
 from hasel_sim.mechanics.seen import Seen
@@ -89,7 +90,8 @@ def step_together(
     marcher, derivatives = Marcher(system, tolerance), StepSlopes(system, columns)
     start = DriveState.beside([lane.prepared.start_drive for lane in filled])
     motion = Motion(state.position, state.velocity, state.acceleration)
-    marcher.begin(state, system.second_piola(motion, start, Memory()), np.zeros_like(state.position))
+    stress = system.second_piola(motion, start, memory_at_start(system, state))
+    marcher.begin(state, stress, np.zeros_like(state.position))
     drives = Drives(*(_beside(filled, name, steps) for name in ("voltage", "contraction", "time")))
     kinds, coefficients = _coefficients(filled, steps)
     ends = np.array([*map(len, lanes), *[0] * (count - len(lanes))])

@@ -73,16 +73,20 @@ def reverse_start(
     multiplier = -inertia.solve(weights.acceleration[None], transposed=True)[0]
     out = _by_parameter(parameters, motion, drive, line, state, 0.0, multiplier)
     position = weights.position + line.pulled_back(multiplier)[0]
-    if weights.green is not None:
-        position += green_pulled_back(system.solid, state.position, weights.green)
-        out += [_by_first_green(parameter, state, weights.green) for parameter in parameters]
+    if weights.branch is not None:
+        branch = weights.branch + history_pulled_back(system.solid, line.F, multiplier)
+        share = system.solid.branches.share[:, 0]
+        position += green_pulled_back(
+            system.solid, state.position, weights.green + np.tensordot(share, branch, 1)
+        )
+        out += [_by_first_stress(parameter, state, weights.green, branch) for parameter in parameters]
     if not in_equilibrium:
         return out
     still = np.zeros_like(position)
     motion = Motion(state.position, still, still)
     line = system.linearise(motion, drive, Memory(), load_factor)
     multiplier = equilibrium_multiplier(line, system.held_to_zero(position[None])[0])
-    return out + _by_parameter(parameters, motion, drive, line, state, 0.0, multiplier, load_factor)
+    return out + _by_parameter(parameters, motion, drive, line, None, 0.0, multiplier, load_factor)
 
 
 def _by_parameter(
@@ -90,7 +94,7 @@ def _by_parameter(
     motion: Motion,
     drive: DriveState,
     line: Linearisation,
-    state: State,
+    state: State | None,
     at: float,
     multiplier: np.ndarray,
     load_factor: float = 1.0,
@@ -118,10 +122,14 @@ def _by_branch_parameter(
     return total
 
 
-def _by_first_green(parameter: ResidualSlope, state: State, weights: np.ndarray) -> float:
-    if not isinstance(parameter, SolidSlope):
-        return 0.0
-    more, less = (
-        (weights * solid.green_stress(solid.gradient(state.position))).sum() for solid, _ in parameter.solids
-    )
-    return (more - less) / parameter.width[0]
+def _by_first_stress(
+    parameter: ResidualSlope, state: State, of_green: np.ndarray, of_branch: np.ndarray
+) -> float:
+    """By way of what the branches start with; of_green, of_branch: weights of C : E and of the branches' stresses."""
+    total = 0.0
+    if isinstance(parameter, SolidSlope):
+        for solid, sign in parameter.solids:
+            green = solid.green_stress(solid.gradient(state.position))
+            share = (of_green * green).sum() + (of_branch * solid.branches.at_start(green)).sum()
+            total += sign / parameter.width[0] * share
+    return total

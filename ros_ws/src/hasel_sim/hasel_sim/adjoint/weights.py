@@ -6,6 +6,7 @@ import numpy as np
 
 from hasel_sim.mechanics.solid import Solid
 from hasel_sim.mechanics.state import State
+from hasel_sim.mechanics.strain import times_symmetric
 
 
 @dataclass
@@ -44,12 +45,6 @@ def history_pulled_back(solid: Solid, F: np.ndarray, multiplier: np.ndarray) -> 
     m0, m1, m2, m3 = np.moveaxis(solid.gradient(multiplier), -2, 0)
     change = np.stack([a * m0 + c * m2, b * m1 + d * m3, a * m1 + c * m3 + b * m0 + d * m2], axis=-2)
     return (solid.areas[..., None] * solid.stretch)[:, :, None] * change
-
-
-def times_symmetric(F: np.ndarray, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray) -> np.ndarray:
-    """F S for a symmetric S, [elements, points, 4, 1]."""
-    a, b, c, d = np.moveaxis(F, -2, 0)
-    return np.stack([a * xx + b * xy, a * xy + b * yy, c * xx + d * xy, c * xy + d * yy], axis=-2)
 
 
 def _scattered(solid: Solid, weights: np.ndarray, nodes: int) -> np.ndarray:

@@ -186,6 +186,10 @@ class MaterialEffect(Effect):
         """Maxwell branches as (modulus ratio [1], relaxation time [s])."""
         return []
 
+    def fading(self, p: SimpleNamespace) -> list[tuple[float, float]]:
+        """Stress that a run starts with and that relaxes, as (share of the elastic stress [1], relaxation time [s])."""
+        return []
+
     def first_piola(self, at: MaterialPoints, p: SimpleNamespace) -> np.ndarray:
         """Additional first Piola stress [Pa] [n, 2, 2] at material points."""
         raise NotImplementedError

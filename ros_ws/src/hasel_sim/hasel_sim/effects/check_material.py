@@ -9,12 +9,14 @@ from hasel_sim.effects.base import Coefficients, MaterialEffect, MaterialPoints
 from hasel_sim.effects.check_tools import called, expect, guarded, repeatable, same
 from hasel_sim.mesh.mesh import Region
 
+_OF_CONSTANTS = ("modify", "branches", "fading")
+
 
 def check_material(effect: MaterialEffect, null: SimpleNamespace, typical: SimpleNamespace) -> None:
     """Refuse a material effect that breaks a rule, with a ModelError."""
     if effect.regions:
         kind = type(effect)
-        plain = kind.modify is MaterialEffect.modify and kind.branches is MaterialEffect.branches
+        plain = all(getattr(kind, name) is getattr(MaterialEffect, name) for name in _OF_CONSTANTS)
         expect(plain, effect, "adds stress and changes constants", "make two effects of it")
         _check_stress(effect, null, typical)
     else:
@@ -84,13 +86,13 @@ def _check_constants(effect: MaterialEffect, null: SimpleNamespace, typical: Sim
         expect(stiff, effect, "makes shear, rest_stretch or retardation negative", "keep them above zero")
     repeated = all(same(getattr(again, name), value) for name, value in vars(on).items())
     repeatable(effect, "modify", repeated)
-    quiet, loud = (guarded(effect, "branches", p) for p in (null, typical))
+    quiet, loud = (_moduli_and_shares(effect, p) for p in (null, typical))
     unchanged = [same(getattr(off, name), value) for name, value in vars(before).items()]
     expect(
         all(unchanged) and not any(ratio for ratio, _ in quiet),
         effect,
         "changes the material at its null values",
-        "make modify change nothing and every branch have the ratio 0 there",
+        "make modify change nothing and every branch have the ratio or share 0 there",
     )
     expect(
         len(quiet) == len(loud),
@@ -110,8 +112,13 @@ def _check_constants(effect: MaterialEffect, null: SimpleNamespace, typical: Sim
         not all(kept) or any(ratio for ratio, _ in loud),
         effect,
         "does nothing at its typical values",
-        "write modify, branches, or regions with first_piola",
+        "write modify, branches, fading, or regions with first_piola",
     )
+
+
+def _moduli_and_shares(effect: MaterialEffect, p: SimpleNamespace) -> list[tuple[float, float]]:
+    """Size and time of everything that relaxes."""
+    return [*guarded(effect, "branches", p), *guarded(effect, "fading", p)]
 
 
 def _constants() -> Coefficients:

@@ -9,6 +9,7 @@ from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.residual_slopes import ResidualSlope, SolidSlope
 from hasel_sim.mechanics.state import State, StateSlopes
 from hasel_sim.mechanics.statics import equilibrium, equilibrium_slope
+from hasel_sim.mechanics.strain import times_symmetric
 from hasel_sim.mechanics.system import System
 
 _EQUILIBRIUM_TOLERANCE = 1e-11
@@ -34,25 +35,35 @@ def initial_state(
     state = State(position, still.copy(), still.copy())
     branches = system.solid.branches
     if len(branches):
-        state.branch = np.zeros((len(branches), *system.solid.areas.shape, 3, 1))
         state.green = system.solid.green_stress(system.solid.gradient(position))
+        state.branch = branches.at_start(state.green)
     motion = Motion(position, still, still)
-    right = _residual_slopes(parameters, motion, drive, line, state, load_factor)
+    right = _residual_slopes(parameters, motion, drive, line, None, load_factor)
     moved = equilibrium_slope(line, right) if held_shape is None else np.zeros_like(right)
     slopes = StateSlopes(moved, np.zeros_like(right), np.zeros_like(right))
     if len(branches):
         _branch_slopes(system, state, parameters, slopes)
 
-    line = system.linearise(motion, drive, Memory())
+    memory = memory_at_start(system, state)
+    line = system.linearise(motion, drive, memory)
     state.acceleration = (
-        -line.matrix(0.0, 0.0, 1.0).factorise().solve(system.residual(motion, drive, Memory())[None])[0]
+        -line.matrix(0.0, 0.0, 1.0).factorise().solve(system.residual(motion, drive, memory)[None])[0]
     )
     if parameters:
         motion, line, inertia = start_of_motion(system, state, drive)
         change = line.along(slopes.position, slopes.velocity, slopes.acceleration)
         change += _residual_slopes(parameters, motion, drive, line, state, 1.0)
+        if slopes.branch is not None:
+            change += system.held_to_zero(_forces_of_changed_memory(system, line, slopes.branch))
         slopes.acceleration = -inertia.solve(change)
     return state, slopes
+
+
+def memory_at_start(system: System, state: State) -> Memory:
+    """What the branches carry when a run starts."""
+    if state.branch is None:
+        return Memory()
+    return Memory(system.solid.branches.history(state.branch, state.green, 0.0))
 
 
 def start_of_motion(
@@ -60,7 +71,7 @@ def start_of_motion(
 ) -> tuple[Motion, Linearisation, BandFactors]:
     """The motion with which a run starts, the derivatives there, and the factors of its inertia."""
     motion = Motion(state.position, state.velocity, state.acceleration)
-    line = system.linearise(motion, drive, Memory())
+    line = system.linearise(motion, drive, memory_at_start(system, state))
     return motion, line, line.matrix(0.0, 0.0, 1.0).factorise()
 
 
@@ -81,9 +92,10 @@ def _residual_slopes(
     motion: Motion,
     drive: DriveState,
     line: Linearisation,
-    state: State,
+    state: State | None,
     load_factor: float,
 ) -> np.ndarray:
+    """state: None where the branches have relaxed."""
     out = np.zeros((len(parameters), *motion.position.shape))
     for column, parameter in enumerate(parameters):
         parameter.add(motion, drive, line, state, 0.0, out[column], load_factor)
@@ -98,10 +110,18 @@ def _branch_slopes(
     slopes.branch = np.zeros((len(parameters), *state.branch.shape))
     slopes.green = np.zeros((len(parameters), *state.green.shape))
     for column, parameter in enumerate(parameters):
-        change = solid.gradient(slopes.position[column])
-        slopes.green[column] = solid.green_stress_along(F, change)
+        change = solid.green_stress_along(F, solid.gradient(slopes.position[column]))
+        slopes.green[column], slopes.branch[column] = change, solid.branches.at_start(change)
         if isinstance(parameter, SolidSlope):
             for other, sign in parameter.solids:
-                slopes.green[column] += (
-                    sign / parameter.width * other.green_stress(other.gradient(state.position))
-                )
+                green = other.green_stress(other.gradient(state.position))
+                slopes.green[column] += sign / parameter.width * green
+                slopes.branch[column] += sign / parameter.width * other.branches.at_start(green)
+
+
+def _forces_of_changed_memory(system: System, line: Linearisation, change: np.ndarray) -> np.ndarray:
+    """Nodal forces [columns, nodes, 2, 1] of changes of the branches' stresses [columns, branches, ...]."""
+    out = np.zeros((len(change), *system.nodes.shape, 1))
+    for column, stress in enumerate(change.sum(axis=1)):
+        system.solid.add_force(times_symmetric(line.F, *np.moveaxis(stress, -2, 0)), out[column])
+    return out

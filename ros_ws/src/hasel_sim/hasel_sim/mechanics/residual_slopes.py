@@ -154,8 +154,8 @@ class SolidSlope(_Difference):
             solid.add_force((sign / self.width) * P, out)
 
     @staticmethod
-    def _history(solid: Solid, state: State, at: float | np.ndarray) -> np.ndarray | None:
-        relaxed = len(solid.branches) == 0 or not np.any(at)
+    def _history(solid: Solid, state: State | None, at: float | np.ndarray) -> np.ndarray | None:
+        relaxed = len(solid.branches) == 0 or state is None
         return None if relaxed else solid.branches.history(state.branch, state.green, at)
 
 

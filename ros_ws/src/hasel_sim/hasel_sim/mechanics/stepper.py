@@ -7,6 +7,7 @@ import numpy as np
 from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.banded import BandFactors, BandMatrix
 from hasel_sim.mechanics.generalised_alpha import StepCoefficients
+from hasel_sim.mechanics.initial import memory_at_start
 from hasel_sim.mechanics.linearisation import Linearisation
 from hasel_sim.mechanics.marcher import Drives, Marcher
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
@@ -36,7 +37,8 @@ class Stepper:
     def start(self, state: State, drive: DriveState) -> None:
         """Set off from a first state, with the drive it is in equilibrium with."""
         motion = Motion(state.position, state.velocity, state.acceleration)
-        self.begin(np.zeros_like(state.position), self.system.second_piola(motion, drive, Memory()))
+        stress = self.system.second_piola(motion, drive, memory_at_start(self.system, state))
+        self.begin(np.zeros_like(state.position), stress)
 
     def begin(self, jerk: np.ndarray, stress: np.ndarray) -> None:
         """Go on after a step with this rate of the acceleration [m/s^3] and this second Piola stress [Pa]."""

@@ -5,6 +5,7 @@ Every array has the lanes as its last axis (see `simd.py`) but those that descri
 gradient run 00, 01, 10, 11 (row-major).
 """
 
+import numpy as np
 from numba import njit
 
 from hasel_sim.mechanics.simd import four, load, store, zero
@@ -72,3 +73,9 @@ def second_piola(F, P, S, lane):
         store(S, at, (d * p0 - b * p2) / J)
         store(S, at + lanes, (a * p3 - c * p1) / J)
         store(S, at + 2 * lanes, 0.5 * (d * p1 - b * p3 + a * p2 - c * p0) / J)
+
+
+def times_symmetric(F: np.ndarray, xx: np.ndarray, yy: np.ndarray, xy: np.ndarray) -> np.ndarray:
+    """F S for a symmetric S, [elements, points, 4, 1]."""
+    a, b, c, d = np.moveaxis(F, -2, 0)
+    return np.stack([a * xx + b * xy, a * xy + b * yy, c * xx + d * xy, c * xy + d * yy], axis=-2)
