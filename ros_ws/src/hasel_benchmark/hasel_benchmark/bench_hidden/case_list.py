@@ -60,8 +60,9 @@ def known_effects() -> list[str]:
 
 @cache
 def listed_effects() -> tuple[str, ...]:
-    """Ids of the catalogue that the swimmer can have; a force of the fluid needs a medium, which it has not."""
-    return tuple(effect.id for effect in candidate_effects(load_model("swimmer")))
+    """Ids of the catalogue that can act on the swimmer: it names no medium, and starts straight."""
+    possible = candidate_effects(load_model("swimmer"))
+    return tuple(effect.id for effect in possible if not effect.needs_strained_start)
 
 
 def _of_seed(seed: int, numerics: str, with_unlisted: bool) -> list[Case]:

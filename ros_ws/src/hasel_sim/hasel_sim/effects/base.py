@@ -76,6 +76,8 @@ class Effect:
     """Whether it compares two muscles, and so needs a body with exactly two."""
     needs_medium: ClassVar[bool] = False
     """Whether it is a force of the fluid around the body, and so needs a model that says which fluid that is."""
+    needs_strained_start: ClassVar[bool] = False
+    """Whether it does nothing in runs that a straight body starts at rest, with no load on it."""
     quantity: ClassVar[str] = ""
     """The quantity that must drive the body, such as "voltage"; any where empty."""
     exclusive: ClassVar[str] = ""

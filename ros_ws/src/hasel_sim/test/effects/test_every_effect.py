@@ -18,7 +18,7 @@ from hasel_sim.simulate import simulate
 FOLDERS = [Path(effects.__file__).parent / place for place in ("drive", "material", "force", "observation")]
 FILES = sorted(path for folder in FOLDERS for path in folder.glob("[!_]*.py"))
 ALL = sorted(catalogue())
-INVISIBLE_IN_THE_ANGLE = {"gravity_tilt", "initial_relaxation"}
+INVISIBLE_IN_THE_ANGLE = {"gravity_tilt"} | {n for n in ALL if catalogue()[n].needs_strained_start}
 
 
 def _with_typical(model, *identities):

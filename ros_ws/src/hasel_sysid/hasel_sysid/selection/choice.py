@@ -1,5 +1,6 @@
 """Where to stop, what cannot be told from it, and how probable every set is."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -67,10 +68,11 @@ def _alike(found: Searched, chosen: EffectSet, other: EffectSet, policy: Policy)
     """Whether a set may stand in the chosen one's place: the confidence set of models.
 
     How much runs of unequal strength scatter says how unequally they speak, and is no doubt; that a difference lasts
-    for many frames, which neither set describes, is.
+    for many frames, which neither set describes, is, by as much as the best set lacks.
     """
     more = found.worths[chosen].over(found.worths[other])
-    return more.total <= max(policy.doubt * max(more.by_noise, more.by_frames), _NO_ODDS)
+    lasting = math.sqrt(found.likelihood.lacking) * more.by_frames
+    return more.total <= max(policy.doubt * max(more.by_noise, lasting), _NO_ODDS)
 
 
 def _groups(found: Searched, chosen: EffectSet, alike: Sequence[EffectSet]) -> tuple[tuple[str, ...], ...]:

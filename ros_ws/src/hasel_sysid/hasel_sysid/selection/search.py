@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
+import numpy as np
+
 from hasel_sysid.selection.likelihood import Likelihood
 from hasel_sysid.selection.missing import Missing, missing
 from hasel_sysid.selection.policy import Policy
@@ -26,14 +28,10 @@ def search(
     state = _Search(sets, policy, progress, {f.effects: f for f in (sets.baseline(), *begun)})
     state.look_beyond(NOTHING, None)
     state.fit(state.singles(), 1, even_late=True)
-    while (found := state.judged()).last.chance < policy.level:
-        if state.fit(state.better(state.additions([NOTHING])), policy.fits):
-            continue
-        state.fit(state.singles(), policy.fits - sum(map(bool, plausible(state.known))))
-        beam = sorted(plausible(state.known), key=state.value)[-policy.width :]
-        for one in beam:
-            state.look_beyond_if_anything_is_missing(one)
-        if not state.fit(state.better(state.around(beam)), policy.fits):
+    while True:
+        found = state.judged()
+        done = found.last.chance >= policy.level or not state.extended()
+        if done and not state.looked_closer(found.best):
             break
     state.fit(state.possible(smaller(found.known, found.best)), policy.most_effects)
     state.fit(state.rivals(found), policy.fits)
@@ -50,6 +48,7 @@ class _Search:
     known: dict[EffectSet, FittedSet]
     prospects: dict[EffectSet, dict[str, Prospect]] = field(default_factory=dict)
     tried: set[EffectSet] = field(default_factory=set)
+    closely: set[EffectSet] = field(default_factory=lambda: {NOTHING})
     threshold: float = 0.0
 
     def __post_init__(self) -> None:
@@ -61,15 +60,20 @@ class _Search:
 
         Noise alone says whether anything is missing. As long as something is, sets differ by far more than noise, and
         most where it is quietest: there a likelihood of noise would compare them by a few fast frames only. What the
-        best one lacks counts as an error of its own, so that then it is mostly the squares that are compared.
+        best one lacks counts as an error of its own, so that then it is the squares that are compared; the more that
+        is beyond the declared discrepancy, the less is known of it, not even that it is slow.
         """
         noise = self.sets.noise(list(self.known.values()))
         discrepancy = self.policy.discrepancy * self.sets.swing
         best = min((self.known[s] for s in plausible(self.known)), key=lambda f: f.squares)
         left = best.squares / max(len(best.residual) - best.jacobian.shape[1], 1)
-        misfit = max(0.0, left - noise.standard_deviation**2 - discrepancy**2)
+        beyond_noise = left - noise.standard_deviation**2
+        declared = (
+            discrepancy * min(1.0, discrepancy / math.sqrt(beyond_noise)) if beyond_noise > 0 else discrepancy
+        )
+        misfit = max(0.0, beyond_noise - declared**2)
         self.noise_alone = Likelihood(noise, self.sets.runs, discrepancy, self.sets.slack)
-        self.likelihood = Likelihood(noise, self.sets.runs, discrepancy, self.sets.slack, misfit)
+        self.likelihood = Likelihood(noise, self.sets.runs, declared, self.sets.slack, misfit)
         self.whitened = {effects: self.likelihood.whitened(f) for effects, f in self.known.items()}
 
     def say(self, text: str, done: float) -> None:
@@ -96,6 +100,35 @@ class _Search:
             self.policy.level,
             self.tested,
         )
+
+    def extended(self) -> bool:
+        """Whether anything promised more than the best set and was fitted."""
+        if self.fit(self.better(self.additions([NOTHING])), self.policy.fits):
+            return True
+        self.fit(self.singles(), self.policy.fits - sum(map(bool, plausible(self.known))))
+        beam = sorted(plausible(self.known), key=self.value)[-self.policy.width :]
+        for one in beam:
+            self.look_beyond_if_anything_is_missing(one)
+        return self.fit(self.better(self.around(beam)), self.policy.fits) > 0
+
+    def looked_closer(self, best: EffectSet) -> bool:
+        """Whether a set that leaves more than noise was looked beyond only now, and with every effect.
+
+        Beside the baseline effects look otherwise: what holds a body up also puts it out of step there.
+        """
+        known = best in self.closely or len(best) >= self.policy.most_effects
+        if known or self.sets.out_of_time() or not self.leaves_what_matters(best):
+            return False
+        self.closely.add(best)
+        self.look_beyond(best, None)
+        return True
+
+    def leaves_what_matters(self, effects: EffectSet) -> bool:
+        """Whether more of the squares than is ever worth an effect is beyond what noise explains."""
+        fitted = self.noise_alone.whitened(self.known[effects])
+        squares = float(fitted.residual @ fitted.residual)
+        free = len(fitted.residual) - fitted.basis.shape[1] - len(np.unique(fitted.runs))
+        return squares - free > self.policy.matters * squares
 
     def tested(self, effects: EffectSet) -> Missing:
         """Whether anything is missing from a known set."""

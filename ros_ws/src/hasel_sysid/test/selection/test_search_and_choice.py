@@ -230,3 +230,34 @@ def test_while_no_set_describes_the_runs_the_differences_count_for_less():
     one, other = (found.whitened[frozenset(name)].logarithm for name in "ab")
     assert abs(one - other) > np.log(20.0)
     assert len(choice.alike) > 1 or len(choice.chosen) > 1
+
+
+class _LookOtherwiseAtFirst(LinearSets):
+    """Beside the baseline, effects look like something else: a model that is out of step shows them out of step."""
+
+    def _prospect(self, of, name):
+        found = super()._prospect(of, name)
+        if of.effects or name == "a":
+            return found
+        other = self._centred(smooth_series(np.random.default_rng(ord(name)), self.runs)[:, None])
+        return replace(found, jacobian=np.column_stack([of.jacobian, other]), looks=other)
+
+
+def test_what_is_left_is_looked_at_from_where_it_is_left():
+    """Beside the baseline the second one looks like nothing that the first one leaves; beside the first one it does."""
+    for seed in range(3):
+        sets = _LookOtherwiseAtFirst(made_up(seed), {"a": 0.3, "d": 0.05}, WHITE, seed)
+        assert chosen(sets)[0] == "ad"
+
+
+def test_where_a_set_describes_the_runs_what_dies_away_is_told_apart():
+    """In a single run that dies away every difference lasts for many frames, and none of it is doubt."""
+    runs = run_numbers(1, 480)
+    time = np.arange(480) / 120.0
+    series = {name: np.exp(-time / 0.3) * np.cos(turns * time) for name, turns in (("a", 25.0), ("b", 27.0))}
+    sets = LinearSets(series, {"a": 1.0}, NoiseModel(0.003**2, 0.0, 0.5), 1, runs=runs)
+    known = tuple(sets.fit(frozenset(name), sets.baseline(), ()) for name in "ab")
+    found = search(sets, POLICY, begun=known)
+    worths = [found.worths[frozenset(name)].total for name in "ab"]
+    assert worths[0] - worths[1] > 10
+    assert not choose(found, POLICY).groups

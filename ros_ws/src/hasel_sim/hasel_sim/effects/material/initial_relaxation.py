@@ -40,6 +40,7 @@ class InitialRelaxation(MaterialEffect):
     signature = "The body sinks towards its load while it swings and after; in every run anew, and not under the drive."
     confused_with = ("viscoelastic_creep", "slow_creep", "gravity_tilt")
     separated_by = "Hold the body in its starting shape for a minute before it is let go."
+    needs_strained_start = True
     citation = "Ferry, Viscoelastic Properties of Polymers, 3rd ed. (1980), chapter 3"
 
     def fading(self, p: SimpleNamespace) -> list[tuple[float, float]]:
