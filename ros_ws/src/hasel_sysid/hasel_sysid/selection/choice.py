@@ -1,6 +1,5 @@
 """Where to stop, what cannot be told from it, and how probable every set is."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -11,9 +10,11 @@ from scipy.optimize import linear_sum_assignment
 from hasel_sysid.selection.policy import Policy
 from hasel_sysid.selection.searched import Searched, likeness, plausible
 from hasel_sysid.selection.sets import NOTHING, EffectSet
+from hasel_sysid.selection.squares import surely_larger
 from hasel_sysid.selection.worth import Worth
 
 _RESAMPLED = 2000
+_MOST = 0.5
 _NO_ODDS = float(np.log(20.0))
 """Sets whose odds are below 20 to 1 are not told apart, however alike they are."""
 
@@ -67,12 +68,14 @@ def _worth_as_much(found: Searched, effects: EffectSet, best: Worth, policy: Pol
 def _alike(found: Searched, chosen: EffectSet, other: EffectSet, policy: Policy) -> bool:
     """Whether a set may stand in the chosen one's place: the confidence set of models.
 
-    How much runs of unequal strength scatter says how unequally they speak, and is no doubt; that a difference lasts
-    for many frames, which neither set describes, is, by as much as the best set lacks.
+    How much runs of unequal strength scatter says how unequally they speak, and is no doubt. Where most of what the
+    best set leaves is neither noise nor declared, only the squares speak, and frames that share an error speak as one.
     """
+    if found.likelihood.lacking > _MOST:
+        error, least = found.known[other].residual, found.known[chosen].residual
+        return surely_larger(error, least, found.likelihood.runs) <= policy.doubt
     more = found.worths[chosen].over(found.worths[other])
-    lasting = math.sqrt(found.likelihood.lacking) * more.by_frames
-    return more.total <= max(policy.doubt * max(more.by_noise, lasting), _NO_ODDS)
+    return more.total <= max(policy.doubt * more.by_noise, _NO_ODDS)
 
 
 def _groups(found: Searched, chosen: EffectSet, alike: Sequence[EffectSet]) -> tuple[tuple[str, ...], ...]:

@@ -5,15 +5,11 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
-import numpy as np
-
-from hasel_sysid.selection.likelihood import Likelihood
-from hasel_sysid.selection.missing import Missing, missing
+from hasel_sysid.selection.knowledge import Knowledge
 from hasel_sysid.selection.policy import Policy
 from hasel_sysid.selection.proposals import Proposal, additions, exchanges, pairs, smaller
 from hasel_sysid.selection.searched import Searched, likeness, plausible
-from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect, Sets, name_of
-from hasel_sysid.selection.worth import worth
+from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Sets, name_of
 
 Progress = Callable[[str, float], None]
 
@@ -25,7 +21,8 @@ def search(
 
     begun: further sets that are fitted already.
     """
-    state = _Search(sets, policy, progress, {f.effects: f for f in (sets.baseline(), *begun)})
+    known = {f.effects: f for f in (sets.baseline(), *begun)}
+    state = _Search(sets, policy, known, progress=progress)
     state.look_beyond(NOTHING, None)
     state.fit(state.singles(), 1, even_late=True)
     while True:
@@ -41,65 +38,20 @@ def search(
 
 
 @dataclass
-class _Search:
-    sets: Sets
-    policy: Policy
-    progress: Progress | None
-    known: dict[EffectSet, FittedSet]
-    prospects: dict[EffectSet, dict[str, Prospect]] = field(default_factory=dict)
+class _Search(Knowledge):
+    """tried: every set that was fitted or begun; closely: those that were looked beyond with every effect."""
+
+    progress: Progress | None = None
     tried: set[EffectSet] = field(default_factory=set)
     closely: set[EffectSet] = field(default_factory=lambda: {NOTHING})
-    threshold: float = 0.0
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         self.tried |= set(self.known)
-        self.use_noise()
-
-    def use_noise(self) -> None:
-        """Judge by what the best fits so far tell of the noise, and compare by what the best one lacks as well.
-
-        Noise alone says whether anything is missing. As long as something is, sets differ by far more than noise, and
-        most where it is quietest: there a likelihood of noise would compare them by a few fast frames only. What the
-        best one lacks counts as an error of its own, so that then it is the squares that are compared; the more that
-        is beyond the declared discrepancy, the less is known of it, not even that it is slow.
-        """
-        noise = self.sets.noise(list(self.known.values()))
-        discrepancy = self.policy.discrepancy * self.sets.swing
-        best = min((self.known[s] for s in plausible(self.known)), key=lambda f: f.squares)
-        left = best.squares / max(len(best.residual) - best.jacobian.shape[1], 1)
-        beyond_noise = left - noise.standard_deviation**2
-        declared = (
-            discrepancy * min(1.0, discrepancy / math.sqrt(beyond_noise)) if beyond_noise > 0 else discrepancy
-        )
-        misfit = max(0.0, beyond_noise - declared**2)
-        self.noise_alone = Likelihood(noise, self.sets.runs, discrepancy, self.sets.slack)
-        self.likelihood = Likelihood(noise, self.sets.runs, declared, self.sets.slack, misfit)
-        self.whitened = {effects: self.likelihood.whitened(f) for effects, f in self.known.items()}
 
     def say(self, text: str, done: float) -> None:
         if self.progress:
             self.progress(text, done)
-
-    def judged(self) -> Searched:
-        """All known sets by the noise as it is known now."""
-        self.use_noise()
-        worths = {s: worth(w, self.policy.prior_runs) for s, w in self.whitened.items()}
-        best = max(plausible(self.known), key=lambda s: worths[s].total)
-        first = self.tested(NOTHING)
-        last = self.tested(best) if best else first
-        self.threshold = last.threshold
-        base = dict(self.prospects[NOTHING])
-        return Searched(
-            dict(self.known),
-            self.likelihood,
-            dict(self.whitened),
-            worths,
-            first,
-            last,
-            base,
-            self.policy.level,
-            self.tested,
-        )
 
     def extended(self) -> bool:
         """Whether anything promised more than the best set and was fitted."""
@@ -122,31 +74,6 @@ class _Search:
         self.closely.add(best)
         self.look_beyond(best, None)
         return True
-
-    def leaves_what_matters(self, effects: EffectSet) -> bool:
-        """Whether more of the squares than is ever worth an effect is beyond what noise explains."""
-        fitted = self.noise_alone.whitened(self.known[effects])
-        squares = float(fitted.residual @ fitted.residual)
-        free = len(fitted.residual) - fitted.basis.shape[1] - len(np.unique(fitted.runs))
-        return squares - free > self.policy.matters * squares
-
-    def tested(self, effects: EffectSet) -> Missing:
-        """Whether anything is missing from a known set."""
-        fitted = self.noise_alone.whitened(self.known[effects])
-        return missing(fitted, self.looks(effects), self.noise_alone, self.policy.level)
-
-    def looks(self, beside: EffectSet) -> dict:
-        """What the effects that are not in a set look like: there, or at least beside the baseline."""
-        seen = {**self.prospects[NOTHING], **self.prospects.get(beside, {})}
-        return {
-            effect: prospect.looks
-            for effect, prospect in seen.items()
-            if effect not in beside and self.sets.compatible(beside | {effect})
-        }
-
-    def value(self, effects: EffectSet) -> float:
-        """Of a known set: likelier by what noise alone may gain, for every effect more."""
-        return self.whitened[effects].logarithm - self.threshold * len(effects)
 
     def look_beyond(self, effects: EffectSet, wanted: list[str] | None) -> None:
         """Learn what one more effect could do to a set."""
@@ -203,7 +130,7 @@ class _Search:
                     continue
                 self.tried.add(effects)
                 self.say(f"fitting {name_of(effects)}", 0.9)
-                self._keep(self.sets.exchanged(self.known[best], gone, self.known[frozenset({effect})]))
+                self.keep(self.sets.exchanged(self.known[best], gone, self.known[frozenset({effect})]))
 
     @property
     def _reach(self) -> float:
@@ -245,8 +172,8 @@ class _Search:
                 continue
             self.tried.add(proposal.effects)
             self.say(f"fitting {name_of(proposal.effects)}", min(0.9, 0.1 * len(self.tried)))
-            self._keep(self.sets.fit(proposal.effects, proposal.of, proposal.added))
-            self._keep(self._again(proposal.effects))
+            self.keep(self.sets.fit(proposal.effects, proposal.of, proposal.added))
+            self.keep(self._again(proposal.effects))
             count += 1
         return count
 
@@ -261,12 +188,3 @@ class _Search:
         (new,) = effects - best
         prospect = {**self.prospects[NOTHING], **self.prospects.get(best, {})}.get(new)
         return None if prospect is None else self.sets.fit(effects, self.known[best], (prospect,))
-
-    def _keep(self, fitted: FittedSet | None) -> None:
-        """Of two fits of a set the better one."""
-        if fitted is None:
-            return
-        known = self.known.get(fitted.effects)
-        if known is None or fitted.squares < known.squares:
-            self.known[fitted.effects] = fitted
-            self.whitened[fitted.effects] = self.likelihood.whitened(fitted)

@@ -34,35 +34,21 @@ class Worth:
         count = len(by_run)
         scatter = np.sqrt(count) * by_run.std(ddof=1) if self.of_runs and count >= _FEWEST_RUNS else 0.0
         by_noise = float(np.linalg.norm(self.residual - other.residual))
-        by_frame = 0.5 * (other.residual**2 - self.residual**2)
-        return Gain(float(by_run.sum()), float(scatter), by_noise, _error_of_sum(by_frame))
+        return Gain(float(by_run.sum()), float(scatter), by_noise)
 
 
 @dataclass(frozen=True)
 class Gain:
-    """scatter: standard error by how the runs differ; by_noise: that of a log-likelihood ratio (Vuong 1989); by_frames:
-    the same as the frames show it, which what no set describes makes larger, since it lasts for many frames.
-    """
+    """scatter: standard error by how the runs differ; by_noise: that of a log-likelihood ratio (Vuong 1989)."""
 
     total: float
     scatter: float
     by_noise: float
-    by_frames: float
 
     @property
     def standard_error(self) -> float:
         """The larger: what noise explains, and what runs that disagree show."""
         return max(self.scatter, self.by_noise)
-
-
-def _error_of_sum(series: np.ndarray) -> float:
-    """Standard error of the sum of a series whose memory fades as an autoregression's of first order does."""
-    centred = series - series.mean()
-    power = float(centred @ centred)
-    if power == 0.0:
-        return 0.0
-    memory = float(np.clip(centred[1:] @ centred[:-1] / power, 0.0, 1.0 - 1.0 / len(series)))
-    return float(np.sqrt(power * (1 + memory) / (1 - memory)))
 
 
 def worth(fitted: Whitened, prior_runs: float) -> Worth:

@@ -64,19 +64,3 @@ def test_the_standard_error_of_a_gain_is_how_it_varies():
     scatter = np.std([gain.total for gain in gains])
     assert np.mean([gain.by_noise for gain in gains]) == pytest.approx(scatter, rel=0.25)
     assert np.mean([gain.scatter for gain in gains]) == pytest.approx(scatter, rel=0.35)
-
-
-def test_what_no_set_describes_makes_the_doubt_larger():
-    """The frames' own standard error is that of a series with a memory; the noise's knows nothing of it."""
-    generator, ratios, errors = np.random.default_rng(8), [], []
-    for _ in range(300):
-        slow = np.zeros((2, 61))
-        for frame in range(60):
-            slow[:, frame + 1] = 0.8 * slow[:, frame] + generator.standard_normal(2)
-        one, other = (worth(Whitened(series, np.zeros((60, 0)), RUNS), PRIOR_RUNS) for series in slow[:, 1:])
-        gain = one.over(other)
-        ratios.append(gain.total)
-        errors.append((gain.by_frames, gain.by_noise))
-    by_frames, by_noise = np.mean(errors, axis=0)
-    assert by_frames == pytest.approx(np.std(ratios), rel=0.25)
-    assert by_noise < 0.6 * by_frames
