@@ -118,19 +118,26 @@ class _Search(Knowledge):
         return self.ranked(self.additions(parts), reach)
 
     def exchange(self, best: EffectSet) -> None:
-        """Fit a set with what looks most like one of its effects, and alone does hardly less, in that one's place."""
+        """Fit a set with what looks most like one of its effects, and does not do far less alone, in its place."""
         alone = {next(iter(s)): w.logarithm for s, w in self.whitened.items() if len(s) == 1}
         for gone in sorted(best) if len(best) > 1 else ():
             like_it = partial(likeness, self.likelihood, self.prospects[NOTHING], gone)
             least = alone.get(gone, -math.inf) - self._reach
-            others = [e for e in alone if e not in best and alone[e] >= least]
+            others = [e for e in self.prospects[NOTHING] if e not in best and alone.get(e, math.inf) >= least]
             for effect in sorted(others, key=like_it, reverse=True)[: self.policy.width]:
                 effects = best - {gone} | {effect}
                 if effects in self.tried or not self.sets.compatible(effects) or self.sets.out_of_time():
                     continue
                 self.tried.add(effects)
                 self.say(f"fitting {name_of(effects)}", 0.9)
-                self.keep(self.sets.exchanged(self.known[best], gone, self.known[frozenset({effect})]))
+                self.keep(self._in_place_of(gone, best, effect))
+
+    def _in_place_of(self, gone: str, best: EffectSet, effect: str) -> FittedSet | None:
+        """From where the fit of the effect alone has led, or its trial beside the baseline."""
+        of, alone = self.known[best], frozenset({effect})
+        if alone in self.known:
+            return self.sets.exchanged(of, gone, self.known[alone])
+        return self.sets.fit(best - {gone} | alone, of, (self.prospects[NOTHING][effect],))
 
     @property
     def _reach(self) -> float:

@@ -81,12 +81,13 @@ def test_what_stands_for_one_of_two_effects_is_its_group():
         assert choice.groups == (("a", "b"),)
 
 
-def test_what_is_known_alone_and_looks_like_a_chosen_one_is_fitted_in_its_place():
+@pytest.mark.parametrize("known", [("ad", "a", "b"), ("ad",)], ids=["known alone", "never fitted"])
+def test_what_looks_like_a_chosen_one_is_fitted_in_its_place(known):
     """A search that begins with the right set, and so looks no further, still learns what else may stand there."""
     series = made_up(1)
     series["b"] = series["a"] + 0.01 * series["b"]
-    sets = LinearSets(series, {"a": 0.1, "d": 0.1}, WHITE, 1)
-    begun = tuple(sets.fit(frozenset(one), sets.baseline(), ()) for one in ("ad", "a", "b"))
+    sets = LinearSets(series, {"a": 0.1, "d": 0.3}, WHITE, 1)
+    begun = tuple(sets.fit(frozenset(one), sets.baseline(), ()) for one in known)
     choice = choose(search(sets, POLICY, begun=begun), POLICY)
     assert choice.groups == (("a", "b"),)
 
