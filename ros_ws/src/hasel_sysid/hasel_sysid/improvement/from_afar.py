@@ -40,7 +40,7 @@ def from_afar(
             rivals = [one.fit.model for one in begun]
             continue
         report = part(f"opening {number + 1} of {len(every)}", 0.15, 0.25)
-        found = search(sets, policy.wider(), report, begun)
+        found = search(sets, policy.wider(), report, begun, stand_ins=False)
         rivals = _handed_on(found, choose(found, policy).chosen, policy)
     return _known(SimulatedSets(problem, fit, effects), rivals, partial(_fitted, problem))
 

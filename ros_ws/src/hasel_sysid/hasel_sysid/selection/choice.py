@@ -69,9 +69,9 @@ def _alike(found: Searched, chosen: EffectSet, other: EffectSet, policy: Policy)
     """Whether a set may stand in the chosen one's place: the confidence set of models.
 
     How much runs of unequal strength scatter says how unequally they speak, and is no doubt. Where most of what the
-    best set leaves is neither noise nor declared, only the squares speak, and frames that share an error speak as one.
+    best set leaves is not noise, only the squares speak, and frames that share an error speak as one.
     """
-    if found.likelihood.lacking > _MOST:
+    if found.beyond_noise > _MOST:
         error, least = found.known[other].residual, found.known[chosen].residual
         return surely_larger(error, least, found.likelihood.runs) <= policy.doubt
     more = found.worths[chosen].over(found.worths[other])

@@ -41,6 +41,7 @@ class Knowledge:
         best = min((self.known[s] for s in plausible(self.known)), key=lambda f: f.squares)
         left = best.squares / max(len(best.residual) - best.jacobian.shape[1], 1)
         lacking = math.sqrt(max(0.0, left - noise.standard_deviation**2))
+        self.beyond_noise = lacking**2 / left if left > 0 else 0.0
         declared = discrepancy * min(1.0, discrepancy / lacking) if lacking else discrepancy
         misfit = max(0.0, lacking**2 - declared**2)
         self.noise_alone = Likelihood(noise, self.sets.runs, discrepancy, self.sets.slack)
@@ -66,6 +67,7 @@ class Knowledge:
             base,
             self.policy.level,
             self.tested,
+            self.beyond_noise,
         )
 
     def tested(self, effects: EffectSet) -> Missing:

@@ -47,12 +47,6 @@ class Likelihood:
         self.noise, self.runs, self.discrepancy, self.misfit = noise, runs, discrepancy, misfit
         self._slack = np.zeros((len(runs), 0)) if slack is None else slack
 
-    @property
-    def lacking(self) -> float:
-        """Share of the variance of a frame that is still missing from the models that are compared."""
-        every = self.misfit + self.noise.standard_deviation**2 + self.discrepancy**2
-        return self.misfit / every if every > 0 else 0.0
-
     def whiten(self, columns: np.ndarray) -> np.ndarray:
         """Columns [frames] or [frames, n] in units of independent noise of variance one, offsets taken out."""
         many = columns.reshape(len(columns), -1)

@@ -15,11 +15,15 @@ Progress = Callable[[str, float], None]
 
 
 def search(
-    sets: Sets, policy: Policy, progress: Progress | None = None, begun: tuple[FittedSet, ...] = ()
+    sets: Sets,
+    policy: Policy,
+    progress: Progress | None = None,
+    begun: tuple[FittedSet, ...] = (),
+    stand_ins: bool = True,
 ) -> Searched:
     """Extend the best sets as long as anything is missing from the best one and something promises to supply it.
 
-    begun: further sets that are fitted already.
+    begun: further sets that are fitted already; stand_ins: also fit what looks like a chosen effect in its place.
     """
     known = {f.effects: f for f in (sets.baseline(), *begun)}
     state = _Search(sets, policy, known, progress=progress)
@@ -32,7 +36,7 @@ def search(
             break
     state.fit(state.possible(smaller(found.known, found.best)), policy.most_effects)
     state.fit(state.rivals(found), policy.fits)
-    for one in state.near_the_best(found):
+    for one in state.near_the_best(found) if stand_ins else ():
         state.exchange(one)
     return state.judged()
 
