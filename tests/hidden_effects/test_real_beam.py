@@ -79,10 +79,19 @@ def test_stiffness_is_a_wrong_constant_or_creep(found):
 
 
 def test_error_falls_on_the_run_that_was_not_fitted(found):
-    """Four fifths of the elastic model's error are gone on run b too."""
+    """Forty-nine fiftieths of the elastic model's error are gone on run b too."""
     first, last = found["stages"][0], found["stages"][-1]
-    assert last["mae_fit"] < 0.2 * first["mae_fit"]
-    assert last["mae_validation"] < 0.2 * first["mae_validation"]
+    assert last["mae_fit"] < 0.02 * first["mae_fit"]
+    assert last["mae_validation"] < 0.02 * first["mae_validation"]
+
+
+@pytest.mark.parametrize("body", ["found", "loaded"])
+def test_it_was_bent_only_just_before(body, request):
+    """After it was let go it sinks for a second, with and without the load: stress of the start that relaxes."""
+    stage = request.getfixturevalue(body)["stages"][-1]
+    value = {name: entry["value"] for name, entry in stage["parameters"].items()}
+    assert 0.02 < value["initial_relaxation.share"] < 0.10
+    assert 0.4 < value["initial_relaxation.relaxation_time"] < 1.5
 
 
 @pytest.fixture(scope="module")
@@ -93,12 +102,11 @@ def loaded(pool):
 
 
 def test_a_load_at_the_tip_is_named_or_stands_for_what_is(loaded):
-    """One swing tells stiffness and mass by their ratio only; with the damping, the unseen run is met to a tenth."""
+    """One swing tells stiffness and mass by their ratio only; with the damping, the unseen run is met to 0.003."""
     named = set(loaded["verdict"]["missing"])
     groups = [set(group) for group in loaded["indistinguishable"] if set(group) & named]
     assert "payload" in set().union(named, *groups)
-    first, last = loaded["stages"][0], loaded["stages"][-1]
-    assert last["mae_validation"] < 0.11 * first["mae_validation"]
+    assert loaded["stages"][-1]["mae_validation"] < 0.003
 
 
 def test_the_loaded_beam_is_not_called_explained(loaded):
