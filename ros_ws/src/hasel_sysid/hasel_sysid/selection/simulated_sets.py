@@ -10,15 +10,13 @@ from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis.candidates import Start, decade_starts, resized, starts
 from hasel_sysid.diagnosis.context import on_own_bound
-from hasel_sysid.diagnosis.learned_residual import regressors, unexplained_by
 from hasel_sysid.diagnosis.trial import Trial, Trials, nearer
 from hasel_sysid.estimation import FitResult, fit_least_squares
 from hasel_sysid.estimation.least_squares import finished
-from hasel_sysid.noise import NoiseModel, estimate_noise
-from hasel_sysid.noise_sources.above_the_band import noise_above_the_band
-from hasel_sysid.noise_sources.between_periods import noise_between_periods
+from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import Problem
 from hasel_sysid.projection import orthonormal
+from hasel_sysid.selection.noise_bound import bounded_noise
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect
 from hasel_sysid.selection.trial_prospects import Rank, best_of_each, looks_of, prospect_of, room
 
@@ -94,18 +92,8 @@ class SimulatedSets:
         return len(named) == len(set(named))
 
     def noise(self, known: Collection[FittedSet]) -> NoiseModel:
-        """As measured; else as slow as it looks beside the best of these fits, and no louder than any bound."""
-        if self.problem.measured_noise is not None:
-            return self.problem.measured_noise
-        best = min((fitted.fit.evaluation for fitted in known), key=lambda e: e.sum_of_squares)
-        columns = np.column_stack([best.jacobian, regressors(best)])
-        looks = estimate_noise(
-            unexplained_by(columns, best.residual), best.runs, columns, "what the best set leaves"
-        )
-        others = [noise_between_periods(best), noise_above_the_band(best)]
-        bounds = [b.standard_deviation for b in others if b] + [looks.standard_deviation]
-        share = (min(bounds) / looks.standard_deviation) ** 2
-        return replace(looks, white=share * looks.white, coloured=share * looks.coloured, upper_bound=True)
+        """As measured, or as these fits bound it."""
+        return self.problem.measured_noise or bounded_noise([fitted.fit.evaluation for fitted in known])
 
     def out_of_time(self) -> bool:
         """Whether the problem's time is over."""
