@@ -10,7 +10,7 @@ from scipy.optimize import linear_sum_assignment
 from hasel_sysid.selection.policy import Policy
 from hasel_sysid.selection.searched import Searched, likeness, plausible
 from hasel_sysid.selection.sets import NOTHING, EffectSet
-from hasel_sysid.selection.squares import surely_larger
+from hasel_sysid.selection.squares import log_squares, surely_larger
 from hasel_sysid.selection.worth import Worth
 
 _RESAMPLED = 2000
@@ -44,7 +44,9 @@ def choose(found: Searched, policy: Policy) -> Choice:
     """
     chosen = NOTHING if found.first.chance >= policy.level else _smallest(found, policy)
     alike = [s for s in plausible(found.known) if len(s) == len(chosen) and _alike(found, chosen, s, policy)]
-    return Choice(chosen, tuple(alike), weights(found), _path(found, chosen), _groups(found, chosen, alike))
+    return Choice(
+        chosen, tuple(alike), weights(found, chosen), _path(found, chosen), _groups(found, chosen, alike)
+    )
 
 
 def _smallest(found: Searched, policy: Policy) -> EffectSet:
@@ -91,12 +93,24 @@ def _groups(found: Searched, chosen: EffectSet, alike: Sequence[EffectSet]) -> t
     return tuple(tuple(sorted(group)) for group in groups.values() if len(group) > 1)
 
 
-def weights(found: Searched) -> dict[EffectSet, float]:
-    """Of every plausible set: exp(worth), averaged over resampled runs (pseudo-BMA+; Yao et al. 2018)."""
+def weights(found: Searched, chosen: EffectSet) -> dict[EffectSet, float]:
+    """Of every plausible set: exp(worth), averaged over resampled runs (pseudo-BMA+; Yao et al. 2018).
+
+    Where most of what the best set leaves is not noise: how often its squares would be the least of those that are no
+    larger than the chosen one.
+    """
     every = plausible(found.known)
+    generator = np.random.default_rng(3)
+    if found.beyond_noise > _MOST:
+        every = [s for s in every if len(s) <= len(chosen)]
+        sizes = [log_squares(found.known[s].residual, found.likelihood.runs) for s in every]
+        logarithms, errors = np.array(sizes).T
+        drawn = logarithms + errors * generator.standard_normal((_RESAMPLED, len(every)))
+        shares = np.bincount(drawn.argmin(axis=1), minlength=len(every)) / _RESAMPLED
+        return dict(zip(every, map(float, shares), strict=True))
     densities = np.array([found.worths[s].densities for s in every])
     count = densities.shape[1]
-    share = np.random.default_rng(3).dirichlet(np.ones(count), _RESAMPLED)
+    share = generator.dirichlet(np.ones(count), _RESAMPLED)
     scores = count * densities @ share.T
     scores -= scores.max(axis=0)
     weight = np.exp(scores)

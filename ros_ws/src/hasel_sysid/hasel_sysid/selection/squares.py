@@ -6,20 +6,21 @@ import numpy as np
 
 
 def surely_larger(error: np.ndarray, than: np.ndarray, runs: np.ndarray) -> float:
-    """By how many standard errors the logarithm of a sum of squares is the larger; errors and runs: [frames].
+    """By how many standard errors the logarithm of a sum of squares is the larger; errors and runs: [frames]."""
+    (one, its_error), (other, others_error) = (log_squares(e, runs) for e in (error, than))
+    return 0.0 if one == other else (one - other) / math.hypot(its_error, others_error)
+
+
+def log_squares(error: np.ndarray, runs: np.ndarray) -> tuple[float, float]:
+    """Logarithm of a sum of squares, and its standard error.
 
     A sum of d independent squares has a relative variance of 2 / d; of a series with the memory m of an autoregression
     of first order, n (1 - m^2) / (1 + m^2) squares count as independent (Bartlett 1946).
     """
-    squares, others = float(error @ error), float(than @ than)
-    if squares <= 0.0 or others <= 0.0:
-        return math.inf if squares > others else 0.0
-    variance = 2 / _independent(error, runs) + 2 / _independent(than, runs)
-    return math.log(squares / others) / math.sqrt(variance)
-
-
-def _independent(series: np.ndarray, runs: np.ndarray) -> float:
+    squares = float(error @ error)
+    if squares == 0.0:
+        return -math.inf, 1.0
     beside = runs[1:] == runs[:-1]
-    memory = float(series[1:][beside] @ series[:-1][beside] / (series @ series))
-    memory = min(abs(memory), 1 - 1 / len(series))
-    return len(series) * (1 - memory**2) / (1 + memory**2)
+    memory = abs(float(error[1:][beside] @ error[:-1][beside])) / squares
+    memory = min(memory, 1 - 1 / len(error))
+    return math.log(squares), math.sqrt(2 * (1 + memory**2) / (len(error) * (1 - memory**2)))

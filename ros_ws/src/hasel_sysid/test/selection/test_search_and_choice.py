@@ -233,6 +233,21 @@ def test_while_no_set_describes_the_runs_the_differences_count_for_less():
     assert len(choice.alike) > 1 or len(choice.chosen) > 1
 
 
+def test_what_is_left_beside_hardly_any_noise_makes_no_certainty():
+    """Two laws that leave the same, to what neither describes, are a group, and neither has all of the weight."""
+    stranger = 0.02 * np.random.default_rng(99).standard_normal(len(run_numbers()))
+    series = made_up(5)
+    series["b"] = series["a"] + 0.02 * series["b"]
+    quiet = NoiseModel(1e-4**2, 0.0, 0.5)
+    name, choice, found = chosen(LinearSets(series, {"a": 0.3}, quiet, 5, stranger=stranger))
+    one, other = (found.whitened[frozenset(name)].logarithm for name in "ab")
+    assert abs(one - other) > np.log(20.0)
+    assert name in "ab"
+    assert choice.groups == (("a", "b"),)
+    assert 0.02 < choice.weight_of("a") < 0.98
+    assert choice.weight_of("a") + choice.weight_of("b") > 0.95
+
+
 class _LookOtherwiseAtFirst(LinearSets):
     """Beside the baseline, effects look like something else: a model that is out of step shows them out of step."""
 
