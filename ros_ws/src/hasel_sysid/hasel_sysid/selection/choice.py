@@ -15,6 +15,7 @@ from hasel_sysid.selection.worth import Worth
 
 _RESAMPLED = 2000
 _MOST = 0.5
+"""Share of what the best set leaves that noise does not explain, from which on noise does not judge."""
 _NO_ODDS = float(np.log(20.0))
 """Sets whose odds are below 20 to 1 are not told apart, however alike they are."""
 
