@@ -31,6 +31,7 @@ _CAUGHT_UP = (
     " end - Math.max(...rows.voltage.filter(r => r[1] || r[2]).map(r => r[0])) > 2.2)"
     "(live.rows, live.rows.voltage.at(-1)[0])"
 )
+_STOPPED_ITSELF = "document.body.innerText.includes('telemetry ceased')"
 _TOO_BUSY = "this machine is too busy for a virtual board: it stopped itself in every run"
 
 
@@ -55,7 +56,9 @@ class Desk:
             except BringupError as error:
                 assert "experiment" in str(error)
                 continue
-            self.page.until(_CAUGHT_UP, _PATIENCE_S)
+            self.page.until(f"{_STOPPED_ITSELF} || {_CAUGHT_UP}", _PATIENCE_S)
+            if self.page.run(_STOPPED_ITSELF):
+                continue
             return self.page.run(_LIVE_ERROR)
         pytest.skip(_TOO_BUSY)
 
