@@ -6,7 +6,6 @@ import numpy as np
 
 from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.generalised_alpha import StepCoefficients
-from hasel_sim.mechanics.initial import memory_at_start
 from hasel_sim.mechanics.marcher import Drives, Marcher
 from hasel_sim.mechanics.motion import DriveState, Motion
 from hasel_sim.mechanics.part import Part
@@ -90,7 +89,7 @@ def step_together(
     marcher, derivatives = Marcher(system, tolerance), StepSlopes(system, columns)
     start = DriveState.beside([lane.prepared.start_drive for lane in filled])
     motion = Motion(state.position, state.velocity, state.acceleration)
-    stress = system.second_piola(motion, start, memory_at_start(system, state))
+    stress = system.second_piola(motion, start, system.memory(state))
     marcher.begin(state, stress, np.zeros_like(state.position))
     drives = Drives(*(_beside(filled, name, steps) for name in ("voltage", "contraction", "time")))
     kinds, coefficients = _coefficients(filled, steps)

@@ -110,17 +110,26 @@ def measure(case: FarCase, value: float, pool: Executor) -> tuple[list[Experimen
     """Fitted and unseen runs of the truth, on another mesh and time step than the model's, with noise and offsets."""
     truth = _with_muscles(case.body)
     truth = NUMERICS["near"].applied(truth).with_effects(case.effect).with_values({SIZES[case.effect]: value})
-    runs = _swings() if case.body == "beam" else _boxes()
+    runs = swings() if case.body == "beam" else _boxes()
     generator = np.random.default_rng([case.seed, int(1e4 * (1 + case.shift)), len(case.effect)])
-    found = []
-    for run, simulation in zip(runs, simulate_all(pool, truth, runs), strict=True):
-        noise = case.noise * generator.standard_normal(len(run.time)) + 0.01 * generator.standard_normal()
-        voltage = None if run.schedule is None else run.schedule.at(run.time)
-        found.append(Experiment(Recording(run.name, run.time, simulation.sin_theta + noise, voltage), run))
+    found = observed(truth, runs, case.noise, generator, pool)
     return found[:-1], found[-1:]
 
 
-def _swings() -> list[Run]:
+def observed(
+    truth: Model, runs: Sequence[Run], noise_level: float, generator: np.random.Generator, pool: Executor
+) -> list[Experiment]:
+    """What a camera measures of a truth's runs: with white noise of this rms, and an offset of each run."""
+    found = []
+    for run, simulation in zip(runs, simulate_all(pool, truth, runs), strict=True):
+        noise = noise_level * generator.standard_normal(len(run.time)) + 0.01 * generator.standard_normal()
+        voltage = None if run.schedule is None else run.schedule.at(run.time)
+        found.append(Experiment(Recording(run.name, run.time, simulation.sin_theta + noise, voltage), run))
+    return found
+
+
+def swings() -> list[Run]:
+    """A beam let go from under 1.3 to 1.6 times its loads."""
     time = np.arange(0.0, 2.5, 1 / _FRAMES_PER_SECOND)
     return [Run(f"let go from {f:g}", time, None, "static_equilibrium", f) for f in (1.3, 1.6, 1.45)]
 

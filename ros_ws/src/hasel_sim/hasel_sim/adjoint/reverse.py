@@ -28,7 +28,7 @@ def reverse_step(
     """Weights of the state before, the contraction [muscles] and the parameters [n], from those of the state after."""
     before, after, motion, drive, c = part.before, part.after, part.motion, part.drive, part.coefficients
     system, solid = stepper.system, stepper.system.solid
-    line = system.linearise(motion, drive, stepper.memory(before, c.at))
+    line = system.linearise(motion, drive, system.memory(before, c.at))
     position = weights.position
     if weights.branch is not None:
         left, gain = solid.branches.factors(c.step)

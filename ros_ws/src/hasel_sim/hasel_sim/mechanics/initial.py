@@ -44,7 +44,7 @@ def initial_state(
     if len(branches):
         _branch_slopes(system, state, parameters, slopes)
 
-    memory = memory_at_start(system, state)
+    memory = system.memory(state)
     line = system.linearise(motion, drive, memory)
     state.acceleration = (
         -line.matrix(0.0, 0.0, 1.0).factorise().solve(system.residual(motion, drive, memory)[None])[0]
@@ -59,19 +59,12 @@ def initial_state(
     return state, slopes
 
 
-def memory_at_start(system: System, state: State) -> Memory:
-    """What the branches carry when a run starts."""
-    if state.branch is None:
-        return Memory()
-    return Memory(system.solid.branches.history(state.branch, state.green, 0.0))
-
-
 def start_of_motion(
     system: System, state: State, drive: DriveState
 ) -> tuple[Motion, Linearisation, BandFactors]:
     """The motion with which a run starts, the derivatives there, and the factors of its inertia."""
     motion = Motion(state.position, state.velocity, state.acceleration)
-    line = system.linearise(motion, drive, memory_at_start(system, state))
+    line = system.linearise(motion, drive, system.memory(state))
     return motion, line, line.matrix(0.0, 0.0, 1.0).factorise()
 
 

@@ -7,10 +7,9 @@ import numpy as np
 from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.banded import BandFactors, BandMatrix
 from hasel_sim.mechanics.generalised_alpha import StepCoefficients
-from hasel_sim.mechanics.initial import memory_at_start
 from hasel_sim.mechanics.linearisation import Linearisation
 from hasel_sim.mechanics.marcher import Drives, Marcher
-from hasel_sim.mechanics.motion import DriveState, Memory, Motion
+from hasel_sim.mechanics.motion import DriveState, Motion
 from hasel_sim.mechanics.part import Part
 from hasel_sim.mechanics.seen import Seen
 from hasel_sim.mechanics.state import State
@@ -37,17 +36,12 @@ class Stepper:
     def start(self, state: State, drive: DriveState) -> None:
         """Set off from a first state, with the drive it is in equilibrium with."""
         motion = Motion(state.position, state.velocity, state.acceleration)
-        stress = self.system.second_piola(motion, drive, memory_at_start(self.system, state))
+        stress = self.system.second_piola(motion, drive, self.system.memory(state))
         self.begin(np.zeros_like(state.position), stress)
 
     def begin(self, jerk: np.ndarray, stress: np.ndarray) -> None:
         """Go on after a step with this rate of the acceleration [m/s^3] and this second Piola stress [Pa]."""
         self.jerk, self.stress = jerk, stress
-
-    def memory(self, state: State, at: float | np.ndarray) -> Memory:
-        """What the branches carry from a step's start to `at` [s] into it."""
-        branches = self.system.solid.branches
-        return Memory() if len(branches) == 0 else Memory(branches.history(state.branch, state.green, at), at)
 
     def factorise(self, line: Linearisation, c: StepCoefficients) -> BandFactors:
         """Factors of the derivative of the residual by the end-of-step acceleration."""

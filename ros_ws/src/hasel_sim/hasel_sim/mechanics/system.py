@@ -12,6 +12,7 @@ from hasel_sim.mechanics.linearisation import Linearisation
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.simd import lane_tuple
 from hasel_sim.mechanics.solid import Solid
+from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.stress_law import StressLaw
 from hasel_sim.mesh.mesh import Mesh
 
@@ -72,6 +73,12 @@ class System:
             law.add_force(motion, drive, out, -load_factor)
         out[: self.held] = 0.0
         return out
+
+    def memory(self, state: State, at: float | np.ndarray = 0.0) -> Memory:
+        """What the branches carry from a state, in which a step starts, to `at` [s] into it."""
+        if state.branch is None:
+            return Memory()
+        return Memory(self.solid.branches.history(state.branch, state.green, at), at)
 
     def strain(self, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
         """Deformation gradient and its rate; kept for the last motion, which is asked for several times."""

@@ -13,7 +13,8 @@ from hasel_sysid.selection.worth import Worth
 class Searched:
     """known: every set that was fitted; likelihood: by which they are compared; worths, whitened: of every known set;
     first: the test of the baseline; last: of the best set; prospects: of every single effect beside the baseline;
-    level: of the tests; tested: the test of any known set; beyond_noise: share of the squares of the best fit.
+    level: of the tests; tested: the test of any known set; beyond_noise: share of the best
+    fit's squares that noise does not explain.
     """
 
     known: dict[EffectSet, FittedSet]
