@@ -9,6 +9,7 @@ from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
 from hasel_recording.endpoints import Role
 from hasel_recording.spinning import node_alone
 from rclpy.executors import SingleThreadedExecutor
+from std_srvs.srv import Trigger
 
 EVERY_MESSAGE = Role.EVERY_SAMPLE.value
 
@@ -69,6 +70,16 @@ class Listener:
         future = client.call_async(kind.Request(**request))
         self.until(future.done, seconds, check)
         return future.result()
+
+    def arm(self, rig: str, states: list[SupplyState], check: Callable[[], None]) -> None:
+        """Arm a rig, which tells `states`; a virtual board that a busy machine held up has stopped itself before."""
+        end = time.monotonic() + 30.0
+        while not (answer := self.call(Trigger, f"{rig}/arm", 20.0, check)).success:
+            assert time.monotonic() < end, answer.message
+            if states and states[-1].mode == SupplyState.FAULT:
+                self.call(Trigger, f"{rig}/clear_fault", 20.0, check)
+            heard = len(states)
+            self.until(lambda heard=heard: len(states) > heard, 5.0, check)
 
     def close(self) -> None:
         """Leave the domain."""

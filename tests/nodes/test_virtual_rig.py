@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from hasel_bringup.demo.processes import Processes
 from hasel_interfaces.msg import Actuation, SupplyState
-from std_srvs.srv import Trigger
 
 from tests.nodes.listener import stamp_ns
 
@@ -23,12 +22,13 @@ def test_an_armed_virtual_rig_bends_what_the_camera_sees(tmp_path, environment, 
         assert 1e-3 < rest.std() < 5e-3
         assert {state.mode for state in listener.states} == {SupplyState.STANDBY}
 
-        armed = listener.call(Trigger, "/hasel/arm", 20.0, processes.check)
-        assert armed.success, armed.message
+        listener.arm("/hasel", listener.states, processes.check)
         command = listener.node.create_publisher(Actuation, "/hasel/command", 1)
 
         def drive() -> None:
             processes.check()
+            if listener.states and listener.states[-1].mode == SupplyState.FAULT:
+                listener.arm("/hasel", listener.states, processes.check)
             command.publish(Actuation(voltage=[4000.0, 0.0]))
 
         listener.forget()

@@ -31,7 +31,7 @@ _CAUGHT_UP = (
     " end - Math.max(...rows.voltage.filter(r => r[1] || r[2]).map(r => r[0])) > 2.2)"
     "(live.rows, live.rows.voltage.at(-1)[0])"
 )
-_STOPPED_ITSELF = "document.body.innerText.includes('telemetry ceased')"
+_STOPPED_ITSELF = f"{_SAID}.startsWith('FAULT')"  # whichever end of a busy machine's line missed the other
 _TOO_BUSY = "this machine is too busy for a virtual board: it stopped itself in every run"
 
 
