@@ -43,14 +43,17 @@ def choose(found: Searched, policy: Policy) -> Choice:
 
     No set is chosen where nothing is missing.
     """
-    chosen = NOTHING if found.first.chance >= policy.level else _smallest(found, policy)
+    chosen = smallest(found, policy)
     alike = [s for s in plausible(found.known) if len(s) == len(chosen) and _alike(found, chosen, s, policy)]
     return Choice(
         chosen, tuple(alike), weights(found, chosen), _path(found, chosen), _groups(found, chosen, alike)
     )
 
 
-def _smallest(found: Searched, policy: Policy) -> EffectSet:
+def smallest(found: Searched, policy: Policy) -> EffectSet:
+    """The set to take; none where nothing is missing."""
+    if found.first.chance >= policy.level:
+        return NOTHING
     best = found.worths[found.best]
     enough = [s for s in plausible(found.known) if _worth_as_much(found, s, best, policy)]
     return min(enough, key=lambda s: (len(s), -found.worths[s].total))

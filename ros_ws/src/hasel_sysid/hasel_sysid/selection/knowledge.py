@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from hasel_sysid.projection import drops, orthonormal
 from hasel_sysid.selection.likelihood import Likelihood
 from hasel_sysid.selection.missing import Missing, missing
 from hasel_sysid.selection.policy import Policy
@@ -84,9 +85,20 @@ class Knowledge:
             if effect not in beside and self.sets.compatible(beside | {effect})
         }
 
+    def could_matter(self, effect: str, beside: EffectSet) -> bool:
+        """Whether it looks like half of what a larger set must take away, or more."""
+        fitted = self.known[beside]
+        most = drops(self.looks(beside)[effect], orthonormal(fitted.jacobian), fitted.residual)
+        return float(most) > 0.5 * self.policy.matters * fitted.squares
+
     def value(self, effects: EffectSet) -> float:
         """Of a known set: likelier by what noise alone may gain, for every effect more."""
         return self.whitened[effects].logarithm - self.threshold * len(effects)
+
+    def lasting(self) -> list[EffectSet]:
+        """The plausible sets that are worth more than every known part of them."""
+        every = plausible(self.known)
+        return [s for s in every if all(self.value(s) > self.value(part) for part in every if part < s)]
 
     def leaves_what_matters(self, effects: EffectSet) -> bool:
         """Whether more of the squares than is ever worth an effect is beyond what noise explains."""

@@ -5,13 +5,17 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
-from hasel_sysid.selection.knowledge import Knowledge
+from hasel_sysid.selection.choice import smallest
 from hasel_sysid.selection.policy import Policy
+from hasel_sysid.selection.promises import Promises
 from hasel_sysid.selection.proposals import Proposal, additions, exchanges, pairs, smaller
 from hasel_sysid.selection.searched import Searched, likeness, plausible
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Sets, name_of
 
 Progress = Callable[[str, float], None]
+
+_AS_GOOD = 1.001
+"""A fit that ends with so many times the squares of a smaller set's has lost nothing: ten times its tolerance."""
 
 
 def search(
@@ -34,24 +38,20 @@ def search(
         done = found.last.chance >= policy.level or not state.extended()
         if done and not state.looked_closer(found.best):
             break
-    state.fit(state.possible(smaller(found.known, found.best)), policy.most_effects)
-    state.fit(state.rivals(found), policy.fits)
-    for one in state.near_the_best(found) if stand_ins else ():
-        state.exchange(one)
+    chosen = smallest(found, policy)
+    state.fit(state.possible(smaller(found.known, chosen)), policy.most_effects)
+    state.fit(state.rivals(found, chosen), policy.fits)
+    if stand_ins:
+        state.exchange(smallest(state.judged(), policy))
     return state.judged()
 
 
 @dataclass
-class _Search(Knowledge):
-    """tried: every set that was fitted or begun; closely: those that were looked beyond with every effect."""
+class _Search(Promises):
+    """closely: the sets that were looked beyond with every effect."""
 
     progress: Progress | None = None
-    tried: set[EffectSet] = field(default_factory=set)
     closely: set[EffectSet] = field(default_factory=lambda: {NOTHING})
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self.tried |= set(self.known)
 
     def say(self, text: str, done: float) -> None:
         if self.progress:
@@ -59,13 +59,13 @@ class _Search(Knowledge):
 
     def extended(self) -> bool:
         """Whether anything promised more than the best set and was fitted."""
-        if self.fit(self.better(self.additions([NOTHING])), self.policy.fits):
+        if self.fit(self.while_promising(self.better(self.additions([NOTHING]))), self.policy.fits):
             return True
         self.fit(self.singles(), self.policy.fits - sum(map(bool, plausible(self.known))))
-        beam = sorted(plausible(self.known), key=self.value)[-self.policy.width :]
+        beam = sorted(self.lasting(), key=self.value)[-self.policy.width :]
         for one in beam:
             self.look_beyond_if_anything_is_missing(one)
-        return self.fit(self.better(self.around(beam)), self.policy.fits) > 0
+        return self.fit(self.while_promising(self.better(self.around(beam))), self.policy.fits) > 0
 
     def looked_closer(self, best: EffectSet) -> bool:
         """Whether a set that leaves more than noise was looked beyond only now, and with every effect.
@@ -92,7 +92,8 @@ class _Search(Knowledge):
             return
         test = self.tested(effects)
         promising = sorted(test.gains, key=lambda effect: -test.gains[effect])[: 2 * self.policy.trials]
-        self.look_beyond(effects, [effect for effect in promising if test.gains[effect] > test.threshold])
+        wanted = [e for e in promising if test.gains[e] > test.threshold and self.could_matter(e, effects)]
+        self.look_beyond(effects, wanted)
 
     def singles(self) -> list[Proposal]:
         """Sets of one effect, most promising first."""
@@ -110,68 +111,37 @@ class _Search(Knowledge):
         hopeful = sorted(base.values(), key=self.likelihood.promised, reverse=True)[: self.policy.trials]
         yield from pairs(self.known[NOTHING], hopeful)
 
-    def near_the_best(self, found: Searched) -> list[EffectSet]:
-        """The best set, and the one that is worth most of those with one effect less."""
-        less = [one for one in plausible(found.known) if len(one) == len(found.best) - 1]
-        return [found.best, *sorted(less, key=lambda one: -found.worths[one].total)[:1]]
-
-    def rivals(self, found: Searched) -> list[Proposal]:
-        """Sets of the best one's size that come so near to it that they may not be told apart."""
-        reach = found.whitened[found.best].logarithm - self._reach
-        parts = [part for gone in found.best if (part := found.best - {gone}) in self.known]
+    def rivals(self, found: Searched, chosen: EffectSet) -> list[Proposal]:
+        """Sets of the chosen one's size that come so near to it that they may not be told apart."""
+        reach = found.whitened[chosen].logarithm - self.reach
+        parts = [part for gone in chosen if (part := chosen - {gone}) in self.known]
         return self.ranked(self.additions(parts), reach)
 
-    def exchange(self, best: EffectSet) -> None:
+    def exchange(self, chosen: EffectSet) -> None:
         """Fit a set with what looks most like one of its effects, and does not do far less alone, in its place."""
         alone = {next(iter(s)): w.logarithm for s, w in self.whitened.items() if len(s) == 1}
-        for gone in sorted(best) if len(best) > 1 else ():
+        for gone in sorted(chosen) if len(chosen) > 1 else ():
             like_it = partial(likeness, self.likelihood, self.prospects[NOTHING], gone)
-            least = alone.get(gone, -math.inf) - self._reach
-            others = [e for e in self.prospects[NOTHING] if e not in best and alone.get(e, math.inf) >= least]
+            least = alone.get(gone, -math.inf) - self.reach
+            others = [
+                e for e in self.prospects[NOTHING] if e not in chosen and alone.get(e, math.inf) >= least
+            ]
             for effect in sorted(others, key=like_it, reverse=True)[: self.policy.width]:
-                effects = best - {gone} | {effect}
+                effects = chosen - {gone} | {effect}
                 if effects in self.tried or not self.sets.compatible(effects) or self.sets.out_of_time():
+                    continue
+                if not self.may_stand_in(effect, gone, chosen):
                     continue
                 self.tried.add(effects)
                 self.say(f"fitting {name_of(effects)}", 0.9)
-                self.keep(self._in_place_of(gone, best, effect))
+                self.keep(self._in_place_of(gone, chosen, effect))
 
-    def _in_place_of(self, gone: str, best: EffectSet, effect: str) -> FittedSet | None:
+    def _in_place_of(self, gone: str, chosen: EffectSet, effect: str) -> FittedSet | None:
         """From where the fit of the effect alone has led, or its trial beside the baseline."""
-        of, alone = self.known[best], frozenset({effect})
+        of, alone = self.known[chosen], frozenset({effect})
         if alone in self.known:
             return self.sets.exchanged(of, gone, self.known[alone])
-        return self.sets.fit(best - {gone} | alone, of, (self.prospects[NOTHING][effect],))
-
-    @property
-    def _reach(self) -> float:
-        """By how much two sets may differ in the logarithm of their likelihood and perhaps not be told apart."""
-        # at d standard errors the error itself is at most 2 d, and the ratio 2 d^2: half its square is what it costs
-        return 2 * self.policy.doubt**2
-
-    def better(self, proposals: Iterable[Proposal]) -> list[Proposal]:
-        """Those that promise more than the best known set, most promising first."""
-        best = max(map(self.value, plausible(self.known)))
-        return self.ranked(proposals, best, self.threshold)
-
-    def ranked(
-        self, proposals: Iterable[Proposal], least: float = -math.inf, of_each: float = 0.0
-    ) -> list[Proposal]:
-        """Those whose promise, less so much for each effect, is more than the least; most promising first."""
-        valued = [(self.promised(p) - of_each * len(p.effects), p) for p in self.possible(proposals)]
-        return [p for value, p in sorted(valued, key=lambda pair: -pair[0]) if value > least]
-
-    def possible(self, proposals: Iterable[Proposal]) -> Iterator[Proposal]:
-        """Those that were not tried yet, are not too large, and whose effects go together."""
-        for proposal in proposals:
-            effects = proposal.effects
-            small = effects not in self.tried and len(effects) <= self.policy.most_effects
-            if small and self.sets.compatible(effects):
-                yield proposal
-
-    def promised(self, proposal: Proposal) -> float:
-        """The logarithm of its likelihood, to first order."""
-        return self.likelihood.promised(proposal.whole)
+        return self.sets.fit(chosen - {gone} | alone, of, (self.prospects[NOTHING][effect],))
 
     def fit(self, proposals: Iterable[Proposal], most: int, even_late: bool = False) -> int:
         """Fit the first of these in full; how many were."""
@@ -194,7 +164,7 @@ class _Search(Knowledge):
         if not below:
             return None
         best = min(below, key=lambda part: self.known[part].squares)
-        if effects in self.known and self.known[effects].squares <= self.known[best].squares:
+        if effects in self.known and self.known[effects].squares <= _AS_GOOD * self.known[best].squares:
             return None
         (new,) = effects - best
         prospect = {**self.prospects[NOTHING], **self.prospects.get(best, {})}.get(new)

@@ -2,10 +2,12 @@
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
 
+from hasel_sysid.estimation.bounded import bounded_change
 from hasel_sysid.noise import NoiseModel
 
 EffectSet = frozenset[str]
@@ -60,6 +62,12 @@ class Prospect:
     looks: np.ndarray
     beside: EffectSet
     start: Any = None
+
+    @cached_property
+    def least_residual(self) -> np.ndarray:
+        """That of least squares, one bounded step on, [frames]."""
+        change, _ = bounded_change(self.residual, self.jacobian, self.lower, self.upper)
+        return self.residual - self.jacobian @ change
 
 
 def together(of: FittedSet, added: Sequence[Prospect], dropped: Collection[str]) -> Prospect:

@@ -1,0 +1,83 @@
+"""What proposals promise to first order, and which of them are worth a fit."""
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from hasel_sysid.selection.knowledge import Knowledge
+from hasel_sysid.selection.proposals import Proposal
+from hasel_sysid.selection.searched import plausible
+from hasel_sysid.selection.sets import EffectSet
+
+_RIVAL = 0.5
+"""What promises less than this share of what an effect gives cannot stand in its place: promises are that good."""
+
+
+@dataclass
+class Promises(Knowledge):
+    """tried: every set that was fitted or begun."""
+
+    tried: set[EffectSet] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.tried |= set(self.known)
+
+    @property
+    def reach(self) -> float:
+        """By how much two sets may differ in the logarithm of their likelihood and perhaps not be told apart."""
+        # at d standard errors the error itself is at most 2 d, and the ratio 2 d^2: half its square is what it costs
+        return 2 * self.policy.doubt**2
+
+    def better(self, proposals: Iterable[Proposal]) -> list[Proposal]:
+        """Those that promise more than the best known set, most promising first."""
+        best = max(plausible(self.known), key=self.value)
+        ranked = self.ranked(proposals, self.value(best), self.threshold)
+        return [p for p in ranked if len(p.effects) <= len(best) or self.matters(p, best)]
+
+    def while_promising(self, ranked: Iterable[Proposal]) -> Iterator[Proposal]:
+        """A beam's width of them, and as many more as promise no less than what has been reached meanwhile."""
+        for number, proposal in enumerate(ranked):
+            reached = max(map(self.value, plausible(self.known))) - self.reach
+            promise = self.promised(proposal) - self.threshold * len(proposal.effects)
+            if number >= self.policy.width and promise < reached:
+                return
+            yield proposal
+
+    def matters(self, proposal: Proposal, best: EffectSet) -> bool:
+        """Whether it promises to take away what a larger set must."""
+        left = [
+            self.likelihood.squares_beyond_slack(residual, self.policy.doubt)
+            for residual in (proposal.whole.least_residual, self.known[best].residual)
+        ]
+        return left[0] < (1 - self.policy.matters) * left[1]
+
+    def ranked(
+        self, proposals: Iterable[Proposal], least: float = -math.inf, of_each: float = 0.0
+    ) -> list[Proposal]:
+        """Those whose promise, less so much for each effect, is more than the least; most promising first."""
+        valued = [(self.promised(p) - of_each * len(p.effects), p) for p in self.possible(proposals)]
+        return [p for value, p in sorted(valued, key=lambda pair: -pair[0]) if value > least]
+
+    def possible(self, proposals: Iterable[Proposal]) -> Iterator[Proposal]:
+        """Those that were not tried yet, are not too large, and whose effects go together."""
+        for proposal in proposals:
+            effects = proposal.effects
+            small = effects not in self.tried and len(effects) <= self.policy.most_effects
+            if small and self.sets.compatible(effects):
+                yield proposal
+
+    def promised(self, proposal: Proposal) -> float:
+        """The logarithm of its likelihood, to first order."""
+        return self.likelihood.promised(proposal.whole)
+
+    def may_stand_in(self, effect: str, gone: str, chosen: EffectSet) -> bool:
+        """Whether it promises a good part of what the other one gives beside the rest, if that was looked beyond."""
+        rest = chosen - {gone}
+        if rest not in self.prospects:
+            return True
+        if effect not in self.prospects[rest]:
+            return False
+        without = self.whitened[rest].logarithm
+        given = self.whitened[chosen].logarithm - without
+        return self.likelihood.promised(self.prospects[rest][effect]) - without > _RIVAL * given
