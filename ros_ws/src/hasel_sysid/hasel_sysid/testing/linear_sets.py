@@ -45,13 +45,14 @@ class LinearSets:
         runs: np.ndarray | None = None,
         most_fits: float = np.inf,
         slack: Sequence[np.ndarray] = (),
+        swing: float = 0.0,
     ) -> None:
         """series [frames] of every effect; sizes: of those that are there; stranger [frames]: what is none of them;
         exclusive: sets of effects that do not go together; most_fits: after which the time is over; slack: errors
-        [frames] that every set is known to make.
+        [frames] that every set is known to make; swing: the largest, for what no model has.
         """
         self.runs = run_numbers() if runs is None else runs
-        self.slack, self.swing = np.column_stack([np.zeros((len(self.runs), 0)), *slack]), 0.0
+        self.slack, self.swing = np.column_stack([np.zeros((len(self.runs), 0)), *slack]), swing
         self.series, self._noise, self._exclusive = dict(series), noise, tuple(exclusive)
         generator = np.random.default_rng([seed, 17])
         self._own = np.column_stack([smooth_series(generator, self.runs) for _ in range(2)])

@@ -103,6 +103,40 @@ def test_while_much_is_missing_it_is_squares_that_are_compared():
     assert chosen(sets)[0] == "ab"
 
 
+def test_the_declared_discrepancy_excuses_no_more_than_its_size():
+    """A drift of ten times its rms counts as much as what is fast, though the discrepancy is slow as the drift is."""
+    runs = run_numbers(1, 480)
+    time = np.arange(480) / 120.0
+    series = {"a": np.exp(-time), "b": np.sin(2 * np.pi * 15.0 * time)}
+    quiet = NoiseModel(2e-5**2, 0.0, 0.5)
+    sets = LinearSets(series, {"a": 0.06, "b": 0.01}, quiet, runs=runs, swing=0.3)
+    found = search(sets, replace(POLICY, most_effects=1))
+    assert choose(found, POLICY).chosen == {"a"}
+
+
+def test_what_cannot_matter_is_not_fitted():
+    """A second effect that surely is there, and would take away less than a larger set must."""
+    seen = 0
+    for seed in range(3):
+        _, choice, found = chosen(LinearSets(made_up(seed), {"a": 0.05, "b": 0.006}, WHITE, seed))
+        assert choice.chosen == {"a"}
+        assert max(map(len, found.known)) == 1
+        seen += found.last.chance < POLICY.level
+    assert seen >= 2
+
+
+def test_what_looks_like_the_chosen_one_is_fitted_though_a_larger_set_is_worth_more():
+    """What cannot be told from the answer is asked of the answer, not of a set that is better by a trifle."""
+    series = made_up(1)
+    series["b"] = series["a"] + 0.02 * series["b"]
+    sets = LinearSets(series, {"a": 0.05, "c": 0.006}, WHITE, 1)
+    begun = tuple(sets.fit(frozenset(one), sets.baseline(), ()) for one in ("a", "ac"))
+    found = search(sets, POLICY, begun=begun)
+    choice = choose(found, POLICY)
+    assert found.best == {"a", "c"}
+    assert (choice.chosen, choice.groups) == ({"a"}, (("a", "b"),))
+
+
 def test_what_the_recordings_tell_apart_is_no_group():
     """Its weight is that of certainty."""
     _, choice, _ = chosen(LinearSets(made_up(1), {"a": 0.05}, WHITE, 1))
@@ -220,6 +254,27 @@ def test_a_fit_that_was_lost_begins_again_from_the_smaller_set():
     for effects in squares:
         below = [squares[part] for gone in effects if (part := effects - {gone}) in squares]
         assert squares[effects] <= 1.0001 * min(below, default=np.inf)
+
+
+class _NoBetter(LinearSets):
+    """A fit of two effects ends where the best of one has ended, to the tolerance of fits; begun: the fits in order."""
+
+    def fit(self, effects, near, added):
+        """As of sets, but for that."""
+        self.begun, self.alone = [*getattr(self, "begun", []), effects], getattr(self, "alone", [])
+        fitted = super().fit(effects, near, added)
+        if len(effects) == 1:
+            self.alone.append(fitted)
+            return fitted
+        return replace(fitted, residual=(1 + 1e-6) * min(self.alone, key=lambda f: f.squares).residual)
+
+
+def test_a_fit_that_ends_as_well_as_a_smaller_set_is_not_repeated():
+    """Where an effect adds nothing, the fit was not lost."""
+    sets = _NoBetter(made_up(8), {"a": 0.05, "b": 0.05}, WHITE, 8)
+    chosen(sets)
+    assert any(len(effects) > 1 for effects in sets.begun)
+    assert len(sets.begun) == len(set(sets.begun))
 
 
 def test_while_no_set_describes_the_runs_the_differences_count_for_less():
