@@ -52,7 +52,7 @@ def _folder() -> Path:
 def main() -> None:
     """`python -m hasel_sim.first_run`: compile now, so that nothing that is timed has to."""
     from hasel_sim.bench.cases import box_run, fitted_swimmer
-    from hasel_sim.mechanics.simd import LANES
+    from hasel_sim.simd import LANES
     from hasel_sim.simulate import simulate_many
 
     model, run = fitted_swimmer(), box_run(0.02)

@@ -9,7 +9,7 @@ from hasel_sim.build import difference_points
 from hasel_sim.errors import HaselSimError
 from hasel_sim.lanes import Lane, moving_columns, step_together
 from hasel_sim.mechanics.seen import Seen
-from hasel_sim.mechanics.simd import LANES
+from hasel_sim.simd import LANES
 from hasel_sim.model import Model
 from hasel_sim.model.constants import shape_constants
 from hasel_sim.observation import observe

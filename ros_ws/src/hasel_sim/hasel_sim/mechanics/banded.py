@@ -5,7 +5,7 @@ import numpy as np
 from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics import banded_lu
 from hasel_sim.mechanics.banded_lu import clear_band
-from hasel_sim.mechanics.simd import lane_tuple
+from hasel_sim.simd import lane_tuple
 
 
 def singular_matrix(unknown: int) -> SimulationError:

@@ -12,7 +12,7 @@ of the diagonal anything lies, fill-in included.
 
 from numba import njit
 
-from hasel_sim.mechanics.simd import four, load, of_lane, store, zero
+from hasel_sim.simd import four, load, of_lane, store, zero
 
 LEFT, RIGHT = 6, 3
 

@@ -15,7 +15,7 @@ A trial shape with an element of no area gives infinities, which end that trial,
 import numpy as np
 from numba import njit
 
-from hasel_sim.mechanics.simd import (
+from hasel_sim.simd import (
     add,
     four,
     load,

@@ -2,7 +2,7 @@
 
 from numba import njit
 
-from hasel_sim.mechanics.simd import add, four, load
+from hasel_sim.simd import add, four, load
 
 
 @njit(inline="always")

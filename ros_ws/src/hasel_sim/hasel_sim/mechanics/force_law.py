@@ -4,7 +4,7 @@ import numpy as np
 
 from hasel_sim.mechanics.assembly import scatter_sites
 from hasel_sim.mechanics.motion import DriveState, Motion
-from hasel_sim.mechanics.simd import lane_tuple
+from hasel_sim.simd import lane_tuple
 from hasel_sim.mechanics.site_force import DIFFERENCE, SiteForce
 
 _CONTRACTION_DIFFERENCE = 1e-6
@@ -80,20 +80,18 @@ class ForceLaw(SiteForce):
 
         shift: None for no change of the positions.
         """
+        sites = self.sites
         moved = {
-            "position": lambda: self.sites.value(shift),
-            "velocity": lambda: self.sites.value(rate),
-            "acceleration": lambda: self.sites.value(acceleration),
-            "tangent": lambda: self.sites.tangent(shift),
-            "tangent_rate": lambda: self.sites.tangent(rate),
+            "position": (shift, sites.shape),
+            "velocity": (rate, sites.shape),
+            "acceleration": (acceleration, sites.shape),
+            "tangent": (shift, sites.slope),
+            "tangent_rate": (rate, sites.slope),
         }
         for name in self._moved_by:
-            if shift is None and name in ("position", "tangent"):
-                continue
-            slope, change = self._slopes[name], moved[name]()
-            self.sites.scatter(
-                -(slope[:, :, 0] * change[..., :1, :] + slope[:, :, 1] * change[..., 1:, :]), out
-            )
+            field, weights = moved[name]
+            if field is not None:
+                sites.scatter_products(self._slopes[name], weights, field, out)
 
     def add_pulled_back(self, weights: np.ndarray, out: np.ndarray) -> None:
         """Subtract the transposed derivatives times weights [nodes, 2, lanes] from out [3, nodes, 2, lanes].

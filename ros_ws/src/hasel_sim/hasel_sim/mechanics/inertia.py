@@ -6,7 +6,7 @@ from copy import copy
 import numpy as np
 
 from hasel_sim.mechanics.assembly import mass_product
-from hasel_sim.mechanics.simd import lane_tuple
+from hasel_sim.simd import lane_tuple
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.mesh.serendipity import reference_gradients
 

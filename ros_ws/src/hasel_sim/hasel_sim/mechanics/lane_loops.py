@@ -2,7 +2,7 @@
 
 from numba import njit
 
-from hasel_sim.mechanics.simd import four, load, of_lane, store, with_lane, zero
+from hasel_sim.simd import four, load, of_lane, store, with_lane, zero
 
 
 @njit(inline="always")

@@ -5,7 +5,7 @@ The sites of all of them stand in one list; `start` tells where the nodes of eac
 
 from numba import njit
 
-from hasel_sim.mechanics.simd import add, load
+from hasel_sim.simd import add, load
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")

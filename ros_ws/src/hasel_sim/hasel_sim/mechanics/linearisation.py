@@ -8,7 +8,7 @@ import numpy as np
 from hasel_sim.mechanics import assembly
 from hasel_sim.mechanics.banded import BandMatrix
 from hasel_sim.mechanics.motion import DriveState, Motion
-from hasel_sim.mechanics.simd import lane_tuple
+from hasel_sim.simd import lane_tuple
 
 if TYPE_CHECKING:
     from hasel_sim.mechanics.system import System

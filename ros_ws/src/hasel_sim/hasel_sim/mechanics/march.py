@@ -15,7 +15,7 @@ from numba import njit
 
 from hasel_sim.mechanics.lane_loops import chosen_of, combine, copy_lanes
 from hasel_sim.mechanics.newton import newton
-from hasel_sim.mechanics.simd import load, store, zero
+from hasel_sim.simd import load, store, zero
 from hasel_sim.mechanics.strain import deformation, green_stress
 
 PREDICT, BALANCE, COMMIT = 1, 2, 4

@@ -20,7 +20,7 @@ from hasel_sim.mechanics.march import (
 from hasel_sim.mechanics.motion import DriveState
 from hasel_sim.mechanics.part import balance_motion
 from hasel_sim.mechanics.seen import Seen
-from hasel_sim.mechanics.simd import lane_tuple
+from hasel_sim.simd import lane_tuple
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.system import System
 

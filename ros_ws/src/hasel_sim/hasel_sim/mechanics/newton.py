@@ -11,7 +11,7 @@ from hasel_sim.mechanics import banded_lu
 from hasel_sim.mechanics.balance import balance
 from hasel_sim.mechanics.lane_loops import combine, copy_lanes, difference, subtract_lanes
 from hasel_sim.mechanics.law_terms import add_site_matrix
-from hasel_sim.mechanics.simd import store, zero
+from hasel_sim.simd import store, zero
 
 SLOW_WITH_ONE_MATRIX, SLOW = 0.1, 1.0
 """Corrections that do not shrink to this share of the last want another way."""

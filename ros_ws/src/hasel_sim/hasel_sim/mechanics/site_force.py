@@ -54,7 +54,10 @@ class SiteForce:
         )
         self._unmoved: dict[int, dict[str, np.ndarray]] = {}
         self._moved_by = tuple(name for name in effect.depends_on if name != "contraction")
-        self._has_tangent = effect.sites in ("skin", "line")
+        has_tangent = effect.sites in ("skin", "line")
+        self._asked = tuple(
+            name for name in _OF_A_LINE if name in effect.depends_on or (name == "tangent" and has_tangent)
+        )
         self._use_lanes([SimpleNamespace(own=values, surroundings=surroundings)])
 
     def _use_lanes(self, values: list[SimpleNamespace | None]) -> None:
@@ -74,13 +77,9 @@ class SiteForce:
         return out
 
     def _moved(self, motion: Motion) -> dict[str, np.ndarray]:
-        """Motion at the sites [n, 2, lanes]."""
-        known, depends = motion.found.setdefault(id(self.sites.shape), {}), self.effect.depends_on
-        fields = {"position": self._field(known, "position", motion)}
-        for name in ("velocity", "acceleration", "tangent", "tangent_rate"):
-            asked = name in depends or (name == "tangent" and self._has_tangent)
-            fields[name] = self._field(known, name, motion) if asked else np.zeros_like(fields["position"])
-        return fields
+        """Motion at the sites [n, 2, lanes], as far as the effect asks for it."""
+        known = motion.found.setdefault(id(self.sites.shape), {})
+        return {name: self._field(known, name, motion) for name in ("position", *self._asked)}
 
     def _field(self, known: dict[str, np.ndarray], name: str, motion: Motion) -> np.ndarray:
         """One quantity at the sites; laws at the same sites share what was interpolated."""
@@ -100,7 +99,7 @@ class SiteForce:
         )
 
     def _repeated(self, times: int) -> dict[str, np.ndarray]:
-        """What does not move, as often as the sites are called at once."""
+        """What does not move or is not asked for, as often as the sites are called at once."""
         if times not in self._unmoved:
             self._unmoved[times] = {
                 "reference": repeated(self._reference, times),
@@ -108,6 +107,8 @@ class SiteForce:
                 "measure": repeated(self.sites.measure, times),
                 "gravity": self._gravity,
             }
+            nothing = np.zeros((times * len(self._reference), 2))
+            self._unmoved[times] |= {name: nothing for name in _OF_A_LINE if name not in self._asked}
         return self._unmoved[times]
 
     def _called(
@@ -116,7 +117,7 @@ class SiteForce:
         n = len(self._reference)
         unmoved = self._repeated(len(rows["position"]) // n)
         state = (SiteState if len(lanes) == 1 else _WatchedState)(
-            **rows, **unmoved, **drive.of_lane(int(lanes[0])), surroundings=values.surroundings
+            **unmoved, **rows, **drive.of_lane(int(lanes[0])), surroundings=values.surroundings
         )
         force = np.asarray(self._respond(state, values.own))
         if len(lanes) == 1 or not state.looked:
@@ -161,7 +162,7 @@ class SiteForce:
             rows[name] = field.transpose(0, 3, 1, 2).reshape(-1, 2)
         lanes = motion.position.shape[-1]
         unmoved, kind = self._repeated(copies * lanes), SiteState if lanes == 1 else _WatchedState
-        return kind(**rows, **unmoved, **drive.of_lane(0), surroundings=surroundings)
+        return kind(**{**unmoved, **rows}, **drive.of_lane(0), surroundings=surroundings)
 
     def add_force(
         self, motion: Motion, drive: DriveState, out: np.ndarray, factor: float | np.ndarray = 1.0

@@ -11,7 +11,7 @@ from numba import njit
 from hasel_sim.mechanics.constitutive import COEFFICIENTS
 from hasel_sim.mechanics.element_force import add_stress, add_to_nodes, product
 from hasel_sim.mechanics.lane_loops import chosen_of
-from hasel_sim.mechanics.simd import add, four, load, square_root, store, three, zero
+from hasel_sim.simd import add, four, load, square_root, store, three, zero
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")

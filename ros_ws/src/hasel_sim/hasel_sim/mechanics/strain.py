@@ -8,7 +8,7 @@ gradient run 00, 01, 10, 11 (row-major).
 import numpy as np
 from numba import njit
 
-from hasel_sim.mechanics.simd import four, load, store, zero
+from hasel_sim.simd import four, load, store, zero
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")

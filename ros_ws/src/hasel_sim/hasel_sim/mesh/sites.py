@@ -3,10 +3,11 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numba import njit
 
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.mesh.serendipity import edge_functions, reference_gradients
+from hasel_sim.mesh.site_loops import interpolate, spread, subtract_products
+from hasel_sim.simd import lane_tuple
 
 
 @dataclass(frozen=True)
@@ -43,41 +44,38 @@ class Sites:
         return self._interpolated(self.slope, position)
 
     def _interpolated(self, weights: np.ndarray, field: np.ndarray) -> np.ndarray:
-        nodes, width = field.shape[-3], 2 * field.shape[-1]
-        columns = np.ascontiguousarray(field).reshape(-1, nodes, width)
-        out = np.zeros((len(columns), len(self.nodes), width))
-        _gather(columns, self.nodes, weights, out)
-        return out.reshape(*field.shape[:-3], len(self.nodes), *field.shape[-2:])
+        out = np.empty((*field.shape[:-3], len(self.nodes), *field.shape[-2:]))
+        interpolate(_columns(field), self.nodes, weights, _in_place(out), lane_tuple(field.shape[-1]))
+        return out
 
     def scatter(self, force: np.ndarray, out: np.ndarray) -> None:
         """Add forces at the sites [..., n, 2, lanes], times the weight, to out [..., nodes, 2, lanes] (contiguous)."""
-        width = 2 * out.shape[-1]
-        columns = out.view()
-        columns.shape = (-1, out.shape[-3], width)
-        force = np.ascontiguousarray(force, dtype=float).reshape(-1, len(self.nodes), width)
-        _spread(force, self.nodes, self.weight, columns)
+        spread(_columns(force), self.nodes, self.weight, _in_place(out), lane_tuple(out.shape[-1]))
+
+    def scatter_products(
+        self, slope: np.ndarray, weights: np.ndarray, field: np.ndarray, out: np.ndarray
+    ) -> None:
+        """Subtract the forces slope [n, 2, 2, lanes] times what weights [n, k] make of a field [..., nodes, 2, lanes] at
+        the sites, times the weight, from out, of the field's shape (contiguous).
+        """
+        places = self.nodes, weights, self.weight
+        subtract_products(_columns(field), slope, *places, _in_place(out), lane_tuple(out.shape[-1]))
 
     def gathered(self, weights: np.ndarray) -> np.ndarray:
         """What weights of the nodes [nodes, 2, lanes] mean for the forces at the sites, [n, 2, lanes]."""
         return self._interpolated(self.weight, weights)
 
 
-@njit(cache=True)
-def _gather(field, nodes, weights, out):
-    for c in range(field.shape[0]):
-        for s in range(nodes.shape[0]):
-            for k in range(nodes.shape[1]):
-                for w in range(field.shape[2]):
-                    out[c, s, w] += weights[s, k] * field[c, nodes[s, k], w]
+def _columns(field: np.ndarray) -> np.ndarray:
+    """[..., n, 2, lanes] as [columns, n, 2, lanes], contiguous."""
+    return np.ascontiguousarray(field, dtype=float).reshape(-1, *field.shape[-3:])
 
 
-@njit(cache=True)
-def _spread(force, nodes, weights, out):
-    for c in range(force.shape[0]):
-        for s in range(nodes.shape[0]):
-            for k in range(nodes.shape[1]):
-                for w in range(force.shape[2]):
-                    out[c, nodes[s, k], w] += weights[s, k] * force[c, s, w]
+def _in_place(out: np.ndarray) -> np.ndarray:
+    """The same memory as [columns, n, 2, lanes]; an array that cannot be seen so is refused by numpy."""
+    columns = out.view()
+    columns.shape = (-1, *out.shape[-3:])
+    return columns
 
 
 def body_sites(mesh: Mesh, nodes: np.ndarray, density: np.ndarray) -> Sites:

@@ -8,7 +8,7 @@ from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 
 from hasel_sim.errors import HaselSimError, ModelError
-from hasel_sim.mechanics.simd import LANES
+from hasel_sim.simd import LANES
 from hasel_sim.model import Model
 from hasel_sim.model.read import model_text
 from hasel_sim.simulate import simulate_many

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hasel_sim.mechanics import constitutive, strain
 from hasel_sim.mechanics.branches import Branches
-from hasel_sim.mechanics.simd import lane_tuple
+from hasel_sim.simd import lane_tuple
 from scipy.optimize import minimize_scalar
 
 SHEAR, LAME, VISCOUS_SHEAR, VISCOUS_LAME, FIBRE = 22e3, 200e3, 440.0, 4000.0, 65e3

@@ -14,7 +14,7 @@ from hasel_sysid.problem import Evaluation, Problem
 from hasel_sysid.projection import drops, orthonormal
 
 MOST_CHANGE = 0.5
-"""A single step changes no baseline parameter by more than this share: beyond, the derivatives say nothing."""
+"""A single step changes no parameter but an effect's size by more than this share: beyond, derivatives say nothing."""
 _TOO_ROUGH = 0.15
 """Share of the simulated motion by which a draft may be wrong."""
 _FAR = 2.0
@@ -164,9 +164,12 @@ def _bounded_step(
 
 
 def limited(model: Model, names: Sequence[str]) -> np.ndarray:
-    """Which parameters [names] a single step may change by a share of their value only: those of no effect."""
-    of_effects = {f"{effect.id}.{p.name}" for effect in model.effects for p in effect.parameters}
-    return np.array([name not in of_effects for name in names])
+    """Which parameters [names] a single step may change by a share of their value only.
+
+    Those of no effect, and of an effect what is no size: how fast it is, or where.
+    """
+    sizes = {f"{effect.id}.{p.name}" for effect in model.effects for p in effect.parameters if not p.scan}
+    return np.array([name not in sizes for name in names])
 
 
 def _shortened(trial: Trial) -> Trial:
