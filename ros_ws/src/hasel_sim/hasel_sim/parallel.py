@@ -11,9 +11,9 @@ from functools import partial
 from threadpoolctl import threadpool_limits
 
 from hasel_sim.errors import SimulationError
-from hasel_sim.simd import LANES
 from hasel_sim.model import Model
 from hasel_sim.run import Run, Simulation
+from hasel_sim.simd import LANES
 from hasel_sim.simulate import simulate_many
 
 

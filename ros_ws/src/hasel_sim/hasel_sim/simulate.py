@@ -9,12 +9,12 @@ from hasel_sim.build import difference_points
 from hasel_sim.errors import HaselSimError
 from hasel_sim.lanes import Lane, moving_columns, step_together
 from hasel_sim.mechanics.seen import Seen
-from hasel_sim.simd import LANES
 from hasel_sim.model import Model
 from hasel_sim.model.constants import shape_constants
 from hasel_sim.observation import observe
 from hasel_sim.prepared_run import PreparedRun
 from hasel_sim.run import Run, Simulation
+from hasel_sim.simd import LANES
 
 
 def simulate(model: Model, run: Run, slopes_by: Sequence[str] = (), keep_shapes: bool = False) -> Simulation:

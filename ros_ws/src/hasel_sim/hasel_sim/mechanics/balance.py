@@ -9,8 +9,8 @@ from numba import njit
 
 from hasel_sim.mechanics.constitutive import COEFFICIENTS, thickness
 from hasel_sim.mechanics.element_force import add_stress, add_to_nodes
-from hasel_sim.simd import add, four, load, logarithm_near_one, square_root, store, three, zero
 from hasel_sim.mechanics.tangent import add_elastic_rows, viscous_rows
+from hasel_sim.simd import add, four, load, logarithm_near_one, square_root, store, three, zero
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")

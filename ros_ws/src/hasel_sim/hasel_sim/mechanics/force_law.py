@@ -4,8 +4,8 @@ import numpy as np
 
 from hasel_sim.mechanics.assembly import scatter_sites
 from hasel_sim.mechanics.motion import DriveState, Motion
-from hasel_sim.simd import lane_tuple
 from hasel_sim.mechanics.site_force import DIFFERENCE, SiteForce
+from hasel_sim.simd import lane_tuple
 
 _CONTRACTION_DIFFERENCE = 1e-6
 

@@ -6,9 +6,9 @@ from copy import copy
 import numpy as np
 
 from hasel_sim.mechanics.assembly import mass_product
-from hasel_sim.simd import lane_tuple
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.mesh.serendipity import reference_gradients
+from hasel_sim.simd import lane_tuple
 
 
 def element_masses(mesh: Mesh, nodes: np.ndarray, density: np.ndarray) -> np.ndarray:

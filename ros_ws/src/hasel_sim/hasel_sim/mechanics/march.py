@@ -15,8 +15,8 @@ from numba import njit
 
 from hasel_sim.mechanics.lane_loops import chosen_of, combine, copy_lanes
 from hasel_sim.mechanics.newton import newton
-from hasel_sim.simd import load, store, zero
 from hasel_sim.mechanics.strain import deformation, green_stress
+from hasel_sim.simd import load, store, zero
 
 PREDICT, BALANCE, COMMIT = 1, 2, 4
 MOST_WITH_ONE_MATRIX, MOST_ITERATIONS = 5, 15

@@ -20,9 +20,9 @@ from hasel_sim.mechanics.march import (
 from hasel_sim.mechanics.motion import DriveState
 from hasel_sim.mechanics.part import balance_motion
 from hasel_sim.mechanics.seen import Seen
-from hasel_sim.simd import lane_tuple
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.system import System
+from hasel_sim.simd import lane_tuple
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ import numpy as np
 from hasel_sim.mechanics.generalised_alpha import StepCoefficients
 from hasel_sim.mechanics.lane_loops import combine
 from hasel_sim.mechanics.motion import DriveState, Motion
-from hasel_sim.simd import lane_tuple
 from hasel_sim.mechanics.state import State
+from hasel_sim.simd import lane_tuple
 
 
 @dataclass(frozen=True)

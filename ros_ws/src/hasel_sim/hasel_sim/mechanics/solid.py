@@ -8,9 +8,9 @@ import numpy as np
 from hasel_sim.effects.base import Coefficients
 from hasel_sim.mechanics import assembly, constitutive, strain
 from hasel_sim.mechanics.branches import Branches
-from hasel_sim.simd import lane_tuple
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.mesh.serendipity import reference_gradients
+from hasel_sim.simd import lane_tuple
 
 
 def lame_constants(youngs_modulus: float, poissons_ratio: float) -> tuple[float, float]:

@@ -12,9 +12,9 @@ from hasel_sim.mechanics.linearisation import Strained
 from hasel_sim.mechanics.newton import factorise, solve
 from hasel_sim.mechanics.part import Part
 from hasel_sim.mechanics.residual_slopes import ResidualSlope, SolidSlope
-from hasel_sim.simd import lane_tuple
 from hasel_sim.mechanics.state import State, StateSlopes
 from hasel_sim.mechanics.system import System
+from hasel_sim.simd import lane_tuple
 
 
 class StepSlopes:

@@ -10,11 +10,11 @@ from hasel_sim.mechanics.force_law import ForceLaw
 from hasel_sim.mechanics.inertia import Mass
 from hasel_sim.mechanics.linearisation import Linearisation
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
-from hasel_sim.simd import lane_tuple
 from hasel_sim.mechanics.solid import Solid
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.stress_law import StressLaw
 from hasel_sim.mesh.mesh import Mesh
+from hasel_sim.simd import lane_tuple
 
 
 class System:

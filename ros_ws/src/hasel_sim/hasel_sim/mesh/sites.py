@@ -55,8 +55,9 @@ class Sites:
     def scatter_products(
         self, slope: np.ndarray, weights: np.ndarray, field: np.ndarray, out: np.ndarray
     ) -> None:
-        """Subtract the forces slope [n, 2, 2, lanes] times what weights [n, k] make of a field [..., nodes, 2, lanes] at
-        the sites, times the weight, from out, of the field's shape (contiguous).
+        """Subtract forces that change with a field [..., nodes, 2, lanes] from out, of its shape (contiguous).
+
+        The force at a site is slope [n, 2, 2, lanes] times what weights [n, k] make of the field there.
         """
         places = self.nodes, weights, self.weight
         subtract_products(_columns(field), slope, *places, _in_place(out), lane_tuple(out.shape[-1]))
@@ -72,7 +73,7 @@ def _columns(field: np.ndarray) -> np.ndarray:
 
 
 def _in_place(out: np.ndarray) -> np.ndarray:
-    """The same memory as [columns, n, 2, lanes]; an array that cannot be seen so is refused by numpy."""
+    """The same memory as [columns, n, 2, lanes]; what is not contiguous is refused."""
     columns = out.view()
     columns.shape = (-1, *out.shape[-3:])
     return columns

@@ -8,9 +8,9 @@ from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 
 from hasel_sim.errors import HaselSimError, ModelError
-from hasel_sim.simd import LANES
 from hasel_sim.model import Model
 from hasel_sim.model.read import model_text
+from hasel_sim.simd import LANES
 from hasel_sim.simulate import simulate_many
 from hasel_sim.swimming.boxes import Boxes
 from hasel_sim.swimming.free_swim import check_swimmer, measured

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.errors import HaselSimError
-from hasel_sim.simd import LANES
 from hasel_sim.model import Model
 from hasel_sim.model_mesh import model_mesh
 from hasel_sim.run import Run
+from hasel_sim.simd import LANES
 from hasel_sim.simulate import simulate_many
 
 from hasel_sysid.compare.run_comparison import RunComparison

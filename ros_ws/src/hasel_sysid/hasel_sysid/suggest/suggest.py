@@ -8,8 +8,8 @@ from itertools import combinations
 import numpy as np
 from hasel_recording import HASEL_PAIR
 from hasel_sim.errors import SimulationError
-from hasel_sim.simd import LANES
 from hasel_sim.model import Model
+from hasel_sim.simd import LANES
 from hasel_sim.simulate import simulate_many
 
 from hasel_sysid.draft import draft

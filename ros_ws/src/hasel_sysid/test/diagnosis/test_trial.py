@@ -41,6 +41,14 @@ def test_effects_without_effect_share_a_simulation(trials):
         assert [effect.id for effect in trial.model.effects] == [start.effect.id]
 
 
+def test_one_step_moves_a_relaxation_time_by_half_of_it_at_most(trials):
+    """Its derivative says nothing of a time ten times as long: a fit that starts there has lost what was promised."""
+    for start in starts(catalogue()["charge_retention"]):
+        (trial,) = trials.first([start])
+        before, after = start.values["charge_retention.time"], trial.step["charge_retention.time"]
+        assert 0.5 * before <= after <= 1.5 * before
+
+
 def test_half_a_step_promises_three_quarters_of_a_whole_one():
     """So it is for least squares, linear or not far from it: an effect that overshot once is not lost from sight."""
     jacobian, residual = np.array([[1.0], [1.0]]), np.array([3.0, 1.0])
