@@ -71,6 +71,13 @@ class Promises(Knowledge):
         """The logarithm of its likelihood, to first order."""
         return self.likelihood.promised(proposal.whole)
 
+    def broken(self, proposal: Proposal) -> bool:
+        """Whether a fit took away less than half of the squares that it promised to take away: it ended elsewhere."""
+        before, whole = proposal.of.squares, proposal.whole
+        promised = before - float(whole.least_residual @ whole.least_residual)
+        kept = before - self.known[proposal.effects].squares if proposal.effects in self.known else 0.0
+        return promised > self.policy.matters * before and kept < _RIVAL * promised
+
     def may_stand_in(self, effect: str, gone: str, chosen: EffectSet) -> bool:
         """Whether it promises a good part of what the other one gives beside the rest, if that was looked beyond."""
         rest = chosen - {gone}

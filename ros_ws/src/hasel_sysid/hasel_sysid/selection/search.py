@@ -155,6 +155,7 @@ class _Search(Promises):
             self.say(f"fitting {name_of(proposal.effects)}", min(0.9, 0.1 * len(self.tried)))
             self.keep(self.sets.fit(proposal.effects, proposal.of, proposal.added))
             self.keep(self._again(proposal.effects))
+            self.keep(self._from_other_sizes(proposal))
             count += 1
         return count
 
@@ -169,3 +170,11 @@ class _Search(Promises):
         (new,) = effects - best
         prospect = {**self.prospects[NOTHING], **self.prospects.get(best, {})}.get(new)
         return None if prospect is None else self.sets.fit(effects, self.known[best], (prospect,))
+
+    def _from_other_sizes(self, proposal: Proposal) -> FittedSet | None:
+        """A fit of one more effect that did not keep its promise: there is more than one valley."""
+        alone = len(proposal.added) == 1 and not proposal.dropped
+        if not alone or self.sets.out_of_time() or not self.broken(proposal):
+            return None
+        other = self.sets.from_other_sizes(proposal.of, proposal.added[0])
+        return None if other is None else self.sets.fit(proposal.effects, proposal.of, (other,))

@@ -108,6 +108,9 @@ class Sets(Protocol):
     ) -> dict[str, Prospect]:
         """What every other effect (or the wanted ones) could do; `most` of them, by rank, looked at more closely."""
 
+    def from_other_sizes(self, of: FittedSet, prospect: Prospect) -> Prospect | None:
+        """The same effect beside the same set from where other sizes lead; None where there are none."""
+
     def compatible(self, effects: EffectSet) -> bool:
         """Whether these effects can be in one model."""
 

@@ -18,7 +18,14 @@ from hasel_sysid.problem import Problem
 from hasel_sysid.projection import orthonormal
 from hasel_sysid.selection.noise_bound import bounded_noise
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect
-from hasel_sysid.selection.trial_prospects import Rank, best_of_each, looks_of, prospect_of, room
+from hasel_sysid.selection.trial_prospects import (
+    Rank,
+    best_of_each,
+    from_other_sizes,
+    looks_of,
+    prospect_of,
+    room,
+)
 
 _BATCH = 8
 _RIVAL = 0.5
@@ -124,6 +131,10 @@ class SimulatedSets:
             moved = [prospect_of(t, looks, of.effects) for t in trials.further([p.start for p in going_on])]
             best = best_of_each([*moved, *(p for p in best if p not in going_on)], rank)
         return {prospect.effect: prospect for prospect in best}
+
+    def from_other_sizes(self, of: FittedSet, prospect: Prospect) -> Prospect | None:
+        """The same effect from a quarter to four times the size that it was tried at."""
+        return from_other_sizes(Trials(self.problem, of.fit.evaluation), prospect)
 
     def _sized(self, of: FittedSet, names: Collection[str]) -> list[Start]:
         """The best start of every effect, of the size that its change beside the baseline leads to expect here."""

@@ -5,8 +5,11 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 from hasel_sim.model import Model
 
+from hasel_sysid.diagnosis.candidates import resized
 from hasel_sysid.diagnosis.trial import MOST_CHANGE, Trial, Trials, limited
 from hasel_sysid.selection.sets import EffectSet, Prospect
+
+_OTHER_SIZES = (0.25, 0.5, 2.0, 4.0)
 
 Rank = Callable[[Prospect], float]
 """How much a prospect is worth, by which the best of each effect is told."""
@@ -20,6 +23,17 @@ def room(model: Model, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
     lower = np.array([p.lower for p in parameters]) - value
     upper = np.array([p.upper for p in parameters]) - value
     return np.maximum(lower, -reach), np.minimum(upper, reach)
+
+
+def from_other_sizes(trials: Trials, of: Prospect) -> Prospect | None:
+    """The same effect from where other sizes lead, one step on; None where it has no size to begin with."""
+    start = of.start.start
+    sizes = [size for factor in _OTHER_SIZES if (size := resized(start, factor)).values != start.values]
+    moved = trials.further(trials.first(sizes))
+    if not moved:
+        return None
+    best = min(moved, key=lambda trial: trial.sum_of_squares)
+    return prospect_of(best, {of.effect: looks_of(best, trials)}, of.beside)
 
 
 def best_of_each(prospects: Sequence[Prospect], rank: Rank) -> list[Prospect]:

@@ -85,6 +85,9 @@ class LinearSets:
         self.fits += 1
         return self._fitted(effects)
 
+    def from_other_sizes(self, of: FittedSet, prospect: Prospect) -> Prospect | None:
+        """None: least squares end at one place from everywhere."""
+
     def exchanged(self, of: FittedSet, gone: str, by: FittedSet) -> FittedSet | None:
         """Least squares, which needs no start."""
         return self.fit(of.effects - {gone} | by.effects, of, ())

@@ -256,6 +256,25 @@ def test_a_fit_that_was_lost_begins_again_from_the_smaller_set():
         assert squares[effects] <= 1.0001 * min(below, default=np.inf)
 
 
+class _TwoValleys(LinearSets):
+    """A fit of one effect ends near the baseline, unless it begins from another size."""
+
+    def from_other_sizes(self, of, prospect):
+        """The same, known by where it is from."""
+        return replace(prospect, start="another size")
+
+    def fit(self, effects, near, added):
+        """As of sets, or without what the effect could take away."""
+        fitted = super().fit(effects, near, added)
+        there = any(prospect.start == "another size" for prospect in added)
+        return fitted if there or len(effects) != 1 else replace(fitted, residual=0.99 * near.residual)
+
+
+def test_a_fit_that_breaks_its_promise_begins_again_from_other_sizes():
+    """What was promised to first order is there, and the fit ended in another valley."""
+    assert chosen(_TwoValleys(made_up(2), {"c": 0.05}, WHITE, 2))[0] == "c"
+
+
 class _NoBetter(LinearSets):
     """A fit of two effects ends where the best of one has ended, to the tolerance of fits; begun: the fits in order."""
 
