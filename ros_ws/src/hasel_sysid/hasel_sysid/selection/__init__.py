@@ -1,9 +1,9 @@
 """Which effects a model lacks: a choice among sets of effects, by one currency.
 
 Read in this order: `policy` (every number there is), `sets` (what is chosen among), `likelihood` (the currency),
-`missing` (is anything missing?), `proposals` and `search` (add, drop, swap), `worth` (what runs left out say of a set),
-`choice` (where to stop, and what cannot be told apart). None of these knows a simulator; `simulated_sets` joins them to
-one.
+`missing` (is anything missing?), `proposals`, `promises` and `search` (add, drop, swap), `worth` (what runs left out
+say of a set), `choice` (where to stop, and what cannot be told apart). None of these knows a simulator;
+`simulated_sets` joins them to one.
 """
 
 from hasel_sysid.selection.choice import Choice, choose

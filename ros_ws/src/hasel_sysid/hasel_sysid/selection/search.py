@@ -34,9 +34,9 @@ def search(
     state.look_beyond(NOTHING, None)
     state.fit(state.singles(), 1, even_late=True)
     while True:
+        more = state.anything_missing() and state.extended()
         found = state.judged()
-        done = found.last.chance >= policy.level or not state.extended()
-        if done and not state.looked_closer(found.best):
+        if not more and not state.looked_closer(found.best):
             break
     chosen = smallest(found, policy)
     state.fit(state.possible(smaller(found.known, chosen)), policy.most_effects)
@@ -56,6 +56,10 @@ class _Search(Promises):
     def say(self, text: str, done: float) -> None:
         if self.progress:
             self.progress(text, done)
+
+    def anything_missing(self) -> bool:
+        """From the best set, by more than noise."""
+        return self.judged().last.chance < self.policy.level
 
     def extended(self) -> bool:
         """Whether anything promised more than the best set and was fitted."""
