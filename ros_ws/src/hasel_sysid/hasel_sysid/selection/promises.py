@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from hasel_sysid.selection.knowledge import Knowledge
 from hasel_sysid.selection.proposals import Proposal
-from hasel_sysid.selection.searched import plausible
+from hasel_sysid.selection.searched import likeness, plausible
 from hasel_sysid.selection.sets import EffectSet
 
 _RIVAL = 0.5
@@ -77,6 +77,14 @@ class Promises(Knowledge):
         promised = before - float(whole.least_residual @ whole.least_residual)
         kept = before - self.known[proposal.effects].squares if proposal.effects in self.known else 0.0
         return promised > self.policy.matters * before and kept < _RIVAL * promised
+
+    def likeness(self, one: str, other: str) -> float:
+        """Of two effects, beside the set that leaves least of those that both were tried beside."""
+        seen = [effects for effects, found in self.prospects.items() if one in found and other in found]
+        if not seen:
+            return 0.0
+        beside = min(seen, key=lambda effects: self.known[effects].squares)
+        return likeness(self.likelihood, self.prospects[beside], one, other)
 
     def may_stand_in(self, effect: str, gone: str, chosen: EffectSet) -> bool:
         """Whether it promises a good part of what the other one gives beside the rest, if that was looked beyond."""

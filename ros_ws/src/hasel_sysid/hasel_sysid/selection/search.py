@@ -9,7 +9,7 @@ from hasel_sysid.selection.choice import smallest
 from hasel_sysid.selection.policy import Policy
 from hasel_sysid.selection.promises import Promises
 from hasel_sysid.selection.proposals import Proposal, additions, exchanges, pairs, smaller
-from hasel_sysid.selection.searched import Searched, likeness, plausible
+from hasel_sysid.selection.searched import Searched, plausible
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Sets, name_of
 
 Progress = Callable[[str, float], None]
@@ -122,15 +122,10 @@ class _Search(Promises):
         return self.ranked(self.additions(parts), reach)
 
     def exchange(self, chosen: EffectSet) -> None:
-        """Fit a set with what looks most like one of its effects, and does not do far less alone, in its place."""
-        alone = {next(iter(s)): w.logarithm for s, w in self.whitened.items() if len(s) == 1}
+        """Fit a set with what looks most like one of its effects in its place."""
         for gone in sorted(chosen) if len(chosen) > 1 else ():
-            like_it = partial(likeness, self.likelihood, self.prospects[NOTHING], gone)
-            least = alone.get(gone, -math.inf) - self.reach
-            others = [
-                e for e in self.prospects[NOTHING] if e not in chosen and alone.get(e, math.inf) >= least
-            ]
-            for effect in sorted(others, key=like_it, reverse=True)[: self.policy.width]:
+            others = [e for e in self.prospects[NOTHING] if e not in chosen]
+            for effect in sorted(others, key=partial(self.likeness, gone), reverse=True)[: self.policy.width]:
                 effects = chosen - {gone} | {effect}
                 if effects in self.tried or not self.sets.compatible(effects) or self.sets.out_of_time():
                     continue
