@@ -1,6 +1,5 @@
 """The search over sets of effects: add, exchange, drop; what promises most is fitted in full."""
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -125,7 +124,7 @@ class _Search(Promises):
         """Fit a set with what looks most like one of its effects in its place."""
         for gone in sorted(chosen) if len(chosen) > 1 else ():
             others = [e for e in self.prospects[NOTHING] if e not in chosen]
-            for effect in sorted(others, key=partial(self.likeness, gone), reverse=True)[: self.policy.width]:
+            for effect in sorted(others, key=partial(self.likeness, gone), reverse=True)[: self.policy.fits]:
                 effects = chosen - {gone} | {effect}
                 if effects in self.tried or not self.sets.compatible(effects) or self.sets.out_of_time():
                     continue
