@@ -1,5 +1,6 @@
 """Where the search for each effect starts."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -87,6 +88,12 @@ def resized(start: Start, factor: float) -> Start:
             name = f"{start.effect.id}.{p.name}"
             values[name] = typical[name] = float(np.clip(factor * values[name], p.lower, p.upper))
     return replace(start, values=values, typical=typical)
+
+
+def valued(effect: Effect, values: Mapping[str, float]) -> Start:
+    """The effect at the values that it has in a model, by parameter name."""
+    own = {name: values[name] for p in effect.parameters if (name := f"{effect.id}.{p.name}") in values}
+    return Start(effect, own, dict(own))
 
 
 def _start(effect: Effect, fixed: dict[str, float]) -> Start:

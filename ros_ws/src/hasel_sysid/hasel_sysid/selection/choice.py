@@ -44,9 +44,9 @@ def choose(found: Searched, policy: Policy) -> Choice:
     No set is chosen where nothing is missing.
     """
     chosen = smallest(found, policy)
-    alike = [s for s in plausible(found.known) if len(s) == len(chosen) and _alike(found, chosen, s, policy)]
+    same = [s for s in plausible(found.known) if len(s) == len(chosen) and alike(found, chosen, s, policy)]
     return Choice(
-        chosen, tuple(alike), weights(found, chosen), _path(found, chosen), _groups(found, chosen, alike)
+        chosen, tuple(same), weights(found, chosen), _path(found, chosen), _groups(found, chosen, same)
     )
 
 
@@ -71,7 +71,7 @@ def _worth_as_much(found: Searched, effects: EffectSet, best: Worth, policy: Pol
     return left[1] > (1 - policy.matters) * left[0]
 
 
-def _alike(found: Searched, chosen: EffectSet, other: EffectSet, policy: Policy) -> bool:
+def alike(found: Searched, chosen: EffectSet, other: EffectSet, policy: Policy) -> bool:
     """Whether a set may stand in the chosen one's place: the confidence set of models.
 
     How much runs of unequal strength scatter says how unequally they speak, and is no doubt. Where most of what the

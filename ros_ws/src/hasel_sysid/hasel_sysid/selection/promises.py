@@ -86,13 +86,11 @@ class Promises(Knowledge):
         beside = min(seen, key=lambda effects: self.known[effects].squares)
         return likeness(self.likelihood, self.prospects[beside], one, other)
 
-    def may_stand_in(self, effect: str, gone: str, chosen: EffectSet) -> bool:
-        """Whether it promises a good part of what the other one gives beside the rest, if that was looked beyond."""
+    def may_stand_in(self, proposal: Proposal, gone: str, chosen: EffectSet) -> bool:
+        """Whether it promises a good part of what a chosen effect gives beside the rest, fitted anew without it."""
         rest = chosen - {gone}
-        if rest not in self.prospects:
+        if rest not in self.known:
             return True
-        if effect not in self.prospects[rest]:
-            return False
         without = self.whitened[rest].logarithm
         given = self.whitened[chosen].logarithm - without
-        return self.likelihood.promised(self.prospects[rest][effect]) - without > _RIVAL * given
+        return self.promised(proposal) - without > _RIVAL * given

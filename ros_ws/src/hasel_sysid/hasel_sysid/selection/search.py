@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
-from hasel_sysid.selection.choice import smallest
+from hasel_sysid.selection.choice import alike, smallest
 from hasel_sysid.selection.policy import Policy
 from hasel_sysid.selection.promises import Promises
 from hasel_sysid.selection.proposals import Proposal, additions, exchanges, pairs, smaller
@@ -121,25 +121,33 @@ class _Search(Promises):
         return self.ranked(self.additions(parts), reach)
 
     def exchange(self, chosen: EffectSet) -> None:
-        """Fit a set with what looks most like one of its effects in its place."""
+        """Fit sets with what looks like one of the effects in its place, as long as they cannot be told apart."""
         for gone in sorted(chosen) if len(chosen) > 1 else ():
-            others = [e for e in self.prospects[NOTHING] if e not in chosen]
-            for effect in sorted(others, key=partial(self.likeness, gone), reverse=True)[: self.policy.fits]:
-                effects = chosen - {gone} | {effect}
-                if effects in self.tried or not self.sets.compatible(effects) or self.sets.out_of_time():
-                    continue
-                if not self.may_stand_in(effect, gone, chosen):
-                    continue
-                self.tried.add(effects)
-                self.say(f"fitting {name_of(effects)}", 0.9)
-                self.keep(self._in_place_of(gone, chosen, effect))
+            for proposal in self.stand_ins(gone, chosen):
+                found = self.judged() if self.fit([proposal], 1) else None
+                if found is None or not alike(found, chosen, proposal.effects, self.policy):
+                    break
 
-    def _in_place_of(self, gone: str, chosen: EffectSet, effect: str) -> FittedSet | None:
-        """From where the fit of the effect alone has led, or its trial beside the baseline."""
-        of, alone = self.known[chosen], frozenset({effect})
-        if alone in self.known:
-            return self.sets.exchanged(of, gone, self.known[alone])
-        return self.sets.fit(chosen - {gone} | alone, of, (self.prospects[NOTHING][effect],))
+    def stand_ins(self, gone: str, chosen: EffectSet) -> list[Proposal]:
+        """What looks like an effect and promises to do in its place; most promising first.
+
+        What was fitted alone is tried as large as it is there, all else left as it is; the others beside the rest.
+        """
+        self.say(f"looking for what may stand in the place of {gone}", 0.9)
+        others = [e for e in self.prospects[NOTHING] if e not in chosen]
+        most_alike = sorted(others, key=partial(self.likeness, gone), reverse=True)[: self.policy.trials]
+        wanted = [e for e in most_alike if chosen - {gone} | {e} not in self.tried]
+        alone = {e: self.known[frozenset({e})] for e in wanted if frozenset({e}) in self.known}
+        places = [
+            (self.sets.without(self.known[chosen], gone) if alone else None, list(alone)),
+            (self.known.get(chosen - {gone}), [e for e in wanted if e not in alone]),
+        ]
+        found: list[Proposal] = []
+        for rest, effects in places:
+            if rest is not None and not self.sets.out_of_time():
+                seen = self.sets.prospects(rest, effects, self.likelihood.promised, self.policy.trials, alone)
+                found += [Proposal(rest, (prospect,)) for prospect in seen.values()]
+        return [p for p in self.ranked(found) if self.may_stand_in(p, gone, chosen)][: self.policy.fits]
 
     def fit(self, proposals: Iterable[Proposal], most: int, even_late: bool = False) -> int:
         """Fit the first of these in full; how many were."""

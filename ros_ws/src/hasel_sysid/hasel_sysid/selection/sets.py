@@ -104,9 +104,17 @@ class Sets(Protocol):
         """Of what was measured, as far as the recordings and these fits tell."""
 
     def prospects(
-        self, of: FittedSet, wanted: Collection[str] | None, rank: Callable[[Prospect], float], most: int
+        self,
+        of: FittedSet,
+        wanted: Collection[str] | None,
+        rank: Callable[[Prospect], float],
+        most: int,
+        sized: Mapping[str, FittedSet] | None = None,
     ) -> dict[str, Prospect]:
-        """What every other effect (or the wanted ones) could do; `most` of them, by rank, looked at more closely."""
+        """What every other effect (or the wanted ones) could do; `most` of them, by rank, looked at more closely.
+
+        sized: sets in which effects have the values from which they are to be looked at.
+        """
 
     def from_other_sizes(self, of: FittedSet, prospect: Prospect) -> Prospect | None:
         """The same effect beside the same set from where other sizes lead; None where there are none."""
@@ -117,8 +125,8 @@ class Sets(Protocol):
     def fit(self, effects: EffectSet, near: FittedSet, added: Collection[Prospect]) -> FittedSet | None:
         """Fitted in full, from where the prospects of what is new point to; None where that cannot be simulated."""
 
-    def exchanged(self, of: FittedSet, gone: str, by: FittedSet) -> FittedSet | None:
-        """Fitted in full with the effect of another set in the place of one of its own, from where both have led."""
+    def without(self, of: FittedSet, gone: str) -> FittedSet | None:
+        """The same with one effect taken out and all else left as it is; None where that cannot be simulated."""
 
     def out_of_time(self) -> bool:
         """Whether what has not been begun is to be left out."""

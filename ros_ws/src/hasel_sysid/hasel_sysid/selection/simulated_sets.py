@@ -8,14 +8,14 @@ from hasel_sim.effects.base import Effect
 from hasel_sim.errors import HaselSimError, ModelError
 from hasel_sim.model import Model
 
-from hasel_sysid.diagnosis.candidates import Start, decade_starts, resized, starts
+from hasel_sysid.diagnosis.candidates import Start, valued
 from hasel_sysid.diagnosis.context import on_own_bound
-from hasel_sysid.diagnosis.trial import Trial, Trials, nearer
+from hasel_sysid.diagnosis.trial import Trial, Trials
 from hasel_sysid.estimation import FitResult, fit_least_squares
-from hasel_sysid.estimation.least_squares import finished
+from hasel_sysid.estimation.least_squares import finished, fitted_result
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import Problem
-from hasel_sysid.projection import orthonormal
+from hasel_sysid.selection.first_trials import first_trials, sized_starts
 from hasel_sysid.selection.noise_bound import bounded_noise
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect
 from hasel_sysid.selection.trial_prospects import (
@@ -27,15 +27,10 @@ from hasel_sysid.selection.trial_prospects import (
     room,
 )
 
-_BATCH = 8
 _RIVAL = 0.5
 """What could take away less than this share of what the best one could gets no further steps."""
-_SIZES = (0.1, 2.0)
-"""Smallest and largest start, in typical sizes."""
 _BRIEF = 25
 """Evaluations that a full fit is given."""
-_RIVAL_FIT = 12
-"""The same where one effect takes another's place: where that needs more, it is not as good."""
 
 
 class SimulatedSets:
@@ -107,7 +102,12 @@ class SimulatedSets:
         return self.problem.time_limit.is_over()
 
     def prospects(
-        self, of: FittedSet, wanted: Collection[str] | None, rank: Rank, most: int
+        self,
+        of: FittedSet,
+        wanted: Collection[str] | None,
+        rank: Rank,
+        most: int,
+        sized: Mapping[str, FittedSet] | None = None,
     ) -> dict[str, Prospect]:
         """First trials of every effect on a draft; further steps with the `most` best, and with half as many."""
         names = [e for e in (self.effects if wanted is None else wanted) if e not in of.effects]
@@ -116,15 +116,15 @@ class SimulatedSets:
             return {}
         trials = Trials(self.problem, of.fit.evaluation)
         if of.effects == NOTHING or not self.first:
-            first = self._first(trials, [self.effects[name] for name in names])
+            first = first_trials(trials, [self.effects[name] for name in names], self.decades)
             rounds = (most, most // 2)
             self.trials, self.first, self.tried = trials, first, set(trials.tried)
         else:
-            first, rounds = trials.first(self._sized(of, names)), (most // 2, most // 4)
+            first, rounds = trials.first(self._begin(of, names, sized or {})), (most // 2, most // 4)
         looks = {t.start.effect.id: looks_of(t, trials) for t in reversed(first)}
         best = best_of_each([prospect_of(t, looks, of.effects) for t in first], rank)
         for keep in rounds:
-            if not keep or self.out_of_time():
+            if not best or not keep or self.out_of_time():
                 break
             most_hope = max(prospect.start.promised for prospect in best)
             going_on = [p for p in best[:keep] if p.start.promised >= _RIVAL * most_hope]
@@ -136,34 +136,11 @@ class SimulatedSets:
         """The same effect from a quarter to four times the size that it was tried at."""
         return from_other_sizes(Trials(self.problem, of.fit.evaluation), prospect)
 
-    def _sized(self, of: FittedSet, names: Collection[str]) -> list[Start]:
-        """The best start of every effect, of the size that its change beside the baseline leads to expect here."""
-        basis = orthonormal(of.jacobian)
-        best: dict[str, tuple[float, Start]] = {}
-        for trial in self.first:
-            effect = trial.start.effect.id
-            if effect not in names:
-                continue
-            change = self.fitted.evaluation.residual - trial.residual
-            left = change - basis @ (basis.T @ change)
-            power, along = float(left @ left), float(left @ of.residual)
-            drop = along * abs(along) / power if power > 0 else 0.0
-            if effect not in best or drop > best[effect][0]:
-                size = float(np.clip(along / power, *_SIZES)) if power > 0 else 1.0
-                best[effect] = drop, resized(trial.start, size)
-        return [start for _, start in best.values()]
-
-    def _first(self, trials: Trials, effects: Sequence[Effect]) -> list[Trial]:
-        every = [start for effect in effects for start in starts(effect)]
-        if self.decades:
-            every += [start for effect in effects for start in decade_starts(effect)]
-        every.sort(key=lambda start: not start.changes_nothing)
-        found: list[Trial] = []
-        for begin in range(0, len(every), _BATCH):
-            if begin > 0 and self.out_of_time():
-                break
-            found += trials.first(every[begin : begin + _BATCH])
-        return found if self.decades else found + nearer(trials, every, found)
+    def _begin(self, of: FittedSet, names: Collection[str], sized: Mapping[str, FittedSet]) -> list[Start]:
+        others = set(names) - set(sized)
+        first = [trial for trial in self.first if trial.start.effect.id in others]
+        known = [valued(self.effects[name], sized[name].fit.model.values) for name in names if name in sized]
+        return [*known, *sized_starts(of, first, self.fitted.evaluation.residual)]
 
     def fit(self, effects: EffectSet, near: FittedSet, added: Collection[Prospect]) -> FittedSet | None:
         """Least squares of the model itself, from where the drafts have led."""
@@ -177,16 +154,6 @@ class SimulatedSets:
                     values[name] = value
                 elif beside:
                     values[name] += value - base.model.values[name]
-        return self._fit(effects, near, values)
-
-    def exchanged(self, of: FittedSet, gone: str, by: FittedSet) -> FittedSet | None:
-        """The same from a fitted set, with the effect of another one, as large as it is there, for one of its own."""
-        values = {**by.fit.model.values, **of.fit.model.values}
-        return self._fit(of.effects - {gone} | by.effects, of, values, _RIVAL_FIT)
-
-    def _fit(
-        self, effects: EffectSet, near: FittedSet, values: Mapping[str, float], most: int = _BRIEF
-    ) -> FittedSet | None:
         try:
             model = self._model(near.fit.model, effects, near.effects).with_values({})
             start = {name: _inside(model, name, values[name]) for name in model.free if name in values}
@@ -194,12 +161,20 @@ class SimulatedSets:
                 self.problem,
                 model.with_values(start),
                 tolerance=1e-3,
-                most_evaluations=most,
+                most_evaluations=_BRIEF,
                 drafts=False,
             )
         except (HaselSimError, ModelError):
             return None
         return self.known_as(found)
+
+    def without(self, of: FittedSet, gone: str) -> FittedSet | None:
+        """Simulated once, at the values of the others."""
+        model = of.fit.model.without_effects(gone)
+        try:
+            return self.known_as(fitted_result(self.problem.evaluate(model, model.free), 1))
+        except HaselSimError:
+            return None
 
     def _model(self, model: Model, effects: EffectSet, before: EffectSet) -> Model:
         gone, new = sorted(before - effects), sorted(effects - before)

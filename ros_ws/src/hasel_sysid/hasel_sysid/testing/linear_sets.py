@@ -1,6 +1,7 @@
 """A problem of sets of effects without a simulator: every effect adds a known series, and the noise is known."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -74,7 +75,12 @@ class LinearSets:
         return not any(pair <= effects for pair in self._exclusive)
 
     def prospects(
-        self, of: FittedSet, wanted: Collection[str] | None, rank: Callable[[Prospect], float], most: int
+        self,
+        of: FittedSet,
+        wanted: Collection[str] | None,
+        rank: Callable[[Prospect], float],
+        most: int,
+        sized: Mapping[str, FittedSet] | None = None,
     ) -> dict[str, Prospect]:
         """Every other effect at its null."""
         names = [name for name in (self.series if wanted is None else wanted) if name not in of.effects]
@@ -88,9 +94,19 @@ class LinearSets:
     def from_other_sizes(self, of: FittedSet, prospect: Prospect) -> Prospect | None:
         """None: least squares end at one place from everywhere."""
 
-    def exchanged(self, of: FittedSet, gone: str, by: FittedSet) -> FittedSet | None:
-        """Least squares, which needs no start."""
-        return self.fit(of.effects - {gone} | by.effects, of, ())
+    def without(self, of: FittedSet, gone: str) -> FittedSet | None:
+        """What the effect did is left, all else is as it was."""
+        stays = [number for number, owner in enumerate(of.owners) if owner != gone]
+        return replace(
+            of,
+            effects=of.effects - {gone},
+            residual=of.residual + of.without[gone],
+            jacobian=of.jacobian[:, stays],
+            lower=of.lower[stays],
+            upper=of.upper[stays],
+            owners=tuple(of.owners[number] for number in stays),
+            without={effect: change for effect, change in of.without.items() if effect != gone},
+        )
 
     def out_of_time(self) -> bool:
         """Whether as many fits were made as may be."""

@@ -322,6 +322,19 @@ def test_what_is_left_beside_hardly_any_noise_makes_no_certainty():
     assert choice.weight_of("a") + choice.weight_of("b") > 0.95
 
 
+def test_what_looks_like_a_chosen_one_need_not_be_fitted_if_it_is_told_apart():
+    """Of eight that look somewhat like it, the one that promises most says that none can stand in its place."""
+    series = made_up(1)
+    for name in "bcefghij":
+        series[name] = series["a"] + 0.4 * series[name]
+    sets = LinearSets(series, {"a": 0.1, "d": 0.3}, WHITE, 1)
+    found = search(
+        sets, POLICY, begun=tuple(sets.fit(frozenset(one), sets.baseline(), ()) for one in ("ad", "d"))
+    )
+    assert choose(found, POLICY).chosen == {"a", "d"}
+    assert sum(len(effects) == 2 and "d" in effects for effects in found.known) == 2
+
+
 class _LookOtherwiseAtFirst(LinearSets):
     """Beside the baseline, effects look like something else: a model that is out of step shows them out of step."""
 
@@ -338,6 +351,15 @@ def test_what_is_left_is_looked_at_from_where_it_is_left():
     for seed in range(3):
         sets = _LookOtherwiseAtFirst(made_up(seed), {"a": 0.3, "d": 0.05}, WHITE, seed)
         assert chosen(sets)[0] == "ad"
+
+
+def test_what_may_stand_in_a_place_is_looked_at_beside_the_rest():
+    """Beside the baseline the double of the chosen one looks like something else, and four others look more like it."""
+    series = made_up(1)
+    series["b"] = series["a"] + 0.01 * series["b"]
+    sets = _LookOtherwiseAtFirst(series, {"a": 0.1, "d": 0.3}, WHITE, 1)
+    begun = tuple(sets.fit(frozenset(one), sets.baseline(), ()) for one in ("ad", "d"))
+    assert choose(search(sets, POLICY, begun=begun), POLICY).groups == (("a", "b"),)
 
 
 def test_where_a_set_describes_the_runs_what_dies_away_is_told_apart():

@@ -1,0 +1,48 @@
+"""The first trials of effects: over their ranges beside the baseline, beside other sets of the size to be expected."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from hasel_sim.effects.base import Effect
+
+from hasel_sysid.diagnosis.candidates import Start, decade_starts, resized, starts
+from hasel_sysid.diagnosis.trial import Trial, Trials, nearer
+from hasel_sysid.projection import orthonormal
+from hasel_sysid.selection.sets import FittedSet
+
+_BATCH = 8
+_SIZES = (0.1, 2.0)
+"""Smallest and largest start, in typical sizes."""
+
+
+def first_trials(trials: Trials, effects: Sequence[Effect], decades: bool) -> list[Trial]:
+    """Beside the baseline; decades: at sizes over the decades of every range. The first batch is tried in any case."""
+    every = [start for effect in effects for start in starts(effect)]
+    if decades:
+        every += [start for effect in effects for start in decade_starts(effect)]
+    every.sort(key=lambda start: not start.changes_nothing)
+    found: list[Trial] = []
+    for begin in range(0, len(every), _BATCH):
+        if begin > 0 and trials.time_is_over():
+            break
+        found += trials.first(every[begin : begin + _BATCH])
+    return found if decades else found + nearer(trials, every, found)
+
+
+def sized_starts(of: FittedSet, first: Sequence[Trial], baseline: np.ndarray) -> list[Start]:
+    """The best start of every effect, of the size that its change beside the baseline leads to expect beside a set.
+
+    first: trials beside the baseline, whose residual is `baseline` [frames].
+    """
+    basis = orthonormal(of.jacobian)
+    best: dict[str, tuple[float, Start]] = {}
+    for trial in first:
+        effect = trial.start.effect.id
+        change = baseline - trial.residual
+        left = change - basis @ (basis.T @ change)
+        power, along = float(left @ left), float(left @ of.residual)
+        drop = along * abs(along) / power if power > 0 else 0.0
+        if effect not in best or drop > best[effect][0]:
+            size = float(np.clip(along / power, *_SIZES)) if power > 0 else 1.0
+            best[effect] = drop, resized(trial.start, size)
+    return [start for _, start in best.values()]
