@@ -1,7 +1,6 @@
 """The action `run_experiment`: runs a plan, records it, and vouches for the recording."""
 
 import importlib
-import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -24,6 +23,7 @@ from hasel_driver.errors import DriverError, LimitError, RefusedError
 from hasel_driver.experiment import Experiment, ExperimentPlan
 from hasel_driver.experiment_recording import ExperimentRecording
 from hasel_driver.node_parameters import values
+from hasel_driver.one_at_a_time import OneAtATime
 from hasel_driver.presets import preset
 from hasel_driver.recording_path import chosen_path, reserve, reserve_unique
 from hasel_driver.supply_thread import SupplyThread
@@ -42,7 +42,7 @@ class ExperimentServer:
         self._experiment: Experiment | None = None
         self._recording: ExperimentRecording | None = None
         self._watched: list = []
-        self._busy = threading.Lock()
+        self._place = OneAtATime()
         self._server = ActionServer(
             node,
             RunExperiment,
@@ -92,12 +92,12 @@ class ExperimentServer:
         return write
 
     def _accept(self, _: RunExperiment.Goal) -> GoalResponse:
-        return GoalResponse.REJECT if self._busy.locked() else GoalResponse.ACCEPT
+        return GoalResponse.ACCEPT if self._place.promise() else GoalResponse.REJECT
 
     def _execute(self, goal_handle) -> RunExperiment.Result:
         result = RunExperiment.Result()
         try:
-            with self._alone():
+            with self._place.taken(), self._cleared_at_its_end():
                 plan = plan_of(goal_handle.request)
                 problems = self._run(plan, goal_handle, result)
         except (DriverError, RecordingError, OSError) as error:
@@ -111,15 +111,12 @@ class ExperimentServer:
         return result
 
     @contextmanager
-    def _alone(self) -> Iterator[None]:
-        if not self._busy.acquire(blocking=False):
-            raise RefusedError("Another experiment is running: wait for its end, or cancel it.")
+    def _cleared_at_its_end(self) -> Iterator[None]:
         try:
             yield
         finally:
             self._experiment = None
             recording, self._recording = self._recording, None
-            self._busy.release()
             if recording is not None:
                 recording.close()
 
