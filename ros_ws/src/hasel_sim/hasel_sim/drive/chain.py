@@ -1,15 +1,24 @@
 """The whole drive: commanded signal -> supply and electrode effects -> target -> response -> contraction."""
 
+from collections.abc import Sequence
 from types import SimpleNamespace
 
 import numpy as np
 
+from hasel_sim.drive.onset import with_onsets
 from hasel_sim.drive.peano_hasel import PeanoHaselDrive
 from hasel_sim.drive.schedule import DriveSchedule
-from hasel_sim.drive.sloped_box import limit_rate, target_contraction
+from hasel_sim.drive.sloped_box import limit_rate, onset, target_contraction
 from hasel_sim.effects.base import DriveEffect, DriveStage
 from hasel_sim.effects.first_order_lag import first_order_lag
 from hasel_sim.model import Model
+
+_SOON_S = 8e-3 * 0.5 ** np.arange(20)
+"""After a switch [s]: a lag of any length is on its way at one of them, down to the step of a derivative at nothing."""
+_SECANTS = 3
+"""By which the instant of an onset is found: from 5 % of its delay to 0.1 % and less."""
+_TO_TARGET = [stage for stage in DriveStage if stage < DriveStage.TARGET]
+_FROM_TARGET = [stage for stage in DriveStage if stage >= DriveStage.TARGET]
 
 
 class DriveChain:
@@ -55,12 +64,44 @@ class DriveChain:
         """
         if self.count == 0:
             return np.zeros((len(times), 0))
-        time, signal = schedule.sampled(times)
-        for stage in DriveStage:
+        time, signal = self._commanded(schedule, times, values, effect_values)
+        time, signal = self._through(_FROM_TARGET, time, self._target(signal, values), values, effect_values)
+        series = [np.interp(times, time, signal[:, muscle]) for muscle in range(self.count)]
+        return self._rest + np.stack(series, axis=1)
+
+    def _commanded(
+        self, schedule: DriveSchedule, times: np.ndarray, values: dict[str, float], effect_values: dict
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Times [s] [n] and what arrives at the muscles' electrodes [n, channels].
+
+        Where it follows the command by and by, some times soon after every switch are added, and those at which it
+        begins or ceases to contract: there, what it aims at has a corner.
+        """
+        origin, command = schedule.sampled(times)
+        time, signal = self._through(_TO_TARGET, origin, command, values, effect_values)
+        if np.array_equal(signal, command):
+            return time, signal
+        soon = (schedule.switches()[:, None] + _SOON_S).ravel()
+        times = np.union1d(times, soon[(soon > times[0]) & (soon < times[-1])])
+        onsets = self._onsets(values)
+        for _ in range(_SECANTS):
+            origin, command = schedule.sampled(times)
+            time, signal = self._through(_TO_TARGET, origin, command, values, effect_values)
+            known, (time, signal) = time, with_onsets(time, signal, onsets)
+            times = np.unique(np.interp(time, known, origin))
+        return time, signal
+
+    def _through(
+        self,
+        stages: Sequence[DriveStage],
+        time: np.ndarray,
+        signal: np.ndarray,
+        values: dict[str, float],
+        effect_values: dict,
+    ) -> tuple[np.ndarray, np.ndarray]:
+        for stage in stages:
             if stage == DriveStage.ELECTRODE and self._response == "first_order":
                 signal = first_order_lag(time, signal, values["rise_time"], values["fall_time"])
-            if stage == DriveStage.TARGET:
-                signal = self._target(signal, values)
             if stage == DriveStage.CONTRACTION and self._response == "sloped_box":
                 signal = limit_rate(time, signal, values["slope"])
             for effect in self.effects:
@@ -68,8 +109,16 @@ class DriveChain:
                     p: SimpleNamespace = effect_values[effect.id]
                     signal = effect.respond(time, signal, p)
                     time = effect.clock(time, p)
-        series = [np.interp(times, time, signal[:, muscle]) for muscle in range(self.count)]
-        return self._rest + np.stack(series, axis=1)
+        return time, signal
+
+    def _onsets(self, values: dict[str, float]) -> np.ndarray:
+        """Magnitude [channels] up to which a drive contracts nothing."""
+        found = np.zeros(len(self.channels))
+        if self._law is not None:
+            found[self._by_law] = self._law.onset(values)
+        for columns, levels, names in self._tables:
+            found[columns] = onset(levels, np.array([values[name] for name in names]))
+        return found
 
     def _target(self, signal: np.ndarray, values: dict[str, float]) -> np.ndarray:
         """Contraction aimed at [n, muscles] for a drive [n, channels]."""

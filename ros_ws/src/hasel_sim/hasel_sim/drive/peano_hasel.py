@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from hasel_sim.model.muscle_law import GAIN, PRELOAD, STIFFNESS, MuscleLaw
+from hasel_sim.muscle.muscle import Muscle
 
 _BODY = "parallel_stiffness"
 
@@ -20,9 +21,15 @@ class PeanoHaselDrive:
 
     def contraction(self, voltage: np.ndarray, values: Mapping[str, float]) -> np.ndarray:
         """Contraction [1] aimed at for voltages [V] of any shape."""
-        stiffness = self._own_stiffness + values[STIFFNESS]
-        muscle = self._muscle.with_values({f"{_BODY}.stiffness": stiffness})
+        muscle = self._beside_the_body(values)
         flat = np.ravel(voltage)
         load = np.full(flat.shape, values[PRELOAD])
         strain = muscle.balanced(flat, load, load) / muscle.rest_length
         return values[GAIN] * strain.reshape(np.shape(voltage))
+
+    def onset(self, values: Mapping[str, float]) -> float:
+        """Voltage [V] up to which the preload holds the muscle at its full length."""
+        return self._beside_the_body(values).onset(values[PRELOAD])
+
+    def _beside_the_body(self, values: Mapping[str, float]) -> Muscle:
+        return self._muscle.with_values({f"{_BODY}.stiffness": self._own_stiffness + values[STIFFNESS]})

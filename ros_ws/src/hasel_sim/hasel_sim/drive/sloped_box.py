@@ -27,6 +27,11 @@ def target_contraction(voltage: np.ndarray, levels: np.ndarray, amplitudes: np.n
     return inside * share**curve.exponent + beyond
 
 
+def onset(levels: np.ndarray, amplitudes: np.ndarray) -> float:
+    """Voltage [V] up to which the contraction aimed at is nothing; 0 where there is none."""
+    return _curve(tuple(levels), tuple(amplitudes)).threshold if len(levels) else 0.0
+
+
 class _Curve(NamedTuple):
     """What is known of the amplitudes once and for all: below `lowest` [V] the onset, above it the spline."""
 

@@ -164,6 +164,10 @@ class Muscle:
             x += share * one
         return self.count * x[back.ravel()]
 
+    def onset(self, load: float) -> float:
+        """Voltage [V] from which the strongest of the pouches, still at its full length, lifts a load [N]."""
+        return float(np.sqrt((load + 0.5 * self.mass * 9.81) / self._strongest(np.array([1.0]))[0]))
+
     def _strongest(self, voltage: np.ndarray) -> np.ndarray:
         """No pouch holds more [N] than the strongest one at rest."""
         return np.max(

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.schedule import DriveSchedule
+from hasel_sim.drive.sloped_box import onset
 from hasel_sim.effects.base import DriveEffect, DriveStage, EffectParameter
 from hasel_sim.effects.drive.charging_lag import ChargingLag
 from hasel_sim.model import load_model
@@ -89,3 +90,21 @@ def test_a_lag_is_as_exact_on_a_coarse_grid_as_on_a_fine_one():
     for discharge_time in np.linspace(0.04, 0.06, 11):
         fine = change(24000, discharge_time)
         assert np.linalg.norm(change(240, discharge_time) - fine) < 0.15 * np.linalg.norm(fine)
+
+
+def test_a_lag_delays_the_ramp_by_what_its_onset_takes():
+    """The ramp begins where the lagging voltage passes the onset, however fine the grid: tau log(V / (V - onset))."""
+    levels = [3500.0, 4500.0, 5500.0]
+    amplitudes = [0.0316, 0.0502, 0.0699]
+    values = {f"amplitude_{v:g}": a for v, a in zip(levels, amplitudes, strict=True)} | {"slope": 0.26}
+    chain = _chain([ChargingLag()], levels)
+    schedule = DriveSchedule(np.array([0.0]), np.array([[3500.0, 0.0]]))
+    threshold = onset(np.array(levels), np.array(amplitudes))
+    assert 1000 < threshold < 2000
+    for charge_time in (1e-4, 1e-3, 5e-3, 0.02, 0.021, 0.022):
+        lag = SimpleNamespace(charge_time=charge_time, discharge_time=0.0)
+        times = np.arange(0.0, 0.2, 1 / 240)
+        reached = chain.contraction(schedule, times, values, {"charging_lag": lag})[:, 0]
+        begin = float(np.interp(0.02, reached, times)) - 0.02 / 0.26
+        least = charge_time * np.log(3500 / (3500 - threshold))
+        assert least - 1.5e-4 < begin < 1.3 * least + 1.5e-4

@@ -61,6 +61,17 @@ def test_contraction_is_the_balance_with_the_body(read):
     )
 
 
+def test_onset_is_where_the_preload_is_lifted(read):
+    """Just below it nothing contracts, just above something; none without a preload."""
+    model = read(SWIMMER + LAW).with_values({"muscle.preload": 0.3, "muscle.gain": 1.0})
+    drive = PeanoHaselDrive(model.description.muscle)
+    onset = drive.onset(model.values)
+    assert onset > 500.0
+    below, above = drive.contraction(np.array([0.999 * onset, 1.001 * onset]), model.values)
+    assert abs(below) < 1e-12 < 1e-7 < above
+    assert drive.onset({**model.values, "muscle.preload": 0.0}) == 0.0
+
+
 def test_law_stands_in_for_the_table(read):
     """There are no amplitudes to free, at whatever voltage; a held voltage ends at what the law says."""
     model = read(SWIMMER + LAW).with_levels([3000.0, 5000.0])
