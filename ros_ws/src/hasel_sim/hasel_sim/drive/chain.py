@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from hasel_sim.drive.onset import with_onsets
+from hasel_sim.drive.onset import crossings, secants, soon_after_switches, with_onsets
 from hasel_sim.drive.peano_hasel import PeanoHaselDrive
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.drive.sloped_box import limit_rate, onset, target_contraction
@@ -13,10 +13,8 @@ from hasel_sim.effects.base import DriveEffect, DriveStage
 from hasel_sim.effects.first_order_lag import first_order_lag
 from hasel_sim.model import Model
 
-_SOON_S = 8e-3 * 0.5 ** np.arange(20)
-"""After a switch [s]: a lag of any length is on its way at one of them, down to the step of a derivative at nothing."""
 _SECANTS = 3
-"""By which the instant of an onset is found: from 5 % of its delay to 0.1 % and less."""
+"""They bring the instant of an onset from 5 % of its delay to less than 0.1 %."""
 _TO_TARGET = [stage for stage in DriveStage if stage < DriveStage.TARGET]
 _FROM_TARGET = [stage for stage in DriveStage if stage >= DriveStage.TARGET]
 
@@ -62,34 +60,49 @@ class DriveChain:
         schedule: of exactly this body's channels; values: the baseline's response and amplitudes; effect_values: a
         namespace per effect id.
         """
+        sharp = self.sharpened(schedule, times, values, effect_values)
+        return self.contraction_on(schedule, sharp, values, effect_values)[np.searchsorted(sharp, times)]
+
+    def contraction_on(
+        self, schedule: DriveSchedule, times: np.ndarray, values: dict[str, float], effect_values: dict
+    ) -> np.ndarray:
+        """The same by way of just these times: right where they are `sharpened`."""
         if self.count == 0:
             return np.zeros((len(times), 0))
-        time, signal = self._commanded(schedule, times, values, effect_values)
+        time, signal = self._through(_TO_TARGET, *schedule.sampled(times), values, effect_values)
+        onsets = self._onsets(values)
+        time, signal = with_onsets(time, signal, onsets, crossings(time, signal, onsets))
         time, signal = self._through(_FROM_TARGET, time, self._target(signal, values), values, effect_values)
         series = [np.interp(times, time, signal[:, muscle]) for muscle in range(self.count)]
         return self._rest + np.stack(series, axis=1)
 
-    def _commanded(
+    def sharpened(
         self, schedule: DriveSchedule, times: np.ndarray, values: dict[str, float], effect_values: dict
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Times [s] [n] and what arrives at the muscles' electrodes [n, channels].
-
-        Where it follows the command by and by, some times soon after every switch are added, and those at which it
-        begins or ceases to contract: there, what it aims at has a corner.
-        """
-        origin, command = schedule.sampled(times)
-        time, signal = self._through(_TO_TARGET, origin, command, values, effect_values)
-        if np.array_equal(signal, command):
-            return time, signal
-        soon = (schedule.switches()[:, None] + _SOON_S).ravel()
-        times = np.union1d(times, soon[(soon > times[0]) & (soon < times[-1])])
+    ) -> np.ndarray:
+        """These times [s] and, where the drive follows the command by and by, those at which it passes an onset."""
+        if not self._follows(effect_values):
+            return times
         onsets = self._onsets(values)
+        soon = soon_after_switches(schedule, onsets)
+        times = np.union1d(times, soon[(soon > times[0]) & (soon < times[-1])])
         for _ in range(_SECANTS):
             origin, command = schedule.sampled(times)
             time, signal = self._through(_TO_TARGET, origin, command, values, effect_values)
-            known, (time, signal) = time, with_onsets(time, signal, onsets)
-            times = np.unique(np.interp(time, known, origin))
-        return time, signal
+            nearer = secants(crossings(time, signal, onsets), origin)
+            if len(nearer) == 0:
+                break
+            times = np.union1d(times, nearer)
+        return times
+
+    def _follows(self, effect_values: dict) -> bool:
+        """Whether anything before the target acts on the drive."""
+        return self._response == "first_order" or any(
+            getattr(effect_values[effect.id], p.name) != p.null
+            for effect in self.effects
+            if effect.stage < DriveStage.TARGET
+            for p in effect.parameters
+            if not p.scan
+        )
 
     def _through(
         self,

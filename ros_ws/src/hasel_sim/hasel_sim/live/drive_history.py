@@ -28,6 +28,7 @@ class DriveHistory:
     def use(self, model: Model) -> None:
         """Go on with another model's muscles and drive effects."""
         self._chain = DriveChain(model)
+        self._sharp = np.empty(0)
         self._values, self._effect_values = model.values, model.effect_values()
 
     @property
@@ -54,5 +55,9 @@ class DriveHistory:
         self._instants.add(times, np.empty((len(times), 0)))
         voltage = self._chain.at_muscles(self._schedule.at(times))
         instants = np.concatenate([[self._start], self._instants.time])
-        contraction = self._chain.contraction(self._schedule, instants, self._values, self._effect_values)
-        return voltage, contraction[-len(times) :]
+        kept = self._sharp[self._sharp > self._instants.time[0]]
+        instants = self._sharp = self._chain.sharpened(
+            self._schedule, np.union1d(instants, kept), self._values, self._effect_values
+        )
+        contraction = self._chain.contraction_on(self._schedule, instants, self._values, self._effect_values)
+        return voltage, contraction[np.searchsorted(instants, times)]

@@ -26,6 +26,7 @@ class ChargingLag(DriveEffect):
             0.5,
             0.05,
             "R C: 1-20 MOhm in series with 0.4-1.8 nF per muscle gives 0.3-60 ms",
+            difference=5e-7,
         ),
         EffectParameter(
             "discharge_time",
@@ -36,6 +37,7 @@ class ChargingLag(DriveEffect):
             0.5,
             0.05,
             "R C: about 0.1 s for 1 nF through a 100 MOhm bleed resistor (hvps-x data sheet)",
+            difference=5e-7,
         ),
     )
     signature = (
