@@ -7,6 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hasel_recording import Recording
+from hasel_sim.drive.schedule import DriveSchedule
+from hasel_sim.model import load_model
+from hasel_sim.parallel import SerialExecutor
+from hasel_sim.run import Run
+from hasel_sysid.dataset import Experiment
+from hasel_sysid.problem import Evaluation, Problem
 from hasel_sysid.where_it_fails.run_series import RunSeries
 from scipy.signal import lsim
 
@@ -129,3 +135,15 @@ def unseen_rig() -> Path:
 def real_beam() -> Path:
     """Folder with the measured swing of a clamped silicone beam."""
     return _shared_data("real_beam")
+
+
+@pytest.fixture(scope="session")
+def bent_swimmer() -> tuple[Problem, Evaluation]:
+    """A coarse swimmer that is bent once, against an angle that it does not follow; not fitted."""
+    time = np.arange(0.0, 0.3, 1 / 60)
+    schedule = DriveSchedule(np.zeros(1), np.array([[4500.0, 0.0]]))
+    measured = Recording("bent", time, 0.2 * time, drive_signal=schedule.at(time))
+    problem = Problem([Experiment(measured, Run("bent", time, schedule))], SerialExecutor())
+    model = load_model("swimmer").with_levels([4500.0]).with_values({"amplitude_4500": 0.03})
+    model = model.with_numerics(mesh_density=0.5, quadrature_order=2, steps_per_second=120.0)
+    return problem, problem.evaluate(model, ("amplitude_4500", "slope"))

@@ -4,28 +4,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from hasel_recording import Recording
-from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.registry import catalogue
-from hasel_sim.model import load_model
-from hasel_sim.parallel import SerialExecutor
-from hasel_sim.run import Run
-from hasel_sysid.dataset import Experiment
 from hasel_sysid.diagnosis.candidates import starts
 from hasel_sysid.diagnosis.trial import Trial, Trials, _shortened
-from hasel_sysid.problem import Problem
 
 
 @pytest.fixture(scope="module")
-def trials() -> Trials:
-    """Of a swimmer that is bent once, against an angle that it does not follow."""
-    time = np.arange(0.0, 0.3, 1 / 60)
-    schedule = DriveSchedule(np.zeros(1), np.array([[4500.0, 0.0]]))
-    measured = Recording("bent", time, 0.2 * time, drive_signal=schedule.at(time))
-    problem = Problem([Experiment(measured, Run("bent", time, schedule))], SerialExecutor())
-    model = load_model("swimmer").with_levels([4500.0]).with_values({"amplitude_4500": 0.03})
-    model = model.with_numerics(mesh_density=0.5, quadrature_order=2, steps_per_second=120.0)
-    return Trials(problem, problem.evaluate(model, ("amplitude_4500", "slope")))
+def trials(bent_swimmer) -> Trials:
+    """Of the bent swimmer."""
+    return Trials(*bent_swimmer)
 
 
 def test_effects_without_effect_share_a_simulation(trials):
