@@ -65,10 +65,18 @@ class _Search(Promises):
         if self.fit(self.while_promising(self.better(self.additions([NOTHING]))), self.policy.fits):
             return True
         self.fit(self.singles(), self.policy.fits - sum(map(bool, plausible(self.known))))
-        beam = sorted(self.lasting(), key=self.value)[-self.policy.width :]
+        beam = self.beam()
         for one in beam:
             self.look_beyond_if_anything_is_missing(one)
         return self.fit(self.while_promising(self.better(self.around(beam))), self.policy.fits) > 0
+
+    def beam(self) -> list[EffectSet]:
+        """The best sets, and the likeliest one where its values are out of range: it is no answer itself, but an
+        effect beside it or in its place may be.
+        """
+        best = sorted(self.lasting(), key=self.value)[-self.policy.width :]
+        likeliest = max(self.known, key=self.value)
+        return best if likeliest in best else [likeliest, *best]
 
     def looked_closer(self, best: EffectSet) -> bool:
         """Whether a set that leaves more than noise was looked beyond only now, and with every effect.

@@ -256,6 +256,29 @@ def test_a_fit_that_was_lost_begins_again_from_the_smaller_set():
         assert squares[effects] <= 1.0001 * min(below, default=np.inf)
 
 
+class _OutOfRange(LinearSets):
+    """One of b and c without the other is out of range, and c promises nothing but beside b."""
+
+    def prospects(self, of, wanted, rank, most, sized=None):
+        """As of sets, c without room to move where b is not."""
+        seen = super().prospects(of, wanted, rank, most, sized)
+        if "c" in seen and "b" not in of.effects:
+            room = np.array([*of.upper, 0.0])
+            seen["c"] = replace(seen["c"], lower=np.array([*of.lower, 0.0]), upper=room)
+        return seen
+
+    def fit(self, effects, near, added):
+        """As of sets, some of them out of range."""
+        return replace(super().fit(effects, near, added), plausible=("b" in effects) == ("c" in effects))
+
+
+def test_what_is_likeliest_but_out_of_range_is_looked_beyond():
+    """It is never chosen itself; with what it stood in for beside it, it may be."""
+    for seed in range(3):
+        assert chosen(_OutOfRange(made_up(seed), {"a": 0.06, "b": 0.05, "c": 0.04}, WHITE, seed))[0] == "abc"
+        assert "b" not in chosen(_OutOfRange(made_up(seed), {"a": 0.06, "b": 0.05}, WHITE, seed))[0]
+
+
 class _TwoValleys(LinearSets):
     """A fit of one effect ends near the baseline, unless it begins from another size."""
 
