@@ -52,7 +52,7 @@ class Knowledge:
     def judged(self) -> Searched:
         """All known sets by the noise as it is known now."""
         self.use_noise()
-        worths = {s: worth(w, self.policy.prior_runs) for s, w in self.whitened.items()}
+        worths = {s: worth(w, self.sets.measured, self.policy.prior_runs) for s, w in self.whitened.items()}
         best = max(plausible(self.known), key=lambda s: worths[s].total)
         first = self.tested(NOTHING)
         last = self.tested(best) if best else first

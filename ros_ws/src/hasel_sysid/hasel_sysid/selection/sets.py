@@ -92,6 +92,8 @@ class Sets(Protocol):
 
     runs: np.ndarray
     """Number of the run of every frame, [frames]."""
+    measured: np.ndarray
+    """What was measured, the mean of every run removed, [frames]."""
     slack: np.ndarray
     """Errors that every set is known to make, [frames, n], such as those of the mesh; each run in its own amount."""
     swing: float

@@ -50,6 +50,7 @@ class SimulatedSets:
         self.problem, self.fitted, self.decades = problem, fit, decades
         self.effects = {effect.id: effect for effect in effects}
         self.runs = fit.evaluation.runs
+        self.measured = fit.evaluation.simulated() + fit.evaluation.residual
         self.slack = np.column_stack([np.zeros((len(self.runs), 0)), *slack])
         self.swing = problem.largest_swing
         self.tried: set[str] = set()

@@ -11,17 +11,20 @@ _PARTS, _PIECES = 4, 16
 what its first quarter is like no other quarter foretells."""
 _FEWEST_RUNS = 4
 """Fewer do not tell how much their gains scatter."""
+_TINY = float(np.finfo(float).tiny)
+"""For runs in which nothing moves, or only one does."""
 
 
 @dataclass(frozen=True)
 class Worth:
     """densities [folds]: logarithm of the predictive density of every run left out, up to a constant that all sets of a
-    likelihood share; residual [frames]: whitened, of the fit to all runs.
+    likelihood share; residual [frames]: whitened, of the fit to all runs; powers [folds]: of what was measured; None
+    where the folds are no runs.
     """
 
     densities: np.ndarray
     residual: np.ndarray
-    of_runs: bool
+    powers: np.ndarray | None
 
     @property
     def total(self) -> float:
@@ -31,10 +34,9 @@ class Worth:
     def over(self, other: "Worth") -> "Gain":
         """By how much this is worth more than another set."""
         by_run = self.densities - other.densities
-        count = len(by_run)
-        scatter = np.sqrt(count) * by_run.std(ddof=1) if self.of_runs and count >= _FEWEST_RUNS else 0.0
+        scatter = 0.0 if self.powers is None or len(by_run) < _FEWEST_RUNS else _scatter(by_run, self.powers)
         by_noise = float(np.linalg.norm(self.residual - other.residual))
-        return Gain(float(by_run.sum()), float(scatter), by_noise)
+        return Gain(float(by_run.sum()), scatter, by_noise)
 
 
 @dataclass(frozen=True)
@@ -51,10 +53,23 @@ class Gain:
         return max(self.scatter, self.by_noise)
 
 
-def worth(fitted: Whitened, prior_runs: float) -> Worth:
+def _scatter(gains: np.ndarray, powers: np.ndarray) -> float:
+    """Standard error of the sum of gains [runs] that grow with the power of what was measured [runs].
+
+    That a run in which the body hardly moves tells little is no disagreement, so that every run is compared with its
+    share of the sum: the ratio estimator, its residuals corrected for what each of them had a part in (v_D of Royall
+    and Cumberland 1981). Of runs of one power it is the usual standard error.
+    """
+    share = powers / max(powers.sum(), _TINY)
+    away = gains - share * gains.sum()
+    return float(np.sqrt((away**2 / np.maximum(1 - share, _TINY)).sum()))
+
+
+def worth(fitted: Whitened, measured: np.ndarray, prior_runs: float) -> Worth:
     """The leave-one-run-out log predictive density, linearised at the fit to all runs.
 
-    prior_runs: what is known of the parameters beforehand, as the information of so many average runs.
+    measured [frames]: the series itself, the mean of every run removed; prior_runs: what is known of the parameters
+    beforehand, as the information of so many average runs.
     """
     folds = fitted.runs
     alone = len(np.unique(folds)) == 1
@@ -64,7 +79,8 @@ def worth(fitted: Whitened, prior_runs: float) -> Worth:
     densities = [
         _density(fitted.basis, fitted.residual, folds == fold, prior_runs / len(numbers)) for fold in numbers
     ]
-    return Worth(np.array(densities), fitted.residual, not alone)
+    powers = None if alone else np.array([(measured[folds == fold] ** 2).sum() for fold in numbers])
+    return Worth(np.array(densities), fitted.residual, powers)
 
 
 def _density(basis: np.ndarray, residual: np.ndarray, here: np.ndarray, prior: float) -> float:

@@ -59,7 +59,7 @@ class LinearSets:
         self._own = np.column_stack([smooth_series(generator, self.runs) for _ in range(2)])
         truth = self._own @ np.array([1.0, -2.0]) + (0.0 if stranger is None else stranger)
         truth = truth + sum((size * self.series[name] for name, size in sizes.items()), start=0.0)
-        self.measured = truth + noise.sample(self.runs, 1, generator)[:, 0]
+        self.measured = self._centred(truth[:, None] + noise.sample(self.runs, 1, generator))[:, 0]
         self.fits, self._most_fits = 0, most_fits
 
     def baseline(self) -> FittedSet:
@@ -121,12 +121,11 @@ class LinearSets:
     def _fitted(self, effects: EffectSet) -> FittedSet:
         names = sorted(effects)
         columns = self._centred(np.column_stack([self._own, *(self.series[name] for name in names)]))
-        measured = self._centred(self.measured[:, None])[:, 0]
-        values = np.linalg.lstsq(columns, measured, rcond=None)[0]
+        values = np.linalg.lstsq(columns, self.measured, rcond=None)[0]
         free = np.full(columns.shape[1], np.inf)
         return FittedSet(
             effects,
-            measured - columns @ values,
+            self.measured - columns @ values,
             columns,
             -free,
             free,
