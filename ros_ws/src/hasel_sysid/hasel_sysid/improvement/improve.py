@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 
 from hasel_sim.model import Model
 
+from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.diagnosis.candidates import candidate_effects
 from hasel_sysid.diagnosis.explained import Status
@@ -13,14 +14,14 @@ from hasel_sysid.estimation import FitResult, fit_from_afar, in_step
 from hasel_sysid.estimation.refinement import changes_by_refinement, with_numerical_error
 from hasel_sysid.improvement.conclusion import conclude, last_diagnosis, near_noise
 from hasel_sysid.improvement.from_afar import from_afar
-from hasel_sysid.improvement.lawful import without_contradictions
+from hasel_sysid.improvement.lawful import against_law, without_contradictions
 from hasel_sysid.improvement.result import Improvement, Stage
 from hasel_sysid.improvement.set_up import opposed_runs
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection import POLICY, Choice, Policy, Searched, choose, search
 from hasel_sysid.selection.sets import EffectSet, name_of
 from hasel_sysid.selection.simulated_sets import SimulatedSets
-from hasel_sysid.selection.verdicts import diagnosis
+from hasel_sysid.selection.verdicts import diagnosis, noise_allowed
 
 _CREDIT = (
     "takes away a tenth of the squared error that finer numerics leave and foretells left-out runs better"
@@ -54,17 +55,15 @@ def improve(
     begun = () if near or opposed else from_afar(problem, fit, effects, policy, partial(_part, progress))
     sets = SimulatedSets(problem, fit, effects, list(changes.values()) if near else ())
     found = search(sets, policy, _part(progress, "search", 0.25, 0.95), begun)
-    choice = choose(found, policy)
+    noise, reached = noise_allowed(sets, found), cache(partial(_reached, problem, sets, found))
+    choice = choose(found, policy, lambda effects: not against_law(reached(effects), noise, sorted(effects)))
     said = diagnosis(sets, found, choice, changes)
-    stages = [_stage(fit, (), validation, said, changes)]
+    stages = [_stage(with_numerical_error(fit, changes), (), validation, said)]
     if on_stage:
         on_stage(stages[0])
     for effects_so_far in () if opposed else choice.path[1:]:
-        reached = sets.finished(found.known[effects_so_far]).fit
         order = _in_order(choice, effects_so_far)
-        stages.append(
-            _stage(reached, order, validation, None, changes_by_refinement(problem, reached.evaluation))
-        )
+        stages.append(_stage(reached(effects_so_far), order, validation, None))
         if on_stage:
             on_stage(stages[-1])
     if opposed:
@@ -74,6 +73,8 @@ def improve(
         )
     else:
         reason, done = _why_here(found, choice, policy, stages[0])
+        if choice.lawless:
+            reason = f"{reason} {' and '.join(map(name_of, choice.lawless))} would do as well, but by no law."
     if problem.time_limit.left_something_out:
         untried = said.not_tried
         what = f"not tried: {', '.join(untried)}" if untried else "not every set of effects was tried"
@@ -116,9 +117,17 @@ def _in_order(choice: Choice, effects: EffectSet) -> tuple[str, ...]:
     return tuple(effect for effect in order if effect in effects)
 
 
-def _stage(fit: FitResult, effects: Sequence[str], validation: Problem | None, said, changes) -> Stage:
+def _reached(problem: Problem, sets: SimulatedSets, found: Searched, effects: EffectSet) -> FitResult:
+    """The fit of a set, at its end."""
+    fit = sets.finished(found.known[effects]).fit
+    return with_numerical_error(fit, changes_by_refinement(problem, fit.evaluation))
+
+
+def _stage(
+    fit: FitResult, effects: Sequence[str], validation: Problem | None, said: Diagnosis | None
+) -> Stage:
     error = None if validation is None else validation.evaluate(fit.model).mean_absolute_error
-    return Stage(tuple(effects), with_numerical_error(fit, changes), error, said)
+    return Stage(tuple(effects), fit, error, said)
 
 
 def _concluded(stages: list[Stage], reason: str, nothing_else: bool, opposed: bool) -> Improvement:

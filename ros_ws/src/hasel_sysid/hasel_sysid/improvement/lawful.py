@@ -2,9 +2,16 @@
 
 from collections.abc import Sequence
 
-from hasel_sysid.diagnosis.constancy import trends
+from hasel_sysid.diagnosis.constancy import Trend, trends
+from hasel_sysid.estimation import FitResult
 from hasel_sysid.improvement.conclusion import last_diagnosis
 from hasel_sysid.improvement.result import Stage
+from hasel_sysid.noise import NoiseModel
+
+
+def against_law(fit: FitResult, noise: NoiseModel, effects: Sequence[str]) -> list[Trend]:
+    """What speaks against these effects of a fitted model being laws."""
+    return [trend for trend in trends(fit, noise, effects) if trend.contradicts]
 
 
 def without_contradictions(stages: Sequence[Stage]) -> tuple[list[Stage], tuple[str, ...], list[str]]:
@@ -13,7 +20,7 @@ def without_contradictions(stages: Sequence[Stage]) -> tuple[list[Stage], tuple[
     An effect whose size would have to change with voltage or frequency is reported and not added.
     """
     last = stages[-1]
-    against = [t for t in trends(last.fit, last_diagnosis(stages).noise, last.effects) if t.contradicts]
+    against = against_law(last.fit, last_diagnosis(stages).noise, last.effects)
     refused = tuple(dict.fromkeys(trend.parameter.partition(".")[0] for trend in against))
     kept = [stage for stage in stages if not set(refused) & set(stage.effects)]
     return kept, refused, [str(trend) for trend in against]

@@ -1,8 +1,9 @@
 """Where to stop, what cannot be told from it, and how probable every set is."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import takewhile
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -24,7 +25,8 @@ _NO_ODDS = float(np.log(20.0))
 class Choice:
     """chosen: the set to take; alike: sets of the same size that cannot be told from it, itself among them; weights: of
     every set that was fitted, together one; path: from no effect to the chosen set, one more at a time; groups: for
-    every chosen effect for which there are such, those that may stand in its place, itself among them.
+    every chosen effect for which there are such, those that may stand in its place, itself among them; lawless: sets
+    that would have been taken, were they laws.
     """
 
     chosen: EffectSet
@@ -32,21 +34,33 @@ class Choice:
     weights: dict[EffectSet, float]
     path: tuple[EffectSet, ...]
     groups: tuple[tuple[str, ...], ...]
+    lawless: tuple[EffectSet, ...] = ()
 
     def weight_of(self, effect: str) -> float:
         """Of all sets with an effect."""
         return sum(weight for effects, weight in self.weights.items() if effect in effects)
 
 
-def choose(found: Searched, policy: Policy) -> Choice:
+def choose(found: Searched, policy: Policy, lawful: Callable[[EffectSet], bool] | None = None) -> Choice:
     """The smallest set that is worth as much as the best one, to within its standard error, or leaves hardly more.
 
-    No set is chosen where nothing is missing.
+    No set is chosen where nothing is missing. lawful: of sets that cannot be told from that one, the first that is a
+    law stands in its place; where none is, the set stays.
     """
-    chosen = smallest(found, policy)
-    same = [s for s in plausible(found.known) if len(s) == len(chosen) and alike(found, chosen, s, policy)]
+    first = smallest(found, policy)
+    same = [s for s in plausible(found.known) if len(s) == len(first) and alike(found, first, s, policy)]
+    by_worth = sorted(same, key=lambda s: (s != first, -found.worths[s].total))
+    lawless = () if lawful is None else tuple(takewhile(lambda s: not lawful(s), by_worth))
+    if len(lawless) == len(by_worth):
+        lawless = ()
+    chosen = by_worth[len(lawless)]
     return Choice(
-        chosen, tuple(same), weights(found, chosen), _path(found, chosen), _groups(found, chosen, same)
+        chosen,
+        tuple(s for s in same if s not in lawless),
+        weights(found, chosen),
+        _path(found, chosen),
+        _groups(found, chosen, [s for s in same if s not in lawless]),
+        lawless,
     )
 
 

@@ -30,19 +30,26 @@ class Promises(Knowledge):
         return 2 * self.policy.doubt**2
 
     def better(self, proposals: Iterable[Proposal]) -> list[Proposal]:
-        """Those that promise more than the best known set, most promising first."""
+        """Those that promise more than the best known set, most promising first; what an effect is added to may be
+        likelier than that one, and out of range: what takes nothing away from it does not mend it.
+        """
         best = max(plausible(self.known), key=self.value)
         ranked = self.ranked(proposals, self.value(best), self.threshold)
-        return [p for p in ranked if len(p.effects) <= len(best) or self.matters(p, best)]
+        more = [p for p in ranked if len(p.effects) <= len(best) or self.matters(p, best)]
+        return [p for p in more if p.dropped or self.matters(p, p.of.effects)]
 
     def while_promising(self, ranked: Iterable[Proposal]) -> Iterator[Proposal]:
-        """A beam's width of them, and as many more as promise no less than what has been reached meanwhile."""
-        for number, proposal in enumerate(ranked):
+        """A beam's width of possible answers, and as many more as promise no less than what was reached meanwhile."""
+        answers = 0
+        for proposal in ranked:
+            if proposal.effects in self.tried:
+                continue
             reached = max(map(self.value, plausible(self.known))) - self.reach
             promise = self.promised(proposal) - self.threshold * len(proposal.effects)
-            if number >= self.policy.width and promise < reached:
+            if answers >= self.policy.width and promise < reached:
                 return
             yield proposal
+            answers += proposal.effects in plausible(self.known)
 
     def matters(self, proposal: Proposal, best: EffectSet) -> bool:
         """Whether it promises to take away what a larger set must."""

@@ -158,10 +158,11 @@ class _Search(Promises):
         return [p for p in self.ranked(found) if self.may_stand_in(p, gone, chosen)][: self.policy.fits]
 
     def fit(self, proposals: Iterable[Proposal], most: int, even_late: bool = False) -> int:
-        """Fit the first of these in full; how many were."""
-        count = 0
+        """Fit the first of these in full, until so many are possible answers, at most twice as many; how many were."""
+        count = answers = 0
         for proposal in proposals:
-            if count >= most or (self.sets.out_of_time() and not even_late):
+            enough = answers >= most or count >= 2 * most
+            if enough or (self.sets.out_of_time() and not even_late):
                 break
             if proposal.effects in self.tried:
                 continue
@@ -171,6 +172,7 @@ class _Search(Promises):
             self.keep(self._again(proposal.effects))
             self.keep(self._from_other_sizes(proposal))
             count += 1
+            answers += proposal.effects in plausible(self.known)
         return count
 
     def _again(self, effects: EffectSet) -> FittedSet | None:

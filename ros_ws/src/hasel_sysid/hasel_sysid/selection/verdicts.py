@@ -47,8 +47,7 @@ def _context(
         t.start.effect.id: signature(t, fit.evaluation.residual, sets.trials.base.jacobian, t.start.typical)
         for t in reversed(sets.first)
     }
-    measured = found.likelihood.noise
-    noise = allowed_noise(measured, POLICY.discrepancy * sets.swing)
+    measured, noise = found.likelihood.noise, noise_allowed(sets, found)
     named = next((next(iter(s)) for s in choice.path if len(s) == 1), None)
     return Context(
         list(sets.effects.values()),
@@ -65,6 +64,11 @@ def _context(
         frozenset(sets.effects) - sets.tried,
         winner=named,
     )
+
+
+def noise_allowed(sets: SimulatedSets, found: Searched) -> NoiseModel:
+    """By which a model is judged: what was measured, and what no model has."""
+    return allowed_noise(found.likelihood.noise, POLICY.discrepancy * sets.swing)
 
 
 def _left(found: Searched, choice: Choice, noise: NoiseModel) -> float:

@@ -396,3 +396,36 @@ def test_where_a_set_describes_the_runs_what_dies_away_is_told_apart():
     worths = [found.worths[frozenset(name)].total for name in "ab"]
     assert worths[0] - worths[1] > 10
     assert not choose(found, POLICY).groups
+
+
+class _SomeOutOfRange(LinearSets):
+    """Whatever holds b has values out of their ranges."""
+
+    def fit(self, effects, near, added):
+        """As of sets, some of them out of range."""
+        return replace(super().fit(effects, near, added), plausible="b" not in effects)
+
+
+def test_what_is_out_of_range_is_no_answer_and_takes_no_answers_place():
+    """The pair that promises most, out of range, does not keep the second of the possible ones from being fitted."""
+    for seed in range(3):
+        series = made_up(seed, "abgh")
+        for alike, name in ((0.1, "h"), (0.8, "g")):
+            series[name] = series["b"] + alike * series[name]
+        sets = _SomeOutOfRange(series, {"a": 0.3, "b": 0.1}, WHITE, seed)
+        assert {frozenset("ah"), frozenset("ag")} <= set(search(sets, POLICY, stand_ins=False).known)
+
+
+def test_of_sets_that_cannot_be_told_apart_one_that_is_a_law_is_taken():
+    """The lawless one is named for what it is; it stays where nothing else will do."""
+    series = made_up(2)
+    series["b"] = series["a"] + 0.01 * series["b"]
+    found = search(LinearSets(series, {"a": 0.1, "d": 0.3}, WHITE, 2), POLICY)
+    likelier = choose(found, POLICY).chosen
+    other = likelier ^ {"a", "b"}
+    choice = choose(found, POLICY, lambda effects: effects != likelier)
+    assert (choice.chosen, choice.lawless, choice.alike) == (other, (likelier,), (other,))
+    assert choice.path[-1] == other and not choice.groups
+    nothing_else = choose(found, POLICY, lambda effects: "d" not in effects)
+    assert (nothing_else.chosen, nothing_else.lawless) == (likelier, ())
+    assert nothing_else.groups == (("a", "b"),)
