@@ -19,7 +19,7 @@ from hasel_sysid.improvement.result import Improvement, Stage
 from hasel_sysid.improvement.set_up import opposed_runs
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection import POLICY, Choice, Policy, Searched, choose, search
-from hasel_sysid.selection.sets import EffectSet, name_of
+from hasel_sysid.selection.sets import EffectSet, FittedSet, name_of
 from hasel_sysid.selection.simulated_sets import SimulatedSets
 from hasel_sysid.selection.verdicts import diagnosis, noise_allowed
 
@@ -54,16 +54,22 @@ def improve(
     effects = candidate_effects(fit.model, tuple(only) if only else None)
     begun = () if near or opposed else from_afar(problem, fit, effects, policy, partial(_part, progress))
     sets = SimulatedSets(problem, fit, effects, list(changes.values()) if near else ())
-    found = search(sets, policy, _part(progress, "search", 0.25, 0.95), begun)
-    noise, reached = noise_allowed(sets, found), cache(partial(_reached, problem, sets, found))
-    choice = choose(found, policy, lambda effects: not against_law(reached(effects), noise, sorted(effects)))
+    reached = cache(partial(_reached, problem, sets))
+
+    def lawful(found: Searched, effects: EffectSet) -> bool:
+        fit = reached(found.known[effects])
+        return not against_law(fit, noise_allowed(sets, found), sorted(effects))
+
+    found = search(sets, policy, _part(progress, "search", 0.25, 0.95), begun, lawful=lawful)
+    choice = choose(found, policy, partial(lawful, found))
     said = diagnosis(sets, found, choice, changes)
     stages = [_stage(with_numerical_error(fit, changes), (), validation, said)]
     if on_stage:
         on_stage(stages[0])
     for effects_so_far in () if opposed else choice.path[1:]:
         order = _in_order(choice, effects_so_far)
-        stages.append(_stage(reached(effects_so_far), order, validation, None))
+        fit_so_far = reached(found.known[effects_so_far])
+        stages.append(_stage(fit_so_far, order, validation, None))
         if on_stage:
             on_stage(stages[-1])
     if opposed:
@@ -117,9 +123,9 @@ def _in_order(choice: Choice, effects: EffectSet) -> tuple[str, ...]:
     return tuple(effect for effect in order if effect in effects)
 
 
-def _reached(problem: Problem, sets: SimulatedSets, found: Searched, effects: EffectSet) -> FitResult:
+def _reached(problem: Problem, sets: SimulatedSets, fitted: FittedSet) -> FitResult:
     """The fit of a set, at its end."""
-    fit = sets.finished(found.known[effects]).fit
+    fit = sets.finished(fitted).fit
     return with_numerical_error(fit, changes_by_refinement(problem, fit.evaluation))
 
 

@@ -11,12 +11,10 @@ from scipy.optimize import linear_sum_assignment
 from hasel_sysid.selection.policy import Policy
 from hasel_sysid.selection.searched import Searched, likeness, plausible
 from hasel_sysid.selection.sets import NOTHING, EffectSet
-from hasel_sysid.selection.squares import log_squares, surely_larger
+from hasel_sysid.selection.squares import log_squares, squares_judge, surely_larger
 from hasel_sysid.selection.worth import Worth
 
 _RESAMPLED = 2000
-_MOST = 0.5
-"""Share of what the best set leaves that noise does not explain, from which on noise does not judge."""
 _NO_ODDS = float(np.log(20.0))
 """Sets whose odds are below 20 to 1 are not told apart, however alike they are."""
 
@@ -47,13 +45,11 @@ def choose(found: Searched, policy: Policy, lawful: Callable[[EffectSet], bool] 
     No set is chosen where nothing is missing. lawful: of sets that cannot be told from that one, the first that is a
     law stands in its place; where none is, the set stays.
     """
-    first = smallest(found, policy)
-    same = [s for s in plausible(found.known) if len(s) == len(first) and alike(found, first, s, policy)]
-    by_worth = sorted(same, key=lambda s: (s != first, -found.worths[s].total))
-    lawless = () if lawful is None else tuple(takewhile(lambda s: not lawful(s), by_worth))
-    if len(lawless) == len(by_worth):
+    same = all_alike(found, smallest(found, policy), policy)
+    lawless = () if lawful is None else tuple(takewhile(lambda s: not lawful(s), same))
+    if len(lawless) == len(same):
         lawless = ()
-    chosen = by_worth[len(lawless)]
+    chosen = same[len(lawless)]
     return Choice(
         chosen,
         tuple(s for s in same if s not in lawless),
@@ -85,13 +81,19 @@ def _worth_as_much(found: Searched, effects: EffectSet, best: Worth, policy: Pol
     return left[1] > (1 - policy.matters) * left[0]
 
 
+def all_alike(found: Searched, chosen: EffectSet, policy: Policy) -> list[EffectSet]:
+    """The sets of a set's size that may stand in its place: itself, then those that are worth most."""
+    same = [s for s in plausible(found.known) if len(s) == len(chosen) and alike(found, chosen, s, policy)]
+    return sorted(same, key=lambda s: (s != chosen, -found.worths[s].total))
+
+
 def alike(found: Searched, chosen: EffectSet, other: EffectSet, policy: Policy) -> bool:
     """Whether a set may stand in the chosen one's place: the confidence set of models.
 
     How much runs of unequal strength scatter says how unequally they speak, and is no doubt. Where most of what the
     best set leaves is not noise, only the squares speak, and frames that share an error speak as one.
     """
-    if found.beyond_noise > _MOST:
+    if squares_judge(found.beyond_noise):
         error, least = found.known[other].residual, found.known[chosen].residual
         return surely_larger(error, least, found.likelihood.runs) <= policy.doubt
     more = found.worths[chosen].over(found.worths[other])
@@ -119,7 +121,7 @@ def weights(found: Searched, chosen: EffectSet) -> dict[EffectSet, float]:
     """
     every = plausible(found.known)
     generator = np.random.default_rng(3)
-    if found.beyond_noise > _MOST:
+    if squares_judge(found.beyond_noise):
         every = [s for s in every if len(s) <= len(chosen)]
         sizes = [log_squares(found.known[s].residual, found.likelihood.runs) for s in every]
         logarithms, errors = np.array(sizes).T

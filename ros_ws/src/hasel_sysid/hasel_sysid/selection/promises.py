@@ -5,9 +5,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from hasel_sysid.selection.knowledge import Knowledge
-from hasel_sysid.selection.proposals import Proposal
+from hasel_sysid.selection.proposals import Proposal, additions
 from hasel_sysid.selection.searched import likeness, plausible
 from hasel_sysid.selection.sets import EffectSet
+from hasel_sysid.selection.squares import squares_judge, surely_larger
 
 _RIVAL = 0.5
 """What promises less than this share of what an effect gives cannot stand in its place: promises are that good."""
@@ -73,6 +74,22 @@ class Promises(Knowledge):
             small = effects not in self.tried and len(effects) <= self.policy.most_effects
             if small and self.sets.compatible(effects):
                 yield proposal
+
+    def no_worse(self, chosen: EffectSet) -> list[Proposal]:
+        """Sets of a known one's size that promise not to be told from it: one effect more than a set that was looked
+        beyond, and one that takes something away; most promising first.
+        """
+        parts = [one for one in self.prospects if len(one) == len(chosen) - 1]
+        ranked = self.ranked(additions(self.known, self.prospects, parts))
+        return [p for p in ranked if self.may_be_alike(p, chosen) and self.matters(p, p.of.effects)]
+
+    def may_be_alike(self, proposal: Proposal, chosen: EffectSet) -> bool:
+        """Whether it promises not to be told from a known set."""
+        if squares_judge(self.beyond_noise):
+            least = self.known[chosen].residual
+            surely = surely_larger(proposal.whole.least_residual, least, self.sets.runs)
+            return surely <= self.policy.doubt
+        return self.promised(proposal) > self.whitened[chosen].logarithm - self.reach
 
     def promised(self, proposal: Proposal) -> float:
         """The logarithm of its likelihood, to first order."""

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
-from hasel_sysid.selection.choice import alike, smallest
+from hasel_sysid.selection.choice import alike, all_alike, choose, smallest
 from hasel_sysid.selection.policy import Policy
 from hasel_sysid.selection.promises import Promises
 from hasel_sysid.selection.proposals import Proposal, additions, exchanges, pairs, smaller
@@ -12,6 +12,7 @@ from hasel_sysid.selection.searched import Searched, plausible
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Sets, name_of
 
 Progress = Callable[[str, float], None]
+Lawful = Callable[[Searched, EffectSet], bool]
 
 _AS_GOOD = 1.001
 """A fit that ends with so many times the squares of a smaller set's has lost nothing: ten times its tolerance."""
@@ -23,13 +24,15 @@ def search(
     progress: Progress | None = None,
     begun: tuple[FittedSet, ...] = (),
     stand_ins: bool = True,
+    lawful: Lawful | None = None,
 ) -> Searched:
     """Extend the best sets as long as anything is missing from the best one and something promises to supply it.
 
-    begun: further sets that are fitted already; stand_ins: also fit what looks like a chosen effect in its place.
+    begun: further sets that are fitted already; stand_ins: also fit what looks like a chosen effect in its place;
+    lawful: whether what a known set adds is a law.
     """
     known = {f.effects: f for f in (sets.baseline(), *begun)}
-    state = _Search(sets, policy, known, progress=progress)
+    state = _Search(sets, policy, known, progress=progress, lawful=lawful)
     state.look_beyond(NOTHING, None)
     state.fit(state.singles(), 1, even_late=True)
     while True:
@@ -40,8 +43,9 @@ def search(
     chosen = smallest(found, policy)
     state.fit(state.possible(smaller(found.known, chosen)), policy.most_effects)
     state.fit(state.rivals(found, chosen), policy.fits)
+    state.fit(state.until_a_law(), policy.fits)
     if stand_ins:
-        state.exchange(smallest(state.judged(), policy))
+        state.exchange(state.chosen())
     return state.judged()
 
 
@@ -51,6 +55,7 @@ class _Search(Promises):
 
     progress: Progress | None = None
     closely: set[EffectSet] = field(default_factory=lambda: {NOTHING})
+    lawful: Lawful | None = None
 
     def say(self, text: str, done: float) -> None:
         if self.progress:
@@ -127,6 +132,21 @@ class _Search(Promises):
         reach = found.whitened[chosen].logarithm - self.reach
         parts = [part for gone in chosen if (part := chosen - {gone}) in self.known]
         return self.ranked(self.additions(parts), reach)
+
+    def until_a_law(self) -> Iterator[Proposal]:
+        """What promises to be no worse than the chosen set, as long as nothing that may stand in its place is a law."""
+        found = self.judged()
+        chosen = smallest(found, self.policy)
+        for proposal in self.no_worse(chosen) if self.lawful and chosen else ():
+            found = self.judged()
+            if any(self.lawful(found, one) for one in all_alike(found, chosen, self.policy)):
+                return
+            yield proposal
+
+    def chosen(self) -> EffectSet:
+        """The set that would be taken now."""
+        found = self.judged()
+        return choose(found, self.policy, partial(self.lawful, found) if self.lawful else None).chosen
 
     def exchange(self, chosen: EffectSet) -> None:
         """Fit sets with what looks like one of the effects in its place, as long as they cannot be told apart."""

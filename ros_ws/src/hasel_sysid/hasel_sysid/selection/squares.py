@@ -4,6 +4,13 @@ import math
 
 import numpy as np
 
+_MOST = 0.5
+
+
+def squares_judge(beyond_noise: float) -> bool:
+    """Whether noise does not judge: where most of what the best set leaves is more than noise explains."""
+    return beyond_noise > _MOST
+
 
 def surely_larger(error: np.ndarray, than: np.ndarray, runs: np.ndarray) -> float:
     """By how many standard errors the logarithm of a sum of squares is the larger; errors and runs: [frames]."""

@@ -429,3 +429,19 @@ def test_of_sets_that_cannot_be_told_apart_one_that_is_a_law_is_taken():
     nothing_else = choose(found, POLICY, lambda effects: "d" not in effects)
     assert (nothing_else.chosen, nothing_else.lawless) == (likelier, ())
     assert nothing_else.groups == (("a", "b"),)
+
+
+def test_while_what_is_chosen_is_no_law_what_promises_as_much_is_fitted():
+    """Of several that look alike only one not fitted yet is a law: it is fitted for that, and for nothing else."""
+    series = made_up(5)
+    for name in "bcefg":
+        series[name] = series["a"] + 0.02 * series[name]
+    sets = LinearSets(series, {"a": 0.05}, WHITE, 5)
+    known = search(sets, POLICY, stand_ins=False).known
+    left = {frozenset(name) for name in "abcefg"} - set(known)
+    assert left
+    for only in left:
+        found = search(sets, POLICY, stand_ins=False, lawful=lambda _, effects, only=only: effects == only)
+        assert choose(found, POLICY, lambda effects, only=only: effects == only).chosen == only
+    every = search(sets, POLICY, stand_ins=False, lawful=lambda found, effects: True)
+    assert set(every.known) == set(known)
