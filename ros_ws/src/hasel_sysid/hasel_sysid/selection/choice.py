@@ -15,8 +15,6 @@ from hasel_sysid.selection.squares import log_squares, squares_judge, surely_lar
 from hasel_sysid.selection.worth import Worth
 
 _RESAMPLED = 2000
-_NO_ODDS = float(np.log(20.0))
-"""Sets whose odds are below 20 to 1 are not told apart, however alike they are."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +95,7 @@ def alike(found: Searched, chosen: EffectSet, other: EffectSet, policy: Policy) 
         error, least = found.known[other].residual, found.known[chosen].residual
         return surely_larger(error, least, found.likelihood.runs) <= policy.doubt
     more = found.worths[chosen].over(found.worths[other])
-    return more.total <= max(policy.doubt * more.by_noise, _NO_ODDS)
+    return more.total <= max(policy.doubt * more.by_noise, float(np.log(policy.odds)))
 
 
 def _groups(found: Searched, chosen: EffectSet, alike: Sequence[EffectSet]) -> tuple[tuple[str, ...], ...]:

@@ -86,19 +86,14 @@ class Knowledge:
         }
 
     def could_matter(self, effect: str, beside: EffectSet) -> bool:
-        """Whether it looks like half of what a larger set must take away, or more."""
+        """Whether it looks like a good part of what a larger set must take away."""
         fitted = self.known[beside]
         most = drops(self.looks(beside)[effect], orthonormal(fitted.jacobian), fitted.residual)
-        return float(most) > 0.5 * self.policy.matters * fitted.squares
+        return float(most) > self.policy.hope * self.policy.matters * fitted.squares
 
     def value(self, effects: EffectSet) -> float:
         """Of a known set: likelier by what noise alone may gain, for every effect more."""
         return self.whitened[effects].logarithm - self.threshold * len(effects)
-
-    def lasting(self) -> list[EffectSet]:
-        """The plausible sets that are worth more than every known part of them."""
-        every = plausible(self.known)
-        return [s for s in every if all(self.value(s) > self.value(part) for part in every if part < s)]
 
     def leaves_what_matters(self, effects: EffectSet) -> bool:
         """Whether more of the squares than is ever worth an effect is beyond what noise explains."""

@@ -19,6 +19,9 @@ class Policy:
     standard_errors: by which a larger set must be worth more than a smaller one (Breiman et al. 1984).
     matters: share of the squared error that a larger set must take away; what another mesh leaves is less.
     doubt: standard errors of a log-likelihood ratio (Vuong 1989) within which two sets are not told apart, 95 %.
+    odds: to one; sets between which they are smaller are not told apart, however alike they are.
+    hope: share of what something should give below which its promise to first order is not followed; promises are
+        that good.
     """
 
     level: float = 0.01
@@ -31,6 +34,8 @@ class Policy:
     standard_errors: float = 1.0
     matters: float = 0.1
     doubt: float = 2.0
+    odds: float = 20.0
+    hope: float = 0.5
 
     def wider(self) -> "Policy":
         """The same with a search twice as wide, for a model out of step: there, first order tells little of where a

@@ -5,13 +5,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from hasel_sysid.selection.knowledge import Knowledge
-from hasel_sysid.selection.proposals import Proposal, additions
+from hasel_sysid.selection.proposals import Proposal
 from hasel_sysid.selection.searched import likeness, plausible
 from hasel_sysid.selection.sets import EffectSet
-from hasel_sysid.selection.squares import squares_judge, surely_larger
-
-_RIVAL = 0.5
-"""What promises less than this share of what an effect gives cannot stand in its place: promises are that good."""
 
 
 @dataclass
@@ -75,32 +71,16 @@ class Promises(Knowledge):
             if small and self.sets.compatible(effects):
                 yield proposal
 
-    def no_worse(self, chosen: EffectSet) -> list[Proposal]:
-        """Sets of a known one's size that promise not to be told from it: one effect more than a set that was looked
-        beyond, and one that takes something away; most promising first.
-        """
-        parts = [one for one in self.prospects if len(one) == len(chosen) - 1]
-        ranked = self.ranked(additions(self.known, self.prospects, parts))
-        return [p for p in ranked if self.may_be_alike(p, chosen) and self.matters(p, p.of.effects)]
-
-    def may_be_alike(self, proposal: Proposal, chosen: EffectSet) -> bool:
-        """Whether it promises not to be told from a known set."""
-        if squares_judge(self.beyond_noise):
-            least = self.known[chosen].residual
-            surely = surely_larger(proposal.whole.least_residual, least, self.sets.runs)
-            return surely <= self.policy.doubt
-        return self.promised(proposal) > self.whitened[chosen].logarithm - self.reach
-
     def promised(self, proposal: Proposal) -> float:
         """The logarithm of its likelihood, to first order."""
         return self.likelihood.promised(proposal.whole)
 
     def broken(self, proposal: Proposal) -> bool:
-        """Whether a fit took away less than half of the squares that it promised to take away: it ended elsewhere."""
+        """Whether a fit took away far less of the squares than it promised to take away: it ended elsewhere."""
         before, whole = proposal.of.squares, proposal.whole
         promised = before - float(whole.least_residual @ whole.least_residual)
         kept = before - self.known[proposal.effects].squares if proposal.effects in self.known else 0.0
-        return promised > self.policy.matters * before and kept < _RIVAL * promised
+        return promised > self.policy.matters * before and kept < self.policy.hope * promised
 
     def likeness(self, one: str, other: str) -> float:
         """Of two effects, beside the set that leaves least of those that both were tried beside."""
@@ -117,4 +97,4 @@ class Promises(Knowledge):
             return True
         without = self.whitened[rest].logarithm
         given = self.whitened[chosen].logarithm - without
-        return self.promised(proposal) - without > _RIVAL * given
+        return self.promised(proposal) - without > self.policy.hope * given

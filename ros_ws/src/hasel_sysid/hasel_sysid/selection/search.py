@@ -1,21 +1,17 @@
 """The search over sets of effects: add, exchange, drop; what promises most is fitted in full."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
 from hasel_sysid.selection.choice import alike, all_alike, choose, smallest
+from hasel_sysid.selection.full_fits import FullFits, Progress
 from hasel_sysid.selection.policy import Policy
-from hasel_sysid.selection.promises import Promises
 from hasel_sysid.selection.proposals import Proposal, additions, exchanges, pairs, smaller
-from hasel_sysid.selection.searched import Searched, plausible
+from hasel_sysid.selection.searched import Searched, lasting, plausible, worth_most
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Sets, name_of
 
-Progress = Callable[[str, float], None]
 Lawful = Callable[[Searched, EffectSet], bool]
-
-_AS_GOOD = 1.001
-"""A fit that ends with so many times the squares of a smaller set's has lost nothing: ten times its tolerance."""
 
 
 def search(
@@ -50,16 +46,11 @@ def search(
 
 
 @dataclass
-class _Search(Promises):
+class _Search(FullFits):
     """closely: the sets that were looked beyond with every effect."""
 
-    progress: Progress | None = None
     closely: set[EffectSet] = field(default_factory=lambda: {NOTHING})
     lawful: Lawful | None = None
-
-    def say(self, text: str, done: float) -> None:
-        if self.progress:
-            self.progress(text, done)
 
     def anything_missing(self) -> bool:
         """From the best set, by more than noise."""
@@ -79,7 +70,7 @@ class _Search(Promises):
         """The best sets, and the likeliest one where its values are out of range: it is no answer itself, but an
         effect beside it or in its place may be.
         """
-        best = sorted(self.lasting(), key=self.value)[-self.policy.width :]
+        best = lasting(plausible(self.known), self.value)[: self.policy.width]
         likeliest = max(self.known, key=self.value)
         return best if likeliest in best else [likeliest, *best]
 
@@ -134,14 +125,36 @@ class _Search(Promises):
         return self.ranked(self.additions(parts), reach)
 
     def until_a_law(self) -> Iterator[Proposal]:
-        """What promises to be no worse than the chosen set, as long as nothing that may stand in its place is a law."""
-        found = self.judged()
-        chosen = smallest(found, self.policy)
-        for proposal in self.no_worse(chosen) if self.lawful and chosen else ():
-            found = self.judged()
-            if any(self.lawful(found, one) for one in all_alike(found, chosen, self.policy)):
-                return
+        """What promises most beside the best law, as long as nothing that may stand in the chosen set's place is one.
+
+        That promise may be small: what stood in for an effect by no law has drawn every other value to itself.
+        """
+        chosen = smallest(self.judged(), self.policy)
+        if not chosen or self.lawful is None or self.may_be_a_law(chosen):
+            return
+        law = self.best_law(len(chosen) - 1)
+        if law is None or self.sets.out_of_time():
+            return
+        if law not in self.closely:
+            self.closely.add(law)
+            self.look_beyond(law, None)
+        for proposal in self.ranked(self.additions([law])):
+            if not self.matters(proposal, law):
+                continue
             yield proposal
+            if self.may_be_a_law(chosen):
+                return
+
+    def may_be_a_law(self, chosen: EffectSet) -> bool:
+        """Whether a set is a law, or one that may stand in its place."""
+        found = self.judged()
+        return any(self.lawful(found, one) for one in all_alike(found, chosen, self.policy))
+
+    def best_law(self, size: int) -> EffectSet | None:
+        """Of the known sets of a size that are laws, the one that is worth most; no effect at all is one."""
+        found = self.judged()
+        every = [one for one in worth_most(found) if len(one) == size]
+        return next((one for one in every if not one or self.lawful(found, one)), None)
 
     def chosen(self) -> EffectSet:
         """The set that would be taken now."""
@@ -176,41 +189,3 @@ class _Search(Promises):
                 seen = self.sets.prospects(rest, effects, self.likelihood.promised, self.policy.trials, alone)
                 found += [Proposal(rest, (prospect,)) for prospect in seen.values()]
         return [p for p in self.ranked(found) if self.may_stand_in(p, gone, chosen)][: self.policy.fits]
-
-    def fit(self, proposals: Iterable[Proposal], most: int, even_late: bool = False) -> int:
-        """Fit the first of these in full, until so many are possible answers, at most twice as many; how many were."""
-        count = answers = 0
-        for proposal in proposals:
-            enough = answers >= most or count >= 2 * most
-            if enough or (self.sets.out_of_time() and not even_late):
-                break
-            if proposal.effects in self.tried:
-                continue
-            self.tried.add(proposal.effects)
-            self.say(f"fitting {name_of(proposal.effects)}", min(0.9, 0.1 * len(self.tried)))
-            self.keep(self.sets.fit(proposal.effects, proposal.of, proposal.added))
-            self.keep(self._again(proposal.effects))
-            self.keep(self._from_other_sizes(proposal))
-            count += 1
-            answers += proposal.effects in plausible(self.known)
-        return count
-
-    def _again(self, effects: EffectSet) -> FittedSet | None:
-        """From its best smaller set, where it ended with larger squares than that one: then it was lost on its way."""
-        below = [part for gone in effects if (part := effects - {gone}) in self.known]
-        if not below:
-            return None
-        best = min(below, key=lambda part: self.known[part].squares)
-        if effects in self.known and self.known[effects].squares <= _AS_GOOD * self.known[best].squares:
-            return None
-        (new,) = effects - best
-        prospect = {**self.prospects[NOTHING], **self.prospects.get(best, {})}.get(new)
-        return None if prospect is None else self.sets.fit(effects, self.known[best], (prospect,))
-
-    def _from_other_sizes(self, proposal: Proposal) -> FittedSet | None:
-        """A fit of one more effect that did not keep its promise: there is more than one valley."""
-        alone = len(proposal.added) == 1 and not proposal.dropped
-        if not alone or self.sets.out_of_time() or not self.broken(proposal):
-            return None
-        other = self.sets.from_other_sizes(proposal.of, proposal.added[0])
-        return None if other is None else self.sets.fit(proposal.effects, proposal.of, (other,))

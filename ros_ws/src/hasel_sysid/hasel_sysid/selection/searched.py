@@ -1,6 +1,6 @@
 """What a search has found, and what is asked of it."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from hasel_sysid.selection.likelihood import Likelihood, Whitened
@@ -48,7 +48,11 @@ def likeness(likelihood: Likelihood, seen: Mapping[str, Prospect], one: str, oth
 
 def worth_most(found: Searched) -> list[EffectSet]:
     """The plausible sets that are worth more than every known part of them, those that are worth most first."""
-    every = plausible(found.known)
-    worths = {one: found.worths[one].total for one in every}
-    lasting = [one for one in every if all(worths[one] > worths[part] for part in every if part < one)]
-    return sorted(lasting, key=lambda one: -worths[one])
+    return lasting(plausible(found.known), lambda one: found.worths[one].total)
+
+
+def lasting(every: Sequence[EffectSet], value: Callable[[EffectSet], float]) -> list[EffectSet]:
+    """The sets of more value than every part of them that is among these, the most valuable first."""
+    values = {one: value(one) for one in every}
+    found = [one for one in every if all(values[one] > values[part] for part in every if part < one)]
+    return sorted(found, key=lambda one: -values[one])

@@ -17,6 +17,7 @@ from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.first_trials import first_trials, sized_starts
 from hasel_sysid.selection.noise_bound import bounded_noise
+from hasel_sysid.selection.policy import POLICY
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect
 from hasel_sysid.selection.trial_prospects import (
     Rank,
@@ -27,8 +28,6 @@ from hasel_sysid.selection.trial_prospects import (
     room,
 )
 
-_RIVAL = 0.5
-"""What could take away less than this share of what the best one could gets no further steps."""
 _BRIEF = 25
 """Evaluations that a full fit is given."""
 
@@ -128,7 +127,7 @@ class SimulatedSets:
             if not best or not keep or self.out_of_time():
                 break
             most_hope = max(prospect.start.promised for prospect in best)
-            going_on = [p for p in best[:keep] if p.start.promised >= _RIVAL * most_hope]
+            going_on = [p for p in best[:keep] if p.start.promised >= POLICY.hope * most_hope]
             moved = [prospect_of(t, looks, of.effects) for t in trials.further([p.start for p in going_on])]
             best = best_of_each([*moved, *(p for p in best if p not in going_on)], rank)
         return {prospect.effect: prospect for prospect in best}

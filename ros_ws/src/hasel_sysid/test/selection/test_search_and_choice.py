@@ -445,3 +445,25 @@ def test_while_what_is_chosen_is_no_law_what_promises_as_much_is_fitted():
         assert choose(found, POLICY, lambda effects, only=only: effects == only).chosen == only
     every = search(sets, POLICY, stand_ins=False, lawful=lambda found, effects: True)
     assert set(every.known) == set(known)
+
+
+class WithinReach(LinearSets):
+    """A first look at d sees no further than a little way, as where every other value must move far with it."""
+
+    def _prospect(self, of, name):
+        seen = super()._prospect(of, name)
+        reach = np.where(np.arange(len(seen.upper)) == len(seen.upper) - 1, 0.03, np.inf)
+        return replace(seen, lower=-reach, upper=reach) if name == "d" else seen
+
+
+@pytest.mark.parametrize("seed", [0, 2])
+def test_the_best_law_is_extended_by_what_promises_little(seed):
+    """Two that together do as well as the chosen pair, which is no law, are fitted though the second is shy."""
+    series = made_up(seed)
+    series["d"] = series["a"] + series["b"] - series["c"] + 0.02 * series["d"]
+    for name in "efgh":
+        series[name] = series["a"] + 0.02 * series[name]
+    sets = WithinReach(series, {"a": 0.1, "b": 0.1}, WHITE, seed)
+    assert frozenset("cd") not in search(sets, POLICY, stand_ins=False).known
+    found = search(sets, POLICY, stand_ins=False, lawful=lambda _, effects: effects <= frozenset("cd"))
+    assert choose(found, POLICY, lambda effects: effects <= frozenset("cd")).chosen == frozenset("cd")
