@@ -10,6 +10,7 @@ from scipy.optimize import least_squares
 
 from hasel_sysid.draft import draft
 from hasel_sysid.estimation.between_runs import wider_where_runs_disagree
+from hasel_sysid.estimation.bounds import at_bound
 from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.estimation.second_start import better_from, on_flat_bounds, typical_values
 from hasel_sysid.estimation.uncertainty import parameter_covariance
@@ -152,20 +153,11 @@ def fitted_result(evaluation: Evaluation, count: int) -> FitResult:
     with np.errstate(invalid="ignore", divide="ignore"):
         wider = np.where(by_noise > 0, errors / by_noise, 1.0)
         covariance = np.where(np.isfinite(covariance), covariance * np.outer(wider, wider), np.inf)
-    parameters = [model.parameters[name] for name in names]
-    at_bound = tuple(p.name for p in parameters if _on(p.value, p.lower, p) or _on(p.value, p.upper, p))
     return FitResult(
         model.with_covariance(names, covariance),
         evaluation,
-        at_bound,
+        at_bound(evaluation),
         tuple(name for name, hidden in zip(names, undetermined, strict=True) if hidden),
         count,
         "least squares",
-    )
-
-
-def _on(value: float, bound: float, parameter) -> bool:
-    width = parameter.upper - parameter.lower
-    return bool(np.isfinite(bound)) and abs(value - bound) < 1e-4 * (
-        width if np.isfinite(width) else abs(bound) or 1.0
     )
