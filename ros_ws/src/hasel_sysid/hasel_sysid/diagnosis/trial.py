@@ -54,19 +54,22 @@ class Trials:
 
     fitted: the model as fitted, evaluated with its free parameters. A draft's own error, the difference between the two
     at the fitted values, is added to every trial: what matters is what the effect changes. A draft that is far off (a
-    long undamped swing, whose phase drifts) is not used at all.
+    long undamped swing, whose phase drifts), or whose steps are too long to follow the motion, is not used at all.
     """
 
     def __init__(self, problem: Problem, fitted: Evaluation) -> None:
         self.problem, self.fitted = problem, fitted
-        self._model = draft(fitted.model)
-        self.base = problem.evaluate(self._model, fitted.names)
-        self._correction = fitted.residual - self.base.residual
         self._imitable = orthonormal(fitted.jacobian)
         self.tried: set[str] = set()
-        if np.linalg.norm(self._correction) > _TOO_ROUGH * np.linalg.norm(fitted.simulated()):
+        self._model, self.base = draft(fitted.model), fitted
+        try:
+            self.base = problem.evaluate(self._model, fitted.names)
+        except SimulationError:
+            self._model = fitted.model
+        error = fitted.residual - self.base.residual
+        if np.linalg.norm(error) > _TOO_ROUGH * np.linalg.norm(fitted.simulated()):
             self._model, self.base = fitted.model, fitted
-            self._correction = np.zeros_like(fitted.residual)
+        self._correction = fitted.residual - self.base.residual
 
     def time_is_over(self) -> bool:
         """Whether what has not been tried yet is to be left out."""

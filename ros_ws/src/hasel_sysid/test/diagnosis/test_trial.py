@@ -5,14 +5,38 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from hasel_sim.effects.registry import catalogue
+from hasel_sim.errors import SimulationError
 from hasel_sysid.diagnosis.candidates import starts
 from hasel_sysid.diagnosis.trial import Trial, Trials, _shortened
+from hasel_sysid.problem import Problem
 
 
 @pytest.fixture(scope="module")
 def trials(bent_swimmer) -> Trials:
     """Of the bent swimmer."""
     return Trials(*bent_swimmer)
+
+
+class WithoutDrafts(Problem):
+    """Only what steps as finely as a given model can be simulated."""
+
+    def __init__(self, of, model):
+        super().__init__(of.experiments, of.pool)
+        self._least = model.description.numerics.steps_per_second
+
+    def evaluate(self, model, names=()):
+        if model.description.numerics.steps_per_second < self._least:
+            raise SimulationError("the motion could not be followed")
+        return super().evaluate(model, names)
+
+
+def test_a_draft_that_cannot_be_simulated_gives_way_to_the_model(bent_swimmer):
+    """Its steps are twice as long; what the model itself can follow is tried all the same."""
+    problem, fitted = bent_swimmer
+    trials = Trials(WithoutDrafts(problem, fitted.model), fitted)
+    (trial,) = trials.first([starts(catalogue()["soft_modulus"])[0]])
+    assert trials.base is fitted
+    assert trial.residual == pytest.approx(fitted.residual, abs=1e-9)
 
 
 def test_effects_without_effect_share_a_simulation(trials):
