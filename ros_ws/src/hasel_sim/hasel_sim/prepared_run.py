@@ -130,7 +130,8 @@ class PreparedRun:
         identity = name.rpartition(".")[0]
         if any(isinstance(e, DriveEffect) and e.id == identity for e in self.model.effects):
             return True
-        return self.model.is_amplitude(name) or name in response_parameters(self.model.description)
+        known = self.model.is_amplitude(name) or self.model.is_onset(name)
+        return known or name in response_parameters(self.model.description)
 
     def declared(self, name: str) -> EffectParameter:
         """What the effect, or the baseline, says about a parameter."""

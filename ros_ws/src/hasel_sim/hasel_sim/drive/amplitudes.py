@@ -32,6 +32,12 @@ class AmplitudeTable:
         """The parameter that holds the contraction at a level."""
         return f"{self._prefix}{level:g}{self._suffix}"
 
+    @property
+    def onset(self) -> str:
+        """The parameter up to which a drive contracts nothing, in the unit of the levels: `onset`, `onset_pa` ..."""
+        own = f"_{self.own}" if self.own else ""
+        return f"onset{own}{self._suffix}"
+
     def level(self, name: str) -> float | None:
         """The level that a parameter's name speaks of; None where it is not one of this table."""
         if not (name.startswith(self._prefix) and name.endswith(self._suffix)):

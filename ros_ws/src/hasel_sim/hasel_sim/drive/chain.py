@@ -29,6 +29,7 @@ class DriveChain:
         self._of_muscle = model.muscle_channels
         self._rest = np.array([muscle.rest_contraction for muscle in model.described.muscles])
         self._response = model.description.muscle_response
+        self._between = model.description.numerics.amplitude_curve
         law = model.description.muscle
         self._law = PeanoHaselDrive(law) if law else None
         self._by_law = [column for column, name in enumerate(self.channels) if model.follows_law(name)]
@@ -36,7 +37,7 @@ class DriveChain:
         for table in model.tables:
             columns = [self.channels.index(name) for name in table.channels]
             levels = table.levels(model.parameters)
-            self._tables.append((columns, levels, [table.name(level) for level in levels]))
+            self._tables.append((columns, levels, [table.name(level) for level in levels], table.onset))
 
     @property
     def count(self) -> int:
@@ -129,8 +130,9 @@ class DriveChain:
         found = np.zeros(len(self.channels))
         if self._law is not None:
             found[self._by_law] = self._law.onset(values)
-        for columns, levels, names in self._tables:
-            found[columns] = onset(levels, np.array([values[name] for name in names]))
+        for columns, levels, names, threshold in self._tables:
+            amplitudes = np.array([values[name] for name in names])
+            found[columns] = onset(levels, amplitudes, values.get(threshold))
         return found
 
     def _target(self, signal: np.ndarray, values: dict[str, float]) -> np.ndarray:
@@ -138,7 +140,9 @@ class DriveChain:
         aimed = np.zeros_like(signal, dtype=float)
         if self._law is not None:
             aimed[:, self._by_law] = self._law.contraction(signal[:, self._by_law], values)
-        for columns, levels, names in self._tables:
+        for columns, levels, names, threshold in self._tables:
             amplitudes = np.array([values[name] for name in names])
-            aimed[:, columns] = target_contraction(signal[:, columns], levels, amplitudes)
+            aimed[:, columns] = target_contraction(
+                signal[:, columns], levels, amplitudes, values.get(threshold), self._between
+            )
         return aimed[:, self._of_muscle]

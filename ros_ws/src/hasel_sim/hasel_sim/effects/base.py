@@ -126,6 +126,9 @@ class DriveEffect(Effect):
     place = "drive"
     needs_muscles = True
     stage: ClassVar[DriveStage] = DriveStage.SUPPLY
+    sweeps: ClassVar[bool] = True
+    """Whether, up to `ZIPPING`, it lets the drive pass levels that nobody commanded; then how a muscle contracts below
+    its lowest known level matters, and the model has an onset."""
 
     def clock(self, time: np.ndarray, p: SimpleNamespace) -> np.ndarray:
         """When the signal's values take effect [s], shape [n]; unchanged by default."""

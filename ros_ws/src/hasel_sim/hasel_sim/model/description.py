@@ -38,6 +38,7 @@ class Numerics(Section):
 
     mesh_density scales the number of elements along the body, layers is the number through each soft half;
     quadrature_order: Gauss points per direction of an element; 2 is softer and converges faster, 3 is full.
+    amplitude_curve: how a muscle contracts between the levels whose amplitudes are known, cubic or a power of the level.
     """
 
     mesh_density: Positive = 1.0
@@ -46,6 +47,7 @@ class Numerics(Section):
     steps_per_second: Positive = 240.0
     spectral_radius: Annotated[float, Field(gt=0, le=1)] = 0.9
     tolerance_m: Positive = 1e-8
+    amplitude_curve: Literal["cubic", "power"] = "cubic"
 
 
 class ParameterEntry(Section):

@@ -16,6 +16,7 @@ from hasel_sim.model.constants import constants, unit_of, with_constants
 from hasel_sim.model.covariance import covariance_of, uncorrelated, with_covariance
 from hasel_sim.model.description import Description, Numerics
 from hasel_sim.model.effects_together import check_together
+from hasel_sim.model.onsets import onset_parameters, sweeps
 from hasel_sim.model.parameter import Parameter
 from hasel_sim.model.start_values import amplitude_parameters
 from hasel_sim.model.validation import sentence_for
@@ -27,7 +28,8 @@ class Model:
 
     Baseline parameters are `slope` [1/s] (or `rise_time` and `fall_time` [s]) and one `amplitude_<level>` [1] per level
     of the drive; an effect's are `<id>.<name>`; a constant of the file that is freed is called by its path, such as
-    `material.soft.youngs_modulus_pa`. Where muscles follow a law it has `muscle.<name>` in place of amplitudes, and
+    `material.soft.youngs_modulus_pa`. Where the drive passes levels that nobody commanded there is an `onset` [V], up to
+    which nothing contracts. Where muscles follow a law it has `muscle.<name>` in place of amplitudes, and
     law_levels are the voltages [V] it was last used at.
     """
 
@@ -179,11 +181,28 @@ class Model:
             if self.follows_law(name)
         ]
         seen = tuple(float(level) for level in np.unique(np.concatenate([[], *lawful])))
-        return replace(self, parameters={**amplitudes, **kept}, law_levels=seen)
+        return replace(self, parameters={**amplitudes, **kept}, law_levels=seen).with_onsets()
 
     def is_amplitude(self, name: str) -> bool:
         """Whether a parameter's name is that of an amplitude of this body."""
         return any(table.level(name) is not None for table in self.tables)
+
+    def is_onset(self, name: str) -> bool:
+        """Whether a parameter's name is that of an onset of this body."""
+        return name in self.onset_units
+
+    @property
+    def onset_units(self) -> dict[str, str]:
+        """Names of the onsets that this body can have, and their units."""
+        return {table.onset: table.unit for table in self.tables}
+
+    def with_onsets(self) -> "Model":
+        """A copy with a parameter for the onset of the muscles exactly where the drive passes unknown levels."""
+        rest = {name: p for name, p in self.parameters.items() if not self.is_onset(name)}
+        found = {}
+        if sweeps(self.description, self.effects):
+            found = onset_parameters(self.tables, self.parameters)
+        return replace(self, parameters={**rest, **found})
 
     def with_effects(self, *names: str) -> "Model":
         """A copy with further effects at their null values. Raises ModelError for unknown, duplicate or unfit ones."""
@@ -196,7 +215,7 @@ class Model:
                 parameters[f"{effect.id}.{p.name}"] = Parameter(
                     f"{effect.id}.{p.name}", start, p.unit, p.lower, p.upper
                 )
-        return replace(self, effects=effects, parameters=parameters)
+        return replace(self, effects=effects, parameters=parameters).with_onsets()
 
     def without_effects(self, *names: str) -> "Model":
         """A copy without some effects and their parameters. Raises ModelError for one that is not there."""
@@ -209,7 +228,7 @@ class Model:
         effects = tuple(effect for effect in self.effects if effect.id not in names)
         gone = tuple(f"{name}." for name in names)
         parameters = {name: p for name, p in self.parameters.items() if not name.startswith(gone)}
-        return replace(self, effects=effects, parameters=parameters)
+        return replace(self, effects=effects, parameters=parameters).with_onsets()
 
     def in_medium(self, fluid: str | Mapping[str, float], depth_m: float) -> "Model":
         """A copy of so deep a body in a fluid: a name, or the keys of the file's section medium.

@@ -1,6 +1,7 @@
 """A named number of a model, with unit and bounds."""
 
 from dataclasses import dataclass, field
+from math import isfinite
 
 from hasel_sim.model.value_text import value_with_error
 
@@ -20,6 +21,12 @@ class Parameter:
     free: bool = True
     standard_error: float | None = None
     correlations: dict[str, float] = field(default_factory=dict, hash=False)
+
+    @property
+    def magnitude(self) -> float:
+        """What changes of it are measured by: its value, or of one at 0 a tenth of its range, 0 where that is open."""
+        width = self.upper - self.lower
+        return abs(self.value) or (0.1 * width if isfinite(width) else 0.0)
 
     def __str__(self) -> str:
         return f"{self.name} = {value_with_error(self.value, self.standard_error, self.unit)}"

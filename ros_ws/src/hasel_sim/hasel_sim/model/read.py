@@ -84,6 +84,8 @@ def _parse(text: str, source: str, folder: Path) -> Model:
             known = Parameter(name, freed[name], unit_of(name), -float("inf"), float("inf"))
         if known is None and model.is_amplitude(name):
             known = Parameter(name, 0.0, "1", -float("inf"), float("inf"))
+        if known is None and model.is_onset(name):
+            known = Parameter(name, 0.0, model.onset_units[name], 0.0, float("inf"))
         if known is None:
             raise ModelError(f"{source}: unknown parameter '{name}'; {_nearest(name, model, freed)}")
         given[name] = _parameter(known, entry, freed.get(name), source)
@@ -94,7 +96,7 @@ def _parse(text: str, source: str, folder: Path) -> Model:
                     f"{source}: parameters.{name}.correlations names '{other}'; expected another of the file's "
                     f"parameters, {nearest_name(other, given)}"
                 )
-    return replace(model, parameters={**model.parameters, **given})
+    return replace(model, parameters={**model.parameters, **given}).with_onsets()
 
 
 def _with_muscle_file(description: Description, folder: Path, source: str) -> Description:

@@ -29,7 +29,8 @@ _SOME_HOPE = 0.2
 class Trial:
     """An effect with the values reached so far.
 
-    model: draft with the effect; residual: corrected, at `model`'s values [frames]; jacobian [frames, names];
+    model: draft with the effect; residual: corrected, at `model`'s values [frames]; jacobian [frames, names]; brought:
+    those of the names that the model without the effect has not, its own and what it makes the muscles show;
     predicted: sum of squares expected after the next step, to `step` (values by name); promised: by how much the effect
     could lower the sum of squares of the model without it, by its derivatives or by the change it has made so far.
     """
@@ -37,6 +38,7 @@ class Trial:
     start: Start
     model: Model
     names: tuple[str, ...]
+    brought: tuple[str, ...]
     residual: np.ndarray
     jacobian: np.ndarray
     step: dict[str, float]
@@ -47,6 +49,11 @@ class Trial:
     def sum_of_squares(self) -> float:
         """Sum of squared residuals at the model's values."""
         return float(self.residual @ self.residual)
+
+    @property
+    def is_brought(self) -> np.ndarray:
+        """Which of the names [names] the effect brought."""
+        return np.array([name in self.brought for name in self.names], dtype=bool)
 
 
 class Trials:
@@ -106,28 +113,34 @@ class Trials:
         trials = []
         for start in starts:
             names = (*self.fitted.names, *start.names)
-            trials.append(self._trial(start, self._with(start), names, found.by(names)))
+            trials.append(self._trial(start, self._with(start), start.names, found.by(names)))
         return trials
 
     def _evaluate(self, models: Sequence[tuple[Start, Model]]) -> list[Trial]:
         if not models:
             return []
-        names = [(*self.fitted.names, *start.names) for start, _ in models]
+        brought = [self._brought(model) for _, model in models]
+        names = [(*self.fitted.names, *new) for new in brought]
         found = self.problem.evaluate_each([model for _, model in models], names)
         return [
-            self._trial(start, model, by, evaluation)
-            for (start, model), by, evaluation in zip(models, names, found, strict=True)
+            self._trial(start, model, new, evaluation)
+            for (start, model), new, evaluation in zip(models, brought, found, strict=True)
             if not isinstance(evaluation, SimulationError)
         ]
 
-    def _trial(self, start: Start, model: Model, names: tuple[str, ...], evaluation: Evaluation) -> Trial:
+    def _brought(self, model: Model) -> tuple[str, ...]:
+        """What may be fitted in a model, and could not be before."""
+        return tuple(name for name in model.free if name not in self._model.parameters)
+
+    def _trial(self, start: Start, model: Model, brought: tuple[str, ...], evaluation: Evaluation) -> Trial:
+        names = evaluation.names
         residual = evaluation.residual + self._correction
         step, predicted = _bounded_step(model, names, residual, evaluation.jacobian)
-        own = evaluation.jacobian[:, [index for index, name in enumerate(names) if name in start.values]]
+        own = evaluation.by(brought).jacobian
         looks = np.column_stack([self.fitted.residual - residual, own])
         spanned = float(drops(looks, self._imitable, self.fitted.residual))
         promised = max(spanned, self.fitted.sum_of_squares - predicted)
-        return Trial(start, model, names, residual, evaluation.jacobian, step, predicted, promised)
+        return Trial(start, model, names, brought, residual, evaluation.jacobian, step, predicted, promised)
 
 
 def nearer(trials: Trials, tried: Sequence[Start], found: Sequence[Trial]) -> list[Trial]:
@@ -157,22 +170,22 @@ def _bounded_step(
     model: Model, names: tuple[str, ...], residual: np.ndarray, jacobian: np.ndarray
 ) -> tuple[dict[str, float], float]:
     """Least squares of the linearised problem within the bounds: the values reached and the sum of squares there."""
-    parameters = [model.parameters[name] for name in names]
-    value = np.array([p.value for p in parameters])
-    lower = np.array([p.lower for p in parameters]) - value
-    upper = np.array([p.upper for p in parameters]) - value
-    reach = np.where(limited(model, names), MOST_CHANGE * np.abs(value), np.inf)
-    change, squares = bounded_change(residual, jacobian, np.maximum(lower, -reach), np.minimum(upper, reach))
+    value = np.array([model.parameters[name].value for name in names])
+    change, squares = bounded_change(residual, jacobian, *room(model, names))
     return dict(zip(names, value + change, strict=True)), squares
 
 
-def limited(model: Model, names: Sequence[str]) -> np.ndarray:
-    """Which parameters [names] a single step may change by a share of their value only.
-
-    Those of no effect, and of an effect what is no size: how fast it is, or where.
+def room(model: Model, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """By how much a single step may change parameters [names], down and up: within their ranges, and by a share of
+    their value what is of no effect, and of an effect what is no size: how fast it is, or where.
     """
+    parameters = [model.parameters[name] for name in names]
+    value = np.array([p.value for p in parameters])
+    lower, upper = (np.array([getattr(p, side) for p in parameters]) for side in ("lower", "upper"))
     sizes = {f"{effect.id}.{p.name}" for effect in model.effects for p in effect.parameters if not p.scan}
-    return np.array([name not in sizes for name in names])
+    magnitude = np.array([np.inf if p.name in sizes else p.magnitude for p in parameters])
+    reach = MOST_CHANGE * magnitude
+    return np.maximum(lower - value, -reach), np.minimum(upper - value, reach)
 
 
 def _shortened(trial: Trial) -> Trial:

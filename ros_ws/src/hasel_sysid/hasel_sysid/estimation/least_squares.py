@@ -12,11 +12,12 @@ from hasel_sysid.draft import draft
 from hasel_sysid.estimation.between_runs import wider_where_runs_disagree
 from hasel_sysid.estimation.bounds import at_bound
 from hasel_sysid.estimation.result import FitResult
-from hasel_sysid.estimation.second_start import better_from, on_flat_bounds, typical_values
+from hasel_sysid.estimation.second_start import better_from, unseen_parts, typical_values
 from hasel_sysid.estimation.uncertainty import parameter_covariance
 from hasel_sysid.noise import estimate_noise
 from hasel_sysid.problem import Evaluation, Problem
 
+_LEAST_SCALE = 1e-3
 _GENTLER = 4
 """How often to try a gentler start."""
 
@@ -52,7 +53,7 @@ def fit_least_squares(
         return replace(fitted_result(evaluation, more), converged=ended)
 
     first = fitted(model)
-    found = better_from(first, on_flat_bounds(first), fitted)
+    found = better_from(first, unseen_parts(first), fitted)
     return replace(found, iterations=count + found.iterations)
 
 
@@ -132,7 +133,9 @@ class _Search:
 
 def _scale(model: Model, name: str) -> float:
     typical = typical_values(model)
-    return abs(typical[name]) or 1.0 if name in typical else 1e-3
+    if name in typical:
+        return abs(typical[name]) or 1.0
+    return model.parameters[name].magnitude or _LEAST_SCALE
 
 
 def _bounds_and_start(model: Model, names: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""The discretisation error: what the model's own mesh and time step do to fitted values."""
+"""The discretisation error: what the model's own mesh, time step and interpolation do to fitted values."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -13,12 +13,18 @@ from hasel_sysid.problem import Evaluation, Problem
 
 
 def refinements(model: Model) -> dict[str, Model]:
-    """The model on a finer mesh, and with shorter time steps."""
+    """The model on a finer mesh, with shorter time steps and, where the drive passes levels at which no amplitude is
+    known, with another curve between those that are: no finer one is to be had, and either is as likely.
+    """
     numerics = model.description.numerics
-    return {
+    found = {
         "mesh": model.with_numerics(mesh_density=1.5 * numerics.mesh_density),
         "time_step": model.with_numerics(steps_per_second=2 * numerics.steps_per_second),
     }
+    if any(map(model.is_onset, model.parameters)):
+        other = "power" if numerics.amplitude_curve == "cubic" else "cubic"
+        found["amplitude_curve"] = model.with_numerics(amplitude_curve=other)
+    return found
 
 
 def changes_by_refinement(problem: Problem, base: Evaluation) -> dict[str, np.ndarray]:

@@ -31,13 +31,29 @@ def typical_values(model: Model) -> dict[str, float]:
     return {f"{effect.id}.{p.name}": p.typical for effect in model.effects for p in effect.parameters}
 
 
-def on_flat_bounds(fit: FitResult) -> dict[str, float]:
-    """Typical values of what lies on a bound where nothing shows it: of a time far below a step there is no slope.
+def unseen_parts(fit: FitResult) -> dict[str, float]:
+    """Typical values of what a fit left within its own standard error of doing nothing, by name: on a bound where
+    nothing shows it, or beside other parts of its effect that do something.
 
-    A step of the search that overshot has put it there, and no derivative leads back.
+    What is hidden behind another limit, as a lag behind the slowest rise, has no slope there; a step of the search that
+    overshot has put it there, and no derivative leads back.
     """
-    flat = set(fit.at_bound) & set(fit.undetermined)
-    return {name: value for name, value in typical_values(fit.model).items() if name in flat}
+    found: dict[str, float] = {}
+    for effect in fit.model.effects:
+        sizes = {f"{effect.id}.{p.name}": p for p in effect.parameters if not p.scan}
+        near = {name for name, p in sizes.items() if _is_near(fit, name, p.null)}
+        flat = {name for name in near if name in fit.at_bound and name in fit.undetermined}
+        chosen = near if len(near) < len(sizes) else flat
+        found |= {name: sizes[name].typical for name in chosen if sizes[name].typical != sizes[name].null}
+    return found
+
+
+def _is_near(fit: FitResult, name: str, null: float) -> bool:
+    """Whether a fitted parameter is within its standard error of a value on one of its bounds."""
+    p = fit.model.parameters[name]
+    if name not in fit.evaluation.names or null not in (p.lower, p.upper):
+        return False
+    return abs(p.value - null) <= (p.standard_error if p.standard_error is not None else float("inf"))
 
 
 def left_without_effect(fit: FitResult) -> dict[str, float]:

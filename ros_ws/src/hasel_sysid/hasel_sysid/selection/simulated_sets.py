@@ -10,7 +10,7 @@ from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis.candidates import Start, valued
 from hasel_sysid.diagnosis.context import on_own_bound
-from hasel_sysid.diagnosis.trial import Trial, Trials
+from hasel_sysid.diagnosis.trial import Trial, Trials, room
 from hasel_sysid.estimation import FitResult, fit_least_squares
 from hasel_sysid.estimation.least_squares import finished, fitted_result
 from hasel_sysid.noise import NoiseModel
@@ -25,7 +25,6 @@ from hasel_sysid.selection.trial_prospects import (
     from_other_sizes,
     looks_of,
     prospect_of,
-    room,
 )
 
 _BRIEF = 25
@@ -63,12 +62,14 @@ class SimulatedSets:
     def known_as(self, fit: FitResult) -> FittedSet:
         """A fit as the search sees it."""
         evaluation, model = fit.evaluation, fit.model
+        own = frozenset(e.id for e in model.effects if e.id in self.effects)
         owner = {
-            f"{e.id}.{p.name}": e.id for e in model.effects if e.id in self.effects for p in e.parameters
+            name: effect
+            for effect in own
+            for name in model.parameters.keys() - model.without_effects(effect).parameters.keys()
         }
         moving = [name for name in evaluation.names if name not in fit.at_bound]
         inside = evaluation.by(moving)
-        own = frozenset(owner.values())
         without = {effect: np.zeros(len(self.runs)) for effect in own}
         for effect in own:
             for p in self.effects[effect].parameters:

@@ -3,26 +3,15 @@
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
-from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis.candidates import resized
-from hasel_sysid.diagnosis.trial import MOST_CHANGE, Trial, Trials, limited
+from hasel_sysid.diagnosis.trial import Trial, Trials, room
 from hasel_sysid.selection.sets import EffectSet, Prospect
 
 _OTHER_SIZES = (0.25, 0.5, 2.0, 4.0)
 
 Rank = Callable[[Prospect], float]
 """How much a prospect is worth, by which the best of each effect is told."""
-
-
-def room(model: Model, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-    """By how much parameters may change: within their ranges, and the model's own by a share of their value."""
-    parameters = [model.parameters[name] for name in names]
-    value = np.array([p.value for p in parameters])
-    reach = np.where(limited(model, names), MOST_CHANGE * np.abs(value), np.inf)
-    lower = np.array([p.lower for p in parameters]) - value
-    upper = np.array([p.upper for p in parameters]) - value
-    return np.maximum(lower, -reach), np.minimum(upper, reach)
 
 
 def from_other_sizes(trials: Trials, of: Prospect) -> Prospect | None:
@@ -47,21 +36,19 @@ def best_of_each(prospects: Sequence[Prospect], rank: Rank) -> list[Prospect]:
 
 def looks_of(trial: Trial, trials: Trials) -> np.ndarray:
     """What an effect does to the series at its first trial, and its derivatives there."""
-    own = [index for index, name in enumerate(trial.names) if name in trial.start.values]
-    return np.column_stack([trials.fitted.residual - trial.residual, trial.jacobian[:, own]])
+    return np.column_stack([trials.fitted.residual - trial.residual, trial.jacobian[:, trial.is_brought]])
 
 
 def prospect_of(trial: Trial, looks: Mapping[str, np.ndarray], beside: EffectSet) -> Prospect:
     """A trial as the search sees it; looks: of every effect; beside: the effects of the set that was looked beyond."""
     effect = trial.start.effect.id
-    own = [name in trial.start.values for name in trial.names]
-    order = np.argsort(own, kind="stable")
+    order = np.argsort(trial.is_brought, kind="stable")
     lower, upper = room(trial.model, trial.names)
     return Prospect(
         effect,
         trial.residual,
         trial.jacobian[:, order],
-        sum(own),
+        len(trial.brought),
         lower[order],
         upper[order],
         looks[effect],

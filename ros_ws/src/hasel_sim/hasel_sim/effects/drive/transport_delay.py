@@ -28,6 +28,7 @@ class TransportDelay(DriveEffect):
     )
     citation = "Åström and Murray, Feedback Systems, 2nd ed. (2021), section 10.4"
     stage = DriveStage.COMMAND
+    sweeps = False
     exclusive = "delay"
 
     def clock(self, time: np.ndarray, p: SimpleNamespace) -> np.ndarray:
