@@ -8,7 +8,7 @@ import numpy as np
 from hasel_sim.drive.onset import crossings, secants, soon_after_switches, with_onsets
 from hasel_sim.drive.peano_hasel import PeanoHaselDrive
 from hasel_sim.drive.schedule import DriveSchedule
-from hasel_sim.drive.sloped_box import limit_rate, onset, target_contraction
+from hasel_sim.drive.sloped_box import limit_rate, target_contraction
 from hasel_sim.effects.base import DriveEffect, DriveStage
 from hasel_sim.effects.first_order_lag import first_order_lag
 from hasel_sim.model import Model
@@ -130,9 +130,8 @@ class DriveChain:
         found = np.zeros(len(self.channels))
         if self._law is not None:
             found[self._by_law] = self._law.onset(values)
-        for columns, levels, names, threshold in self._tables:
-            amplitudes = np.array([values[name] for name in names])
-            found[columns] = onset(levels, amplitudes, values.get(threshold))
+        for columns, _, _, onset in self._tables:
+            found[columns] = values.get(onset, 0.0)
         return found
 
     def _target(self, signal: np.ndarray, values: dict[str, float]) -> np.ndarray:
@@ -140,9 +139,9 @@ class DriveChain:
         aimed = np.zeros_like(signal, dtype=float)
         if self._law is not None:
             aimed[:, self._by_law] = self._law.contraction(signal[:, self._by_law], values)
-        for columns, levels, names, threshold in self._tables:
+        for columns, levels, names, onset in self._tables:
             amplitudes = np.array([values[name] for name in names])
             aimed[:, columns] = target_contraction(
-                signal[:, columns], levels, amplitudes, values.get(threshold), self._between
+                signal[:, columns], levels, amplitudes, values.get(onset, 0.0), self._between
             )
         return aimed[:, self._of_muscle]

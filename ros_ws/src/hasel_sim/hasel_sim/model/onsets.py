@@ -3,10 +3,8 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-import numpy as np
-
 from hasel_sim.drive.amplitudes import AmplitudeTable
-from hasel_sim.drive.sloped_box import LARGEST_ONSET, onset
+from hasel_sim.drive.sloped_box import LARGEST_ONSET
 from hasel_sim.effects.base import DriveEffect, DriveStage, Effect
 from hasel_sim.model.description import Description
 from hasel_sim.model.parameter import Parameter
@@ -25,15 +23,14 @@ def onset_parameters(
 ) -> dict[str, Parameter]:
     """One of every table with an amplitude; those that are known as they are, within what its levels allow.
 
-    A new one begins where the lowest three amplitudes point to, which is a guess: no run below the lowest level shows it.
+    A new one is at 0, where the model is the same as without it.
     """
     found = {}
     for table in tables:
         levels = table.levels(parameters)
         if len(levels) == 0:
             continue
-        amplitudes = np.array([parameters[table.name(level)].value for level in levels])
-        new = Parameter(table.onset, onset(levels, amplitudes), table.unit, 0.0, float("inf"))
+        new = Parameter(table.onset, 0.0, table.unit, 0.0, float("inf"))
         known, largest = parameters.get(table.onset, new), LARGEST_ONSET * float(levels[0])
         found[table.onset] = replace(known, value=min(known.value, largest), upper=min(known.upper, largest))
     return found

@@ -52,7 +52,7 @@ def test_sensitivities_by_every_parameter_agree_with_differences(name):
     slopes = simulate(model, run, names).slopes
     for column, parameter in enumerate(names):
         value = model.values[parameter]
-        step = 1e-4 * abs(value)
+        step = 1e-4 * model.parameters[parameter].magnitude
         above, below = (
             simulate(model.with_values({parameter: value + sign * step}), run).sin_theta for sign in (1, -1)
         )

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_sim.drive.sloped_box import limit_rate, target_contraction
+from hasel_sim.drive.sloped_box import PiecewisePower, limit_rate, target_contraction
 
 LEVELS, AMPLITUDES = np.array([3500.0, 4500.0, 5500.0]), np.array([0.02, 0.05, 0.06])
 
@@ -18,6 +18,42 @@ def test_the_target_rises_monotonically_between_and_beyond_the_levels():
     found = target_contraction(np.linspace(0, 7000, 400), LEVELS, AMPLITUDES)
     assert np.all(np.diff(found) >= 0)
     assert found[-1] >= 0.06
+
+
+@pytest.mark.parametrize("onset", [0.0, 800.0, 2800.0])
+@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("between", ["cubic", "power"])
+def test_below_the_lowest_level_the_curve_goes_on_as_steeply_down_to_the_onset(onset, count, between):
+    """Nothing up to the onset, the known amplitude at the level, no corner there, and no way back in between."""
+
+    def curve(voltage):
+        return target_contraction(np.asarray(voltage), LEVELS[:count], AMPLITUDES[:count], onset, between)
+
+    below = np.linspace(onset, 3500, 200)
+    assert not curve(np.linspace(0, onset, 20)).any()
+    assert curve([3500.0]) == pytest.approx(AMPLITUDES[:1])
+    assert np.all(np.diff(curve(below)) > 0)
+    steepness = np.diff(curve([3499.9, 3500.0, 3500.1])) / 0.1
+    assert steepness[0] == pytest.approx(steepness[1], rel=1e-3)
+
+
+def test_a_power_of_the_voltage_is_met_below_its_levels():
+    """Of amplitudes that are V^2.4 a piecewise power knows the rest, wherever it is; a cubic to 3 % of the lowest."""
+    amplitudes = 0.02 * (LEVELS / 3500) ** 2.4
+    voltage = np.linspace(100, 6000, 60)
+    expected = 0.02 * (voltage / 3500) ** 2.4
+    powers = target_contraction(voltage, LEVELS, amplitudes, between="power")
+    assert powers[voltage < 5500] == pytest.approx(expected[voltage < 5500])
+    cubic = target_contraction(voltage, LEVELS, amplitudes)
+    assert np.abs(cubic - expected)[voltage < 5500].max() < 0.03 * 0.02
+
+
+def test_the_slope_of_a_piecewise_power_is_that_of_its_curve():
+    """In the middle of each piece, by a difference."""
+    curve = PiecewisePower(LEVELS, AMPLITUDES)
+    for level in (4000.0, 5000.0):
+        difference = (curve(level + 1e-3) - curve(level - 1e-3)) / 2e-3
+        assert float(curve(level, 1)) == pytest.approx(float(difference), rel=1e-6)
 
 
 def test_without_levels_nothing_contracts():

@@ -12,7 +12,7 @@ from hasel_sysid.draft import draft
 from hasel_sysid.estimation.between_runs import wider_where_runs_disagree
 from hasel_sysid.estimation.bounds import at_bound
 from hasel_sysid.estimation.result import FitResult
-from hasel_sysid.estimation.second_start import better_from, unseen_parts, typical_values
+from hasel_sysid.estimation.second_start import better_from, onsets_to_doubt, typical_values, unseen_parts
 from hasel_sysid.estimation.uncertainty import parameter_covariance
 from hasel_sysid.noise import estimate_noise
 from hasel_sysid.problem import Evaluation, Problem
@@ -38,7 +38,7 @@ def fit_least_squares(
     A draft of the model (coarse mesh, long steps) leads most of the way; the model itself goes the rest.
     tolerance: ten times the relative change of the sum of squares at which to stop; drafts: whether to start
     with the draft, which is a waste of time when the start is already good.
-    A fit that ends with an effect's parameter on a bound where nothing shows it is tried again from its typical value.
+    A fit that ends where no derivative leads on is tried once more (`second_start`).
     Raises SimulationError when even the start cannot be simulated.
     """
     if not model.free:
@@ -53,7 +53,7 @@ def fit_least_squares(
         return replace(fitted_result(evaluation, more), converged=ended)
 
     first = fitted(model)
-    found = better_from(first, unseen_parts(first), fitted)
+    found = better_from(first, unseen_parts(first) | onsets_to_doubt(first), fitted)
     return replace(found, iterations=count + found.iterations)
 
 

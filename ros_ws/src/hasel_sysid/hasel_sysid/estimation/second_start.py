@@ -48,6 +48,17 @@ def unseen_parts(fit: FitResult) -> dict[str, float]:
     return found
 
 
+def onsets_to_doubt(fit: FitResult) -> dict[str, float]:
+    """No onset at all, by name, in place of one that a fit drove to its upper bound, or of one that nothing shows.
+
+    Up there a lag only delays, and what delays a little and begins late looks like what delays much and begins at once;
+    and what stays below an onset does nothing.
+    """
+    onsets = [p for p in fit.model.parameters.values() if fit.model.is_onset(p.name) and p.free]
+    above = {p.name for p in onsets if p.name in fit.at_bound and p.value > 0.5 * p.upper}
+    return {p.name: 0.0 for p in onsets if p.name in above or (p.value > 0.0 and p.name in fit.undetermined)}
+
+
 def _is_near(fit: FitResult, name: str, null: float) -> bool:
     """Whether a fitted parameter is within its standard error of a value on one of its bounds."""
     p = fit.model.parameters[name]

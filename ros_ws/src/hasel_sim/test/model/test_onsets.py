@@ -1,0 +1,64 @@
+"""The onset of muscles as a parameter."""
+
+import pytest
+from hasel_sim.errors import ModelError
+from hasel_sim.model import load_model, save_model
+
+LEVELS = (3500.0, 4500.0, 5500.0)
+
+
+def swimmer(*effects: str):
+    """The swimmer with three voltages and some effects."""
+    return load_model("swimmer").with_levels(LEVELS).with_effects(*effects)
+
+
+def test_there_is_an_onset_where_the_drive_passes_levels_that_nobody_commanded():
+    """A lag sweeps through all of them; a dead time, a weaker muscle or a drag passes none."""
+    assert swimmer("charging_lag").parameters["onset"].unit == "V"
+    assert swimmer("charging_lag").free[-1] == "onset"
+    for model in (swimmer(), swimmer("transport_delay", "muscle_asymmetry", "quadratic_drag")):
+        assert "onset" not in model.parameters
+
+
+def test_it_goes_with_the_last_effect_that_needs_it():
+    """And stays, with its value, beside another one."""
+    model = swimmer("charging_lag", "drive_creep").with_values({"onset": 900.0})
+    assert model.without_effects("charging_lag").values["onset"] == 900.0
+    assert "onset" not in model.without_effects("charging_lag", "drive_creep").parameters
+
+
+def test_it_lies_below_the_lowest_level():
+    """At most 0.8 of it, also after the levels have changed."""
+    model = swimmer("charging_lag").with_values({"onset": 2800.0})
+    assert model.parameters["onset"].upper == pytest.approx(2800.0)
+    assert model.with_levels([1000.0, 3500.0]).values["onset"] == pytest.approx(800.0)
+
+
+def test_every_quantity_has_its_own():
+    """The arm's pressure passes all levels by its own lag."""
+    arm = load_model("arm").with_levels([10e3, 20e3])
+    assert arm.parameters["onset_pa"].unit == "Pa"
+
+
+def test_a_file_keeps_it_and_may_hold_it_fixed(tmp_path):
+    """Written and read back; one that was measured is not fitted; one in another unit is refused."""
+    path = tmp_path / "model.yaml"
+    model = swimmer("charging_lag").with_values({"onset": 1500.0}, {"onset": 30.0})
+    save_model(model, path)
+    assert load_model(path) == model
+    text = path.read_text()
+    entry = text[text.index("  onset:") :]
+    path.write_text(text.replace(entry, entry.replace("free: true", "free: false")))
+    assert "onset" not in load_model(path).free
+    path.write_text(text.replace(entry, entry.replace("unit: V", "unit: kV")))
+    with pytest.raises(ModelError, match="onset is given in 'kV'; expected 'V'"):
+        load_model(path)
+
+
+def test_a_file_from_before_gets_one(tmp_path):
+    """A lag of a file that says nothing of an onset has none, which is what 0 V means."""
+    path = tmp_path / "model.yaml"
+    save_model(swimmer("charging_lag"), path)
+    text = path.read_text()
+    path.write_text(text[: text.index("  onset:")])
+    assert load_model(path).values["onset"] == 0.0
