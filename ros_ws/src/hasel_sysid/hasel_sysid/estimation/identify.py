@@ -12,7 +12,7 @@ from hasel_sysid.estimation.from_afar import fit_from_afar
 from hasel_sysid.estimation.least_squares import Progress
 from hasel_sysid.estimation.refinement import changes_by_refinement, with_numerical_error
 from hasel_sysid.estimation.result import FitResult
-from hasel_sysid.estimation.second_start import better_from, left_without_effect
+from hasel_sysid.estimation.second_start import asleep, better_from, left_without_effect
 from hasel_sysid.problem import Problem
 
 METHODS: dict[str, Callable[..., FitResult]] = {"least_squares": fit_from_afar, "adam": fit_adam}
@@ -22,13 +22,16 @@ METHODS: dict[str, Callable[..., FitResult]] = {"least_squares": fit_from_afar, 
 def identify(problem: Problem, model: Model, method: str, progress: Progress | None = None) -> FitResult:
     """Fit the model's free parameters; the standard errors hold noise, scatter between runs and discretisation.
 
-    An effect that a fit leaves without effect, as `add` wrote it, is tried once more from its typical size: where it
-    does nothing its derivative may be nothing too. Raises SysidError for an unknown method, SimulationError when the
+    An effect that does nothing at the start, as `add` writes it, or that a fit leaves without effect, is tried once more
+    from its typical size: where it does nothing its derivative may be nothing too. Raises SysidError for an unknown method, SimulationError when the
     start cannot be simulated.
     """
     if method not in METHODS:
         raise SysidError(f"unknown method '{method}'; {nearest_name(method, METHODS)}")
     fitted = partial(METHODS[method], problem, progress=progress)
     first = fitted(model)
-    fit = better_from(first, left_without_effect(first), fitted)
+    sleeping = asleep(model)
+    fit = better_from(first, sleeping, fitted, model)
+    if not sleeping:
+        fit = better_from(first, left_without_effect(first), fitted)
     return with_numerical_error(fit, changes_by_refinement(problem, fit.evaluation))

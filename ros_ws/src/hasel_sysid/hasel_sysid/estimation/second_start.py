@@ -3,23 +3,28 @@
 from collections.abc import Callable
 from dataclasses import replace
 
+from hasel_sim.effects.base import EffectParameter
 from hasel_sim.errors import SimulationError
-from hasel_sim.model import Model
+from hasel_sim.model import Model, Parameter
 
 from hasel_sysid.estimation.result import FitResult
 
 
 def better_from(
-    first: FitResult, values: dict[str, float], fitted: Callable[[Model], FitResult]
+    first: FitResult,
+    values: dict[str, float],
+    fitted: Callable[[Model], FitResult],
+    of: Model | None = None,
 ) -> FitResult:
-    """The first fit, or one from the same model with these values, whichever leaves less; no values: the first.
+    """The first fit, or one from a model with these values, whichever leaves less; no values: the first.
 
-    iterations: those of both. A start that cannot be simulated leaves the first.
+    of: the model that is begun from, else that of the first fit. iterations: those of both. A start that cannot be
+    simulated leaves the first.
     """
     if not values:
         return first
     try:
-        again = fitted(first.model.with_values(values))
+        again = fitted((of or first.model).with_values(values))
     except SimulationError:
         return first
     best = min(first, again, key=lambda fit: fit.evaluation.sum_of_squares)
@@ -67,18 +72,27 @@ def _is_near(fit: FitResult, name: str, null: float) -> bool:
     return abs(p.value - null) <= (p.standard_error if p.standard_error is not None else float("inf"))
 
 
+def asleep(model: Model) -> dict[str, float]:
+    """Typical values of the effects whose every free size is at its null, as `add` writes them, by name."""
+    return _typical_of_effects(model, lambda p, size: p.value == size.null)
+
+
 def left_without_effect(fit: FitResult) -> dict[str, float]:
     """Typical values of the effects of which every fitted parameter ended on a bound that is its null, by name."""
+
+    def ended_at_null(p: Parameter, size: EffectParameter) -> bool:
+        return p.name in fit.at_bound and abs(p.value - size.null) < 1e-3 * abs(size.typical - size.null)
+
+    return _typical_of_effects(fit.model, ended_at_null)
+
+
+def _typical_of_effects(
+    model: Model, does_nothing: Callable[[Parameter, EffectParameter], bool]
+) -> dict[str, float]:
     typical: dict[str, float] = {}
-    for effect in fit.model.effects:
-        sizes = [
-            p for p in effect.parameters if not p.scan and f"{effect.id}.{p.name}" in fit.evaluation.names
-        ]
-        names = [f"{effect.id}.{p.name}" for p in sizes]
-        null = all(
-            name in fit.at_bound and abs(fit.model.values[name] - p.null) < 1e-3 * abs(p.typical - p.null)
-            for name, p in zip(names, sizes, strict=True)
-        )
-        if sizes and null:
-            typical |= {name: p.typical for name, p in zip(names, sizes, strict=True)}
+    for effect in model.effects:
+        sizes = {f"{effect.id}.{p.name}": p for p in effect.parameters if not p.scan}
+        free = {name: size for name, size in sizes.items() if model.parameters[name].free}
+        if free and all(does_nothing(model.parameters[name], size) for name, size in free.items()):
+            typical |= {name: size.typical for name, size in free.items()}
     return typical

@@ -60,6 +60,14 @@ def test_one_step_moves_a_relaxation_time_by_half_of_it_at_most(trials):
         assert 0.5 * before <= after <= 1.5 * before
 
 
+def test_what_an_effect_makes_visible_comes_with_it(trials):
+    """A lag brings its times and the muscles' onset, which is a parameter only where the drive sweeps."""
+    (trial,) = trials.first(starts(catalogue()["charging_lag"]))
+    assert trial.brought == ("charging_lag.charge_time", "charging_lag.discharge_time", "onset")
+    assert trial.names == (*trials.fitted.names, *trial.brought)
+    assert list(trial.is_brought) == [name in trial.brought for name in trial.names]
+
+
 def test_half_a_step_promises_three_quarters_of_a_whole_one():
     """So it is for least squares, linear or not far from it: an effect that overshot once is not lost from sight."""
     jacobian, residual = np.array([[1.0], [1.0]]), np.array([3.0, 1.0])
@@ -69,6 +77,7 @@ def test_half_a_step_promises_three_quarters_of_a_whole_one():
         start=None,
         model=SimpleNamespace(values={"rate": 0.5}),
         names=("rate",),
+        brought=("rate",),
         residual=residual,
         jacobian=jacobian,
         step={"rate": 0.5 + whole},

@@ -5,7 +5,7 @@ import pytest
 from hasel_sim.model import load_model
 from hasel_sim.run import Simulation
 from hasel_sysid.estimation.least_squares import fitted_result
-from hasel_sysid.estimation.refinement import with_numerical_error
+from hasel_sysid.estimation.refinement import refinements, with_numerical_error
 from hasel_sysid.problem import Evaluation
 
 _NAMES = ("slope", "amplitude_4500")
@@ -46,6 +46,16 @@ def test_mesh_and_time_step_add_as_squares(fit):
     wider = with_numerical_error(fit, {"mesh": 0.03 * column, "time_step": -0.04 * column})
     by_noise = fit.model.parameters["slope"].standard_error
     assert wider.model.parameters["slope"].standard_error == pytest.approx(np.hypot(by_noise, 0.05))
+
+
+def test_where_the_drive_sweeps_the_curve_between_the_levels_is_as_uncertain_as_the_mesh():
+    """The muscles are known at three voltages only, and a lag passes all others; without one that does not matter."""
+    model = load_model("swimmer").with_levels([3500.0, 4500.0, 5500.0])
+    assert set(refinements(model)) == {"mesh", "time_step"}
+    found = refinements(model.with_effects("charging_lag"))
+    assert found["amplitude_curve"].description.numerics.amplitude_curve == "power"
+    again = refinements(found["amplitude_curve"])
+    assert again["amplitude_curve"].description.numerics.amplitude_curve == "cubic"
 
 
 def test_what_no_parameter_can_follow_adds_nothing(fit):
