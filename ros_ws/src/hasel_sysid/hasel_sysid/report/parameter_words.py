@@ -5,6 +5,7 @@ from hasel_sim.model import Model, Parameter
 
 _BASELINE = {
     "amplitude": "share by which a muscle shortens at {} of its drive",
+    "onset": "drive up to which a muscle does not contract",
     "slope": "fastest change of that share",
     "rise_time": "time constant with which the drive takes hold",
     "fall_time": "time constant with which it lets go",
@@ -22,6 +23,8 @@ def meaning(name: str, model: Model) -> str:
         return f"{parameter.symbol} of {effect.id}"
     if model.is_amplitude(name):
         return _BASELINE["amplitude"].format(name.rpartition("_")[2])
+    if model.is_onset(name):
+        return _BASELINE["onset"]
     return _BASELINE.get(name, "")
 
 
