@@ -71,7 +71,12 @@ def test_a_lag_is_as_exact_on_a_coarse_grid_as_on_a_fine_one():
     drive = np.array([[5500.0, 0.0], [0.0, 5500.0], [5500.0, 0.0], [0.0, 5500.0]])
     schedule = DriveSchedule(np.arange(4) / 7, drive)
     chain = _chain([ChargingLag()], [3500.0, 4500.0, 5500.0])
-    amplitudes = {"amplitude_3500": 0.0269, "amplitude_4500": 0.0437, "amplitude_5500": 0.0633, "onset": 1500.0}
+    amplitudes = {
+        "amplitude_3500": 0.0269,
+        "amplitude_4500": 0.0437,
+        "amplitude_5500": 0.0633,
+        "onset": 1500.0,
+    }
 
     def change(rate: int, discharge_time: float) -> np.ndarray:
         times = np.arange(0, 4 / 7, 1 / rate)

@@ -58,13 +58,25 @@ def _fits(model: Model, effect: Effect) -> bool:
     return True
 
 
+def is_place(p: EffectParameter) -> bool:
+    """Whether a parameter that is scanned is a place, or a strain from which on something acts, and no time.
+
+    Between two times the derivatives lead; between two places they do not: what holds a body where it hardly moves does
+    nothing there, and much on either side.
+    """
+    return bool(p.scan) and p.unit != "s"
+
+
 def starts(effect: Effect) -> list[Start]:
-    """Two starts for an effect with a nuisance (a relaxation time, a position), a small and a large one; else one."""
+    """For an effect with a relaxation time two starts, a short and a long one; with a place one at every value of its
+    scan; else one.
+    """
     nuisance = next((p for p in effect.parameters if p.scan), None)
     if nuisance is None:
         return [_start(effect, {})]
-    count = len(nuisance.scan)
-    chosen = {nuisance.scan[count // 4], nuisance.scan[(3 * count) // 4]}
+    count, chosen = len(nuisance.scan), set(nuisance.scan)
+    if not is_place(nuisance):
+        chosen = {nuisance.scan[count // 4], nuisance.scan[(3 * count) // 4]}
     return [_start(effect, {nuisance.name: value}) for value in sorted(chosen)]
 
 

@@ -13,12 +13,12 @@ from hasel_sysid.problem import Evaluation, Problem
 
 
 def refinements(model: Model) -> dict[str, Model]:
-    """The model on a finer mesh, with shorter time steps and, where the drive passes levels at which no amplitude is
+    """The model on a mesh finer along and across it, with shorter time steps and, where the drive passes levels at which no amplitude is
     known, with another curve between those that are: no finer one is to be had, and either is as likely.
     """
     numerics = model.description.numerics
     found = {
-        "mesh": model.with_numerics(mesh_density=1.5 * numerics.mesh_density),
+        "mesh": model.with_numerics(mesh_density=1.5 * numerics.mesh_density, layers=numerics.layers + 1),
         "time_step": model.with_numerics(steps_per_second=2 * numerics.steps_per_second),
     }
     if any(map(model.is_onset, model.parameters)):

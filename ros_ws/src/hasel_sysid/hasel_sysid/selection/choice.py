@@ -71,18 +71,33 @@ def _worth_as_much(found: Searched, effects: EffectSet, best: Worth, policy: Pol
     more = best.over(found.worths[effects])
     if more.total <= policy.standard_errors * more.standard_error:
         return True
+    return not _takes_away(found, found.best, effects, policy)
+
+
+def _takes_away(found: Searched, effects: EffectSet, beside: EffectSet, policy: Policy) -> bool:
+    """Whether a set leaves less than another by what matters."""
     # what finer numerics would take away as well is not to an effect's credit
     left = [
         found.likelihood.squares_beyond_slack(found.known[s].residual, policy.doubt)
-        for s in (effects, found.best)
+        for s in (beside, effects)
     ]
-    return left[1] > (1 - policy.matters) * left[0]
+    return left[1] <= (1 - policy.matters) * left[0]
 
 
 def all_alike(found: Searched, chosen: EffectSet, policy: Policy) -> list[EffectSet]:
-    """The sets of a set's size that may stand in its place: itself, then those that are worth most."""
+    """The sets of a set's size that may stand in its place: itself, then those that are worth most.
+
+    Of which every effect does something: one at its null stands for nothing, however little it is told from.
+    """
     same = [s for s in plausible(found.known) if len(s) == len(chosen) and alike(found, chosen, s, policy)]
+    same = [s for s in same if s == chosen or _all_act(found, s, policy)]
     return sorted(same, key=lambda s: (s != chosen, -found.worths[s].total))
+
+
+def _all_act(found: Searched, effects: EffectSet, policy: Policy) -> bool:
+    """Whether a set leaves less, by what matters, than each of its known parts without one effect."""
+    parts = [part for gone in effects if (part := effects - {gone}) in found.known]
+    return all(_takes_away(found, effects, part, policy) for part in parts)
 
 
 def alike(found: Searched, chosen: EffectSet, other: EffectSet, policy: Policy) -> bool:

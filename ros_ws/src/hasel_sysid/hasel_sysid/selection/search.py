@@ -40,6 +40,7 @@ def search(
     state.fit(state.possible(smaller(found.known, chosen)), policy.most_effects)
     state.fit(state.rivals(found, chosen), policy.fits)
     state.fit(state.until_a_law(), policy.fits)
+    state.deepen(state.chosen())
     if stand_ins:
         state.exchange(state.chosen())
     return state.judged()
@@ -160,6 +161,12 @@ class _Search(FullFits):
         """The set that would be taken now."""
         found = self.judged()
         return choose(found, self.policy, partial(self.lawful, found) if self.lawful else None).chosen
+
+    def deepen(self, chosen: EffectSet) -> None:
+        """Look for a deeper valley of the set to be taken."""
+        if chosen and not self.sets.out_of_time():
+            self.say(f"looking for {name_of(chosen)} elsewhere", 0.9)
+            self.keep(self.sets.deepest(self.known[chosen]))
 
     def exchange(self, chosen: EffectSet) -> None:
         """Fit sets with what looks like one of the effects in its place, as long as they cannot be told apart."""

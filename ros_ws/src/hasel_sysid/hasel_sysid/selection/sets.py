@@ -127,6 +127,9 @@ class Sets(Protocol):
     def fit(self, effects: EffectSet, near: FittedSet, added: Collection[Prospect]) -> FittedSet | None:
         """Fitted in full, from where the prospects of what is new point to; None where that cannot be simulated."""
 
+    def deepest(self, of: FittedSet) -> FittedSet:
+        """The same set where its squares are least, as far as other places of its effects lead."""
+
     def without(self, of: FittedSet, gone: str) -> FittedSet | None:
         """The same with one effect taken out and all else left as it is; None where that cannot be simulated."""
 

@@ -17,6 +17,7 @@ from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.first_trials import first_trials, sized_starts
 from hasel_sysid.selection.noise_bound import bounded_noise
+from hasel_sysid.selection.other_valleys import deepest
 from hasel_sysid.selection.policy import POLICY
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect
 from hasel_sysid.selection.trial_prospects import (
@@ -168,6 +169,11 @@ class SimulatedSets:
         except (HaselSimError, ModelError):
             return None
         return self.known_as(found)
+
+    def deepest(self, of: FittedSet) -> FittedSet:
+        """The same, or its fit in a deeper valley that begins elsewhere on the body."""
+        fit = deepest(self.problem, of.fit, of.effects, _BRIEF)
+        return of if fit is of.fit else self.known_as(fit)
 
     def without(self, of: FittedSet, gone: str) -> FittedSet | None:
         """Simulated once, at the values of the others."""

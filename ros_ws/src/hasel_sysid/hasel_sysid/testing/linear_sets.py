@@ -94,6 +94,10 @@ class LinearSets:
     def from_other_sizes(self, of: FittedSet, prospect: Prospect) -> Prospect | None:
         """None: least squares end at one place from everywhere."""
 
+    def deepest(self, of: FittedSet) -> FittedSet:
+        """The same: there is one valley."""
+        return of
+
     def without(self, of: FittedSet, gone: str) -> FittedSet | None:
         """What the effect did is left, all else is as it was."""
         stays = [number for number, owner in enumerate(of.owners) if owner != gone]

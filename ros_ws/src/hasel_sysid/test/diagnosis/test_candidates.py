@@ -31,6 +31,13 @@ def test_a_start_of_half_the_size_is_typical_of_its_own():
     assert half["viscoelastic_creep.relaxation_time"] == creep.values["viscoelastic_creep.relaxation_time"]
 
 
+def test_a_place_is_begun_from_everywhere_and_a_time_from_both_sides():
+    """Derivatives lead from one relaxation time to another, and not past a place that hardly moves."""
+    tether, creep = catalogue()["tether"], catalogue()["viscoelastic_creep"]
+    assert {s.values["tether.position"] for s in starts(tether)} == {0.005, 0.05, 0.094, 0.15}
+    assert len(starts(creep)) == 2
+
+
 @pytest.mark.parametrize("name", catalogue())
 def test_resized_starts_lie_within_the_range_and_leave_nuisances_alone(name):
     """A relaxation time or a position is scanned as before."""

@@ -48,6 +48,14 @@ def test_mesh_and_time_step_add_as_squares(fit):
     assert wider.model.parameters["slope"].standard_error == pytest.approx(np.hypot(by_noise, 0.05))
 
 
+def test_a_finer_mesh_is_finer_across_the_body_too():
+    """The strain of a film that hangs slack changes through the thickness."""
+    mesh = refinements(load_model("swimmer"))["mesh"].description.numerics
+    coarse = load_model("swimmer").description.numerics
+    assert mesh.mesh_density > coarse.mesh_density
+    assert mesh.layers > coarse.layers
+
+
 def test_where_the_drive_sweeps_the_curve_between_the_levels_is_as_uncertain_as_the_mesh():
     """The muscles are known at three voltages only, and a lag passes all others; without one that does not matter."""
     model = load_model("swimmer").with_levels([3500.0, 4500.0, 5500.0])

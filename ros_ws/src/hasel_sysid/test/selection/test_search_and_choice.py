@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.selection import POLICY, choose, search
+from hasel_sysid.selection.choice import alike
 from hasel_sysid.testing.linear_sets import LinearSets, run_numbers, smooth_series
 
 WHITE = NoiseModel(0.03**2, 0.0, 0.5)
@@ -429,6 +430,23 @@ def test_of_sets_that_cannot_be_told_apart_one_that_is_a_law_is_taken():
     nothing_else = choose(found, POLICY, lambda effects: "d" not in effects)
     assert (nothing_else.chosen, nothing_else.lawless) == (likelier, ())
     assert nothing_else.groups == (("a", "b"),)
+
+
+def test_an_effect_that_does_nothing_stands_for_no_other():
+    """While a stranger leaves much, hardly any set is told apart: one that takes nothing away is no law in its place."""
+    series = made_up(1)
+    stranger = smooth_series(np.random.default_rng(4), run_numbers())
+    found = search(LinearSets(series, {"c": 0.42}, WHITE, 1, stranger), POLICY, stand_ins=False)
+    choice = choose(found, POLICY)
+    assert choice.chosen == frozenset("c")
+    idle = [
+        s
+        for s in found.known
+        if len(s) == 1 and alike(found, choice.chosen, s, POLICY) and s != choice.chosen
+    ]
+    assert idle
+    assert choice.alike == (choice.chosen,) and not choice.groups
+    assert choose(found, POLICY, lambda effects: effects != frozenset("c")).chosen == frozenset("c")
 
 
 def test_while_what_is_chosen_is_no_law_what_promises_as_much_is_fitted():
