@@ -38,7 +38,7 @@ class Numerics(Section):
 
     mesh_density scales the number of elements along the body, layers is the number through each soft half;
     quadrature_order: Gauss points per direction of an element; 2 is softer and converges faster, 3 is full.
-    amplitude_curve: how a muscle contracts between the levels whose amplitudes are known, cubic or a power of the level.
+    amplitude_curve: how a muscle contracts between levels whose amplitudes are known, cubic or a power of the level.
     """
 
     mesh_density: Positive = 1.0

@@ -28,8 +28,8 @@ class Model:
 
     Baseline parameters are `slope` [1/s] (or `rise_time` and `fall_time` [s]) and one `amplitude_<level>` [1] per level
     of the drive; an effect's are `<id>.<name>`; a constant of the file that is freed is called by its path, such as
-    `material.soft.youngs_modulus_pa`. Where the drive passes levels that nobody commanded there is an `onset` [V], up to
-    which nothing contracts. Where muscles follow a law it has `muscle.<name>` in place of amplitudes, and
+    `material.soft.youngs_modulus_pa`. Where the drive passes levels that nobody commanded there is an `onset` [V], up
+    to which nothing contracts. Where muscles follow a law it has `muscle.<name>` in place of amplitudes, and
     law_levels are the voltages [V] it was last used at.
     """
 

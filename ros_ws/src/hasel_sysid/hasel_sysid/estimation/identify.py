@@ -22,9 +22,9 @@ METHODS: dict[str, Callable[..., FitResult]] = {"least_squares": fit_from_afar, 
 def identify(problem: Problem, model: Model, method: str, progress: Progress | None = None) -> FitResult:
     """Fit the model's free parameters; the standard errors hold noise, scatter between runs and discretisation.
 
-    An effect that does nothing at the start, as `add` writes it, or that a fit leaves without effect, is tried once more
-    from its typical size: where it does nothing its derivative may be nothing too. Raises SysidError for an unknown method, SimulationError when the
-    start cannot be simulated.
+    An effect that does nothing at the start, as `add` writes it, or that a fit leaves without effect, is tried once
+    more from its typical size: where it does nothing its derivative may be nothing too. Raises SysidError for an
+    unknown method, SimulationError when the start cannot be simulated.
     """
     if method not in METHODS:
         raise SysidError(f"unknown method '{method}'; {nearest_name(method, METHODS)}")

@@ -13,8 +13,10 @@ from hasel_sysid.problem import Evaluation, Problem
 
 
 def refinements(model: Model) -> dict[str, Model]:
-    """The model on a mesh finer along and across it, with shorter time steps and, where the drive passes levels at which no amplitude is
-    known, with another curve between those that are: no finer one is to be had, and either is as likely.
+    """The model on a mesh finer along and across it, and with shorter time steps.
+
+    Where the drive passes levels at which no amplitude is known, also with another curve between those that are: no
+    finer one is to be had, and either is as likely.
     """
     numerics = model.description.numerics
     found = {

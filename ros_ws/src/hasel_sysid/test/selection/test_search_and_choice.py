@@ -411,8 +411,8 @@ def test_what_is_out_of_range_is_no_answer_and_takes_no_answers_place():
     """The pair that promises most, out of range, does not keep the second of the possible ones from being fitted."""
     for seed in range(3):
         series = made_up(seed, "abgh")
-        for alike, name in ((0.1, "h"), (0.8, "g")):
-            series[name] = series["b"] + alike * series[name]
+        for share, name in ((0.1, "h"), (0.8, "g")):
+            series[name] = series["b"] + share * series[name]
         sets = _SomeOutOfRange(series, {"a": 0.3, "b": 0.1}, WHITE, seed)
         assert {frozenset("ah"), frozenset("ag")} <= set(search(sets, POLICY, stand_ins=False).known)
 
@@ -433,7 +433,7 @@ def test_of_sets_that_cannot_be_told_apart_one_that_is_a_law_is_taken():
 
 
 def test_an_effect_that_does_nothing_stands_for_no_other():
-    """While a stranger leaves much, hardly any set is told apart: one that takes nothing away is no law in its place."""
+    """While a stranger leaves much, hardly any set is told apart: one that takes nothing away is no law in a place."""
     series = made_up(1)
     stranger = smooth_series(np.random.default_rng(4), run_numbers())
     found = search(LinearSets(series, {"c": 0.42}, WHITE, 1, stranger), POLICY, stand_ins=False)
