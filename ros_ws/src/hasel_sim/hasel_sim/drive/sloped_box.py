@@ -64,7 +64,7 @@ class PiecewisePower:
         self._levels, self._amplitudes = np.log(levels), np.log(amplitudes)
         self._powers = np.diff(self._amplitudes) / np.diff(self._levels)
 
-    def __call__(self, level: np.ndarray, order: int = 0) -> np.ndarray:
+    def __call__(self, level: np.ndarray | float, order: int = 0) -> np.ndarray:
         """Amplitude at levels of any shape, or with order 1 its slope there."""
         at = np.log(level)
         value = np.exp(np.interp(at, self._levels, self._amplitudes))

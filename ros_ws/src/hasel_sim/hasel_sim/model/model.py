@@ -244,7 +244,7 @@ class Model:
             raise ModelError(sentence_for(error)) from None
         return replace(self, description=changed)
 
-    def with_numerics(self, **changes: float) -> "Model":
+    def with_numerics(self, **changes: float | str) -> "Model":
         """A copy with other numerics, such as mesh_density=2 or steps_per_second=960.
 
         Raises ModelError for an unknown one or a bad value.
