@@ -143,7 +143,7 @@ class PreparedRun:
         if name in constants(self.model.description):
             return constant_parameter(self.model, name)
         return EffectParameter(
-            name, name, parameter.unit, 0.0, parameter.lower, parameter.upper, parameter.value or 0.1
+            name, name, parameter.unit, 0.0, parameter.lower, parameter.upper, parameter.magnitude or 0.1
         )
 
     def at_frames(self, series: np.ndarray) -> np.ndarray:

@@ -9,6 +9,7 @@ from hasel_sim.effects.base import Effect
 from hasel_sysid.diagnosis.explained import share_left
 from hasel_sysid.diagnosis.signature import Signature
 from hasel_sysid.diagnosis.trial import Trial
+from hasel_sysid.estimation.bounds import further_without_bounds
 from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.projection import orthonormal
@@ -16,6 +17,8 @@ from hasel_sysid.projection import orthonormal
 SIGNIFICANT = 0.01
 """Chance that noise alone looks like this below which something is missing."""
 _LEAST_EXCESS = 0.05
+_DOUBT = 2.0
+"""Standard errors by which a value may seem to lie beyond its range, and lie at its end."""
 
 
 @dataclass(frozen=True)
@@ -73,10 +76,11 @@ class Context:
         return 1.0 - share_left(before, after, self.noise.mean_absolute)
 
 
-def on_own_bound(effect: str, fit: FitResult) -> bool:
-    """Whether a fit had to stop at the edge of the plausible range of one of the effect's own parameters.
+def out_of_range(effect: str, fit: FitResult) -> bool:
+    """Whether one of the effect's own parameters would have to lie beyond its plausible range.
 
-    A part of the effect that is not there (at its null) or that nothing shows does not count.
+    It ended on a bound, and would go on from there by more than noise explains. A part of the effect that is not there
+    (at its null) or that nothing shows does not count.
     """
     kind = next(e for e in fit.model.effects if e.id == effect)
     names = {f"{effect}.{p.name}": p.null for p in kind.parameters}
@@ -84,8 +88,14 @@ def on_own_bound(effect: str, fit: FitResult) -> bool:
         name in names
         and name not in fit.undetermined
         and not np.isclose(fit.model.values[name], names[name], atol=1e-6)
+        and _surely_beyond(fit, name)
         for name in fit.at_bound
     )
+
+
+def _surely_beyond(fit: FitResult, name: str) -> bool:
+    error = fit.model.parameters[name].standard_error or 0.0
+    return abs(further_without_bounds(fit.evaluation, name)) > _DOUBT * error
 
 
 def expected_squares(fitted: np.ndarray, noise: NoiseModel, runs: np.ndarray) -> float:

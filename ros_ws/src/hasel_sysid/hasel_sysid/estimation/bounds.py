@@ -25,6 +25,17 @@ def at_bound(evaluation: Evaluation) -> tuple[str, ...]:
     return tuple(p.name for p, end in ends if any(_held(p, bound, end) for bound in (p.lower, p.upper)))
 
 
+def further_without_bounds(evaluation: Evaluation, name: str) -> float:
+    """By how much one more step would move a parameter, were it not for its own bounds; the others keep theirs."""
+    parameters = [evaluation.model.parameters[n] for n in evaluation.names]
+    own = evaluation.names.index(name)
+    value = np.array([p.value for p in parameters])
+    lower, upper = (np.array([getattr(p, side) for p in parameters]) for side in ("lower", "upper"))
+    lower[own], upper[own] = -np.inf, np.inf
+    step, _ = bounded_change(evaluation.residual, evaluation.jacobian, lower - value, upper - value)
+    return float(step[own])
+
+
 def _held(p: Parameter, bound: float, end: float) -> bool:
     if not np.isfinite(bound):
         return False

@@ -9,7 +9,7 @@ from hasel_sim.errors import HaselSimError, ModelError
 from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis.candidates import Start, valued
-from hasel_sysid.diagnosis.context import on_own_bound
+from hasel_sysid.diagnosis.context import out_of_range
 from hasel_sysid.diagnosis.trial import Trial, Trials, room
 from hasel_sysid.estimation import FitResult, fit_least_squares
 from hasel_sysid.estimation.least_squares import finished, fitted_result
@@ -85,7 +85,7 @@ class SimulatedSets:
             *room(model, moving),
             tuple(owner.get(name, "") for name in moving),
             without,
-            not any(on_own_bound(effect, fit) for effect in own),
+            not any(out_of_range(effect, fit) for effect in own),
             fit,
         )
 

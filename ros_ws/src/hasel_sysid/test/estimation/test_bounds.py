@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sim.model import load_model
-from hasel_sysid.estimation.bounds import at_bound
+from hasel_sysid.estimation.bounds import at_bound, further_without_bounds
 from hasel_sysid.problem import Evaluation
 
 NAME = "material.soft.retardation_time_s"
@@ -32,3 +32,9 @@ def ended(value, pull):
 def test_what_is_on_its_way_to_a_bound_is_held_by_it(value, pull, held):
     """Rounding decides how near to a bound a search ends, and not whether the bound holds the parameter."""
     assert at_bound(ended(value, pull)) == ((NAME,) if held else ())
+
+
+@pytest.mark.parametrize("pull", [-0.1, 0.0, 0.1])
+def test_without_its_bounds_a_parameter_goes_where_the_runs_ask_for_it(pull):
+    """Beyond them, back into its range, or nowhere."""
+    assert further_without_bounds(ended(UPPER, pull * UPPER), NAME) == pytest.approx(pull * UPPER)
