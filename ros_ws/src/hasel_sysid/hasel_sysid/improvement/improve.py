@@ -54,10 +54,10 @@ def improve(
     effects = candidate_effects(fit.model, tuple(only) if only else None)
     begun = () if near or opposed else from_afar(problem, fit, effects, policy, partial(_part, progress))
     sets = SimulatedSets(problem, fit, effects, list(changes.values()) if near else ())
-    reached = cache(partial(_reached, problem, sets))
+    refined = cache(partial(_refined, problem))
 
     def lawful(found: Searched, effects: EffectSet) -> bool:
-        fit = reached(found.known[effects])
+        fit = refined(found.known[effects])
         return not against_law(fit, noise_allowed(sets, found), sorted(effects))
 
     found = search(sets, policy, _part(progress, "search", 0.25, 0.95), begun, lawful=lawful)
@@ -68,7 +68,7 @@ def improve(
         on_stage(stages[0])
     for effects_so_far in () if opposed else choice.path[1:]:
         order = _in_order(choice, effects_so_far)
-        fit_so_far = reached(found.known[effects_so_far])
+        fit_so_far = refined(sets.finished(found.known[effects_so_far]))
         stages.append(_stage(fit_so_far, order, validation, None))
         if on_stage:
             on_stage(stages[-1])
@@ -123,9 +123,9 @@ def _in_order(choice: Choice, effects: EffectSet) -> tuple[str, ...]:
     return tuple(effect for effect in order if effect in effects)
 
 
-def _reached(problem: Problem, sets: SimulatedSets, fitted: FittedSet) -> FitResult:
-    """The fit of a set, at its end."""
-    fit = sets.finished(fitted).fit
+def _refined(problem: Problem, fitted: FittedSet) -> FitResult:
+    """The fit of a set, with what finer numerics would change."""
+    fit: FitResult = fitted.fit
     return with_numerical_error(fit, changes_by_refinement(problem, fit.evaluation))
 
 
