@@ -71,17 +71,12 @@ def _worth_as_much(found: Searched, effects: EffectSet, best: Worth, policy: Pol
     more = best.over(found.worths[effects])
     if more.total <= policy.standard_errors * more.standard_error:
         return True
-    return not _takes_away(found, found.best, effects, policy)
-
-
-def _takes_away(found: Searched, effects: EffectSet, beside: EffectSet, policy: Policy) -> bool:
-    """Whether a set leaves less than another by what matters."""
     # what finer numerics would take away as well is not to an effect's credit
     left = [
         found.likelihood.squares_beyond_slack(found.known[s].residual, policy.doubt)
-        for s in (beside, effects)
+        for s in (effects, found.best)
     ]
-    return left[1] <= (1 - policy.matters) * left[0]
+    return left[1] > (1 - policy.matters) * left[0]
 
 
 def all_alike(found: Searched, chosen: EffectSet, policy: Policy) -> list[EffectSet]:
@@ -97,7 +92,8 @@ def all_alike(found: Searched, chosen: EffectSet, policy: Policy) -> list[Effect
 def _all_act(found: Searched, effects: EffectSet, policy: Policy) -> bool:
     """Whether a set leaves less, by what matters, than each of its known parts without one effect."""
     parts = [part for gone in effects if (part := effects - {gone}) in found.known]
-    return all(_takes_away(found, effects, part, policy) for part in parts)
+    least = min((found.known[part].squares for part in parts), default=np.inf)
+    return found.known[effects].squares <= (1 - policy.matters) * least
 
 
 def alike(found: Searched, chosen: EffectSet, other: EffectSet, policy: Policy) -> bool:

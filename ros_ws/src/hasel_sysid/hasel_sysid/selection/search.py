@@ -169,11 +169,18 @@ class _Search(FullFits):
             self.keep(self.sets.deepest(self.known[chosen]))
 
     def exchange(self, chosen: EffectSet) -> None:
-        """Fit sets with what looks like one of the effects in its place, as long as they cannot be told apart."""
+        """Fit sets with what looks like one of the effects in its place, as long as they cannot be told apart.
+
+        One that promised as much as the chosen set, and did not keep it, says nothing of the next.
+        """
         for gone in sorted(chosen) if len(chosen) > 1 else ():
             for proposal in self.stand_ins(gone, chosen):
-                found = self.judged() if self.fit([proposal], 1) else None
-                if found is None or not alike(found, chosen, proposal.effects, self.policy):
+                if not self.fit([proposal], 1):
+                    break
+                same = proposal.effects in self.known and alike(
+                    self.judged(), chosen, proposal.effects, self.policy
+                )
+                if not same and self.promised(proposal) < self.whitened[chosen].logarithm - self.reach:
                     break
 
     def stand_ins(self, gone: str, chosen: EffectSet) -> list[Proposal]:

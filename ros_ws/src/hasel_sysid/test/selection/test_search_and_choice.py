@@ -386,6 +386,26 @@ def test_what_may_stand_in_a_place_is_looked_at_beside_the_rest():
     assert choose(search(sets, POLICY, begun=begun), POLICY).groups == (("a", "b"),)
 
 
+class _Boasts(_LookOtherwiseAtFirst):
+    """What c promises beside other effects is all, and it keeps little of it."""
+
+    def _prospect(self, of, name):
+        found = super()._prospect(of, name)
+        return replace(found, residual=0.0 * found.residual) if of.effects and name == "c" else found
+
+
+def test_what_breaks_its_promise_does_not_speak_for_the_next():
+    """The double of the chosen one promises less than a boaster, and is fitted after it all the same."""
+    series = made_up(1)
+    series["b"] = series["a"] + 0.01 * series["b"]
+    series["c"] = series["a"] + 0.4 * series["c"]
+    sets = _Boasts(series, {"a": 0.1, "d": 0.3}, WHITE, 1)
+    begun = tuple(sets.fit(frozenset(one), sets.baseline(), ()) for one in ("ad", "d"))
+    found = search(sets, POLICY, begun=begun)
+    assert frozenset("cd") in found.known
+    assert choose(found, POLICY).groups == (("a", "b"),)
+
+
 def test_where_a_set_describes_the_runs_what_dies_away_is_told_apart():
     """In a single run that dies away every difference lasts for many frames, and none of it is doubt."""
     runs = run_numbers(1, 480)
