@@ -171,7 +171,7 @@ class _Search(FullFits):
     def exchange(self, chosen: EffectSet) -> None:
         """Fit sets with what looks like one of the effects in its place, as long as they cannot be told apart.
 
-        One that promised as much as the chosen set, and did not keep it, says nothing of the next.
+        Of what ended otherwise than it promised, the next promise says as little.
         """
         for gone in sorted(chosen) if len(chosen) > 1 else ():
             for proposal in self.stand_ins(gone, chosen):
@@ -180,8 +180,13 @@ class _Search(FullFits):
                 same = proposal.effects in self.known and alike(
                     self.judged(), chosen, proposal.effects, self.policy
                 )
-                if not same and self.promised(proposal) < self.whitened[chosen].logarithm - self.reach:
+                if not same and self.kept(proposal):
                     break
+
+    def kept(self, proposal: Proposal) -> bool:
+        """Whether a fit ended, for better or worse, as likely as it promised to."""
+        ended = self.whitened.get(proposal.effects)
+        return ended is not None and abs(ended.logarithm - self.promised(proposal)) <= self.reach
 
     def stand_ins(self, gone: str, chosen: EffectSet) -> list[Proposal]:
         """What looks like an effect and promises to do in its place; most promising first.
