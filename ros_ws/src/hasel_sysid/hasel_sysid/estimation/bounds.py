@@ -17,9 +17,7 @@ def at_bound(evaluation: Evaluation) -> tuple[str, ...]:
 
     A search that keeps inside its bounds comes to them by ever smaller steps, and ends somewhere on that way.
     """
-    parameters = [evaluation.model.parameters[name] for name in evaluation.names]
-    value = np.array([p.value for p in parameters])
-    lower, upper = (np.array([getattr(p, side) for p in parameters]) for side in ("lower", "upper"))
+    parameters, value, lower, upper = _ranges(evaluation)
     further, _ = bounded_change(evaluation.residual, evaluation.jacobian, lower - value, upper - value)
     ends = zip(parameters, value + further, strict=True)
     return tuple(p.name for p, end in ends if any(_held(p, bound, end) for bound in (p.lower, p.upper)))
@@ -27,13 +25,18 @@ def at_bound(evaluation: Evaluation) -> tuple[str, ...]:
 
 def further_without_bounds(evaluation: Evaluation, name: str) -> float:
     """By how much one more step would move a parameter, were it not for its own bounds; the others keep theirs."""
-    parameters = [evaluation.model.parameters[n] for n in evaluation.names]
+    _, value, lower, upper = _ranges(evaluation)
     own = evaluation.names.index(name)
-    value = np.array([p.value for p in parameters])
-    lower, upper = (np.array([getattr(p, side) for p in parameters]) for side in ("lower", "upper"))
     lower[own], upper[own] = -np.inf, np.inf
     step, _ = bounded_change(evaluation.residual, evaluation.jacobian, lower - value, upper - value)
     return float(step[own])
+
+
+def _ranges(evaluation: Evaluation) -> tuple[list[Parameter], np.ndarray, np.ndarray, np.ndarray]:
+    """The parameters of an evaluation, their values and their bounds."""
+    parameters = [evaluation.model.parameters[name] for name in evaluation.names]
+    value, lower, upper = np.array([(p.value, p.lower, p.upper) for p in parameters]).reshape(-1, 3).T.copy()
+    return parameters, value, lower, upper
 
 
 def _held(p: Parameter, bound: float, end: float) -> bool:
