@@ -37,6 +37,8 @@ def _bench(options: argparse.Namespace) -> int:
     cases = _cases(options)
     if not cases:
         raise BenchmarkError("No case is left to run; choose other --effects or another kind with --only.")
+    if options.alone and options.scheduler:
+        raise BenchmarkError("--alone measures times on this machine; leave out --scheduler.")
     if not options.resume and any(options.output.glob("*.json")):
         raise BenchmarkError(
             f"{options.output} already holds results; go on with --resume, or name another folder with --output."
@@ -48,7 +50,8 @@ def _bench(options: argparse.Namespace) -> int:
     try:
         with executor(options.jobs, options.scheduler) as pool:
             at_once = _at_once(options, cases)
-            for outcome in run_cases(cases, explain, pool, options.output, _say, at_once, known):
+            cores = worker_count(options.jobs) if options.alone else 1
+            for outcome in run_cases(cases, explain, pool, options.output, _say, at_once, known, cores):
                 outcomes.append(outcome)
     except KeyboardInterrupt:
         stopped = True

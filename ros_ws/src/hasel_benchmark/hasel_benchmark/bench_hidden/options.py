@@ -40,6 +40,11 @@ def parser() -> argparse.ArgumentParser:
     )
     options.add_argument("--page", type=Path, metavar="FILE", help=f"default: {PAGE}, in DIR for a part")
     options.add_argument("--jobs", type=int, metavar="N", help="cases at once (default: one per core)")
+    options.add_argument(
+        "--alone",
+        action="store_true",
+        help="one case after the other, each with all jobs, as `improve` has them",
+    )
     options.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, instead of processes")
     return options
 

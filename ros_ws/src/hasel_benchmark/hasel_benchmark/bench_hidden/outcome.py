@@ -32,7 +32,8 @@ class Outcome:
     """hidden: ids; ranked: ids, most probable first; missing: ids that `improve` says are missing and adds.
 
     mae_*: mean |Δ sin θ| of the fitted baseline and of the last stage; floor_*: of the noise alone;
-    probability: that `improve` gives the effect ranked first; failure: why there is no answer; all else is empty then.
+    probability: that `improve` gives the effect ranked first; cores: that `improve` had; failure: why there is no
+    answer; all else is empty then.
     """
 
     case: str
@@ -52,6 +53,7 @@ class Outcome:
     estimates: tuple[Estimate, ...] = ()
     seconds: float = np.nan
     probability: float = np.nan
+    cores: int = 1
     failure: str = ""
 
     @property

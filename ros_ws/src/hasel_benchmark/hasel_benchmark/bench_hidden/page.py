@@ -24,6 +24,7 @@ def as_json(outcomes: Sequence[Outcome]) -> dict:
                     "least": b.least,
                     "most": b.most,
                     "met": b.met,
+                    "interval": b.interval,
                     "cases": b.cases,
                 }
                 for b in bars(chosen)
@@ -91,7 +92,7 @@ def _table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 def _bar_table(measured: Sequence[Bar]) -> str:
     rows = [[b.what, b.measured, b.bar, _WORDS[b.met], str(b.cases)] for b in measured]
-    return _table(["what", "measured", "bar", "met", "out of"], rows)
+    return _table(["what", "measured (95 %)", "bar", "met", "out of"], rows)
 
 
 def _effect_table(outcomes: Sequence[Outcome]) -> str:

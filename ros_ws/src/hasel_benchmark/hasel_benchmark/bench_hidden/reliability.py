@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from hasel_benchmark.bench_hidden.outcome import Outcome
+from hasel_benchmark.bench_hidden.share import wilson_interval
 
 EDGES = (0.0, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0)
-_NORMAL_95 = 1.96
 
 
 @dataclass(frozen=True)
@@ -28,11 +28,8 @@ class Bin:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """In which the true share lies with 95 % (Wilson 1927)."""
-        n, z = self.count, _NORMAL_95
-        middle = (self.share + z**2 / (2 * n)) / (1 + z**2 / n)
-        half = z / (1 + z**2 / n) * np.sqrt(self.share * (1 - self.share) / n + z**2 / (4 * n**2))
-        return float(max(middle - half, 0.0)), float(min(middle + half, 1.0))
+        """In which the true share lies with 95 %."""
+        return wilson_interval(self.share, self.count)
 
 
 def reliability(outcomes: Sequence[Outcome]) -> list[Bin]:

@@ -1,9 +1,10 @@
-"""Run cases, each on one core and kept in a file of its own, so that hours of work survive a stop."""
+"""Run cases, each kept in a file of its own, so that hours of work survive a stop."""
 
 import json
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from dataclasses import replace
 from pathlib import Path
 
 from hasel_sim.errors import SimulationError
@@ -25,8 +26,11 @@ def kept_outcome(case: Case, folder: Path) -> Outcome | None:
     return outcome_from_dict(json.loads(path.read_text())["outcome"]) if path.is_file() else None
 
 
-def run_case(case: Case, explain: Explain, pool: Executor) -> tuple[Outcome, dict, dict]:
-    """Outcome, hidden values and the answer of one case; a failure to simulate or to explain is an outcome too."""
+def run_case(case: Case, explain: Explain, pool: Executor, cores: int = 1) -> tuple[Outcome, dict, dict]:
+    """Outcome, hidden values and the answer of one case; a failure to simulate or to explain is an outcome too.
+
+    cores: how many the pool has, for the record.
+    """
     try:
         laboratory = measure(case, pool)
     except SimulationError as error:
@@ -37,7 +41,7 @@ def run_case(case: Case, explain: Explain, pool: Executor) -> tuple[Outcome, dic
     except (SysidError, SimulationError) as error:
         return failed(case, f"improve gave up: {error}"), laboratory.values, {}
     return (
-        judge(case, laboratory, answer, time.perf_counter() - start),
+        replace(judge(case, laboratory, answer, time.perf_counter() - start), cores=cores),
         laboratory.values,
         answer,
     )
@@ -51,24 +55,31 @@ def run_cases(
     say: Callable[[str], None],
     at_once: int = 1,
     known: Mapping[str, Outcome] | None = None,
+    cores: int = 1,
 ) -> Iterator[Outcome]:
     """Outcomes of all cases, those already known or in the folder first; each new one is written there at once.
 
-    at_once: how many cases the pool is given at a time, each to one worker; known: outcomes by name of the case.
+    at_once: how many cases the pool is given at a time, each to one worker; cores: above 1, how many workers the pool
+    has, all of which every case has to itself in its turn; known: outcomes by name of the case.
     """
     folder.mkdir(parents=True, exist_ok=True)
     kept = {case.name: kept_outcome(case, folder) or (known or {}).get(case.name) for case in cases}
     yield from (outcome for outcome in kept.values() if outcome is not None)
     todo = [case for case in cases if kept[case.name] is None]
     begin = time.perf_counter()
-    for number, (case, found) in enumerate(_in_turn(todo, explain, pool, at_once), start=1):
+    in_turn = (
+        ((case, run_case(case, explain, pool, cores)) for case in todo)
+        if cores > 1
+        else _beside_each_other(todo, explain, pool, at_once)
+    )
+    for number, (case, found) in enumerate(in_turn, start=1):
         _keep(case, *found, folder)
         left = (time.perf_counter() - begin) / number * (len(todo) - number)
         say(f"[{number}/{len(todo)}, {_duration(left)} left] {case}: {_in_words(found[0])}")
         yield found[0]
 
 
-def _in_turn(
+def _beside_each_other(
     cases: Sequence[Case], explain: Explain, pool: Executor, at_once: int
 ) -> Iterator[tuple[Case, tuple[Outcome, dict, dict]]]:
     waiting = list(reversed(cases))

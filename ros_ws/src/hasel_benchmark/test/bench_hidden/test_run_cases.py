@@ -74,6 +74,19 @@ def test_cases_run_beside_each_other(tmp_path):
     assert len(outcomes) == 4
 
 
+def test_a_case_alone_has_all_workers(tmp_path):
+    """Each is given the whole pool in its turn, and its outcome says how many cores that were."""
+    with ThreadPoolExecutor(2) as pool:
+        asked = []
+        outcomes = list(
+            run_cases.run_cases(
+                CASES, lambda laboratory, own: asked.append(own) or ANSWER, pool, tmp_path, print, cores=2
+            )
+        )
+    assert asked == [pool] * 3
+    assert [outcome.cores for outcome in outcomes] == [2] * 3
+
+
 def test_each_case_leaves_a_file_with_answer_and_truth(tmp_path):
     """One JSON file per case, complete."""
     run(CASES[:1], tmp_path)
@@ -106,7 +119,7 @@ def test_command_writes_the_page(tmp_path, monkeypatch):
     """Results go to a page and a JSON file beside it."""
     monkeypatch.setattr(command, "explain", lambda laboratory, pool: ANSWER)
     assert command.main(["--quick", "--jobs", "1", "--output", str(tmp_path)]) == 0
-    assert "nothing hidden, coloured noise: something reported | 0 % | ≤ 5 % | yes" in (
+    assert "nothing hidden, coloured noise: something reported | 0 % (0–79) | ≤ 2 % | yes" in (
         tmp_path / "hidden_effects.md"
     ).read_text(encoding="utf-8")
     assert json.loads((tmp_path / "hidden_effects.json").read_text())["near"]["bars"]

@@ -1,4 +1,4 @@
-"""`bench`: speed beside its bars, of everything or of swims only, or convergence."""
+"""`bench`: speed beside its bars, of everything or of swims only, against another revision, or convergence."""
 
 import argparse
 import json
@@ -10,12 +10,14 @@ from threadpoolctl import threadpool_limits
 
 from hasel_sim.bench.cases import fitted_swimmer
 from hasel_sim.bench.convergence import mesh_errors, step_errors
+from hasel_sim.bench.in_turns import measure_in_turns
 from hasel_sim.bench.report import ConvergenceReport, SpeedReport
 from hasel_sim.bench.speed import by_nodes, by_parameters, free_swim_factor, measure_side_by_side
 from hasel_sim.bench.swimming import SwimmingReport, measure_swimming
 from hasel_sim.bench.timing import first_run_seconds
 from hasel_sim.bench.where_time_goes import shares
 from hasel_sim.commands.parsers import bench_parser
+from hasel_sim.errors import HaselSimError
 
 SIZES = (180, 275, 700, 1400)
 """Wanted nodes: the second is the default mesh, the last has as many as the simulator this one is compared with."""
@@ -46,6 +48,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def run(options: argparse.Namespace) -> int:
     """Print the tables; 0 when every bar is met, else 1."""
     console = Console()
+    if options.against:
+        return _against(options, console)
     with threadpool_limits(1):
         if options.convergence:
             report: ConvergenceReport | SwimmingReport | SpeedReport = ConvergenceReport(
@@ -60,6 +64,19 @@ def run(options: argparse.Namespace) -> int:
     if options.json:
         options.json.write_text(json.dumps(report.values(), indent=1))
     return int(not isinstance(report, ConvergenceReport) and not all(bar.met for bar in report.bars()))
+
+
+def _against(options: argparse.Namespace, console: Console) -> int:
+    try:
+        with console.status("timing two versions in turns"):
+            compared = measure_in_turns(options.against)
+    except HaselSimError as error:
+        print(error, file=sys.stderr)
+        return 1
+    compared.print(console)
+    if options.json:
+        options.json.write_text(json.dumps(compared.values(), indent=1))
+    return 0
 
 
 if __name__ == "__main__":

@@ -23,6 +23,12 @@ def bench_parser() -> argparse.ArgumentParser:
         action="store_true",
         help="only a free swim, and a sweep of 57 swims of 10 s in two processes",
     )
+    what.add_argument(
+        "--against",
+        type=Path,
+        metavar="CLONE",
+        help="only how much less time a run takes than in another revision",
+    )
     options.add_argument("--json", type=Path, metavar="FILE", help="write all numbers here")
     return options
 
