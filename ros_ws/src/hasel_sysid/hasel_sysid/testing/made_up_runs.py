@@ -1,6 +1,6 @@
 """A model beside runs, for tests: what it misses in every frame is known, and nothing is simulated."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from hasel_sim.drive.schedule import DriveSchedule
@@ -9,6 +9,8 @@ from hasel_sim.run import Run, Simulation
 
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.compare.run_comparison import RunComparison
+from hasel_sysid.diagnosis.candidates import Start
+from hasel_sysid.diagnosis.trial import Trial
 from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.problem import Evaluation
 from hasel_sysid.where_it_fails.analyse import where_it_fails
@@ -29,24 +31,47 @@ def made_up_evaluation(
     residual [runs, frames]; time [s] [frames]; schedules: of every run (default: passive); simulated: sin theta
     [frames], the same in every run (default: 0); jacobian [frames, parameters], likewise.
     """
-    count, frames = residual.shape
-    series = np.zeros(frames) if simulated is None else simulated
-    slopes = np.zeros((frames, len(names))) if jacobian is None else jacobian
-    nothing = np.zeros((frames, 0))
-    simulations = tuple(
-        Simulation(Run(f"run {n}", time, schedule), series, names, slopes, nothing, nothing)
-        for n, schedule in enumerate(schedules or [None] * count)
-    )
-    return Evaluation(
-        model,
-        names,
-        simulations,
+    count = len(residual)
+    runs = [Run(f"run {n}", time, schedule) for n, schedule in enumerate(schedules or [None] * count)]
+    return evaluation_of_runs(
+        runs,
         residual.ravel(),
-        np.tile(slopes, (count, 1)),
-        np.repeat(np.arange(count), frames),
-        np.zeros(count),
-        (np.ones(frames, dtype=bool),) * count,
+        None if simulated is None else np.tile(simulated, count),
+        None if jacobian is None else np.tile(jacobian, (count, 1)),
+        names,
+        model,
     )
+
+
+def evaluation_of_runs(
+    runs: Sequence[Run],
+    residual: np.ndarray,
+    simulated: np.ndarray | None = None,
+    jacobian: np.ndarray | None = None,
+    names: tuple[str, ...] = (),
+    model: Model | None = None,
+) -> Evaluation:
+    """Runs with frames of their own, one after the other.
+
+    residual, simulated (default: 0) [frames of all runs]; jacobian [frames of all runs, parameters].
+    """
+    lengths = [len(run.time) for run in runs]
+    series = np.zeros(len(residual)) if simulated is None else simulated
+    slopes = np.zeros((len(residual), len(names))) if jacobian is None else jacobian
+    of_runs = np.repeat(np.arange(len(runs)), lengths)
+    simulations = tuple(
+        Simulation(
+            run,
+            series[of_runs == n],
+            names,
+            slopes[of_runs == n],
+            np.zeros((length, 0)),
+            np.zeros((length, 0)),
+        )
+        for n, (run, length) in enumerate(zip(runs, lengths, strict=True))
+    )
+    frames = tuple(np.ones(length, dtype=bool) for length in lengths)
+    return Evaluation(model, names, simulations, residual, slopes, of_runs, np.zeros(len(runs)), frames)
 
 
 def made_up_fit(model: Model, error: float, at_bound: tuple[str, ...] = ()) -> FitResult:
@@ -55,6 +80,21 @@ def made_up_fit(model: Model, error: float, at_bound: tuple[str, ...] = ()) -> F
         error * np.array([[1.0, -1.0]]), np.array([0.0, 0.01]), names=model.free, model=model
     )
     return FitResult(model, evaluation, at_bound, (), 1, "least_squares")
+
+
+def made_up_trial(
+    model: Model,
+    start: Start,
+    step: Mapping[str, float],
+    residual: np.ndarray,
+    jacobian: np.ndarray,
+    predicted: float,
+    promised: float = 0.0,
+) -> Trial:
+    """A trial of one effect of the catalogue in a model of which nothing else is fitted; step: values by name."""
+    tried = model.with_effects(start.effect.id).with_values(start.values)
+    names = tuple(start.values)
+    return Trial(start, tried, names, names, residual, jacobian, dict(step), predicted, promised)
 
 
 def made_up_comparison(model: Model, label: str, error: float, unseen: float) -> Comparison:

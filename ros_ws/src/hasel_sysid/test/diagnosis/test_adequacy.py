@@ -1,14 +1,16 @@
 """Whether a model describes its runs, and where it does not."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from hasel_sim.drive.schedule import DriveSchedule
+from hasel_sim.model import load_model
+from hasel_sim.run import Run
 from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.noise import NoiseModel
+from hasel_sysid.testing.made_up_runs import evaluation_of_runs
 
 TIME = np.arange(0, 2.0, 1 / 120)
+SWIMMER = load_model("swimmer")
 NOISE = NoiseModel(white=4e-6, coloured=5e-6, correlation=0.9)
 
 
@@ -16,24 +18,16 @@ def _run(voltage, frequency):
     time = np.arange(0, 2.0, 0.5 / frequency)
     upper = np.arange(len(time)) % 2 == 0
     schedule = DriveSchedule(time, voltage * np.stack([upper, ~upper], axis=1))
-    run = SimpleNamespace(name=f"{voltage:g}V_{frequency:g}Hz", time=TIME, schedule=schedule)
-    return SimpleNamespace(run=run)
+    return Run(f"{voltage:g}V_{frequency:g}Hz", TIME, schedule)
 
 
 def _evaluation(seed, missed=lambda run: 0.0):
-    simulations = [_run(v, f) for v in (3500.0, 4500.0, 5500.0) for f in (1.0, 2.0, 4.0)]
-    runs = np.repeat(np.arange(9), len(TIME))
-    residual = NOISE.sample(runs, 1, np.random.default_rng(seed))[:, 0]
-    residual = residual + np.concatenate([np.broadcast_to(missed(s.run), len(TIME)) for s in simulations])
-    return SimpleNamespace(
-        residual=residual,
-        jacobian=np.sin(np.arange(len(residual)))[:, None],
-        runs=runs,
-        simulations=simulations,
-        model=SimpleNamespace(description=SimpleNamespace(channels=[SimpleNamespace(unit="V")])),
-        frames=[np.ones(len(TIME), dtype=bool)] * 9,
-        mean_absolute_error=float(np.abs(residual).mean()),
-    )
+    runs = [_run(v, f) for v in (3500.0, 4500.0, 5500.0) for f in (1.0, 2.0, 4.0)]
+    numbers = np.repeat(np.arange(len(runs)), len(TIME))
+    residual = NOISE.sample(numbers, 1, np.random.default_rng(seed))[:, 0]
+    residual = residual + np.concatenate([np.broadcast_to(missed(run), len(TIME)) for run in runs])
+    jacobian = np.sin(np.arange(len(residual)))[:, None]
+    return evaluation_of_runs(runs, residual, jacobian=jacobian, names=("slope",), model=SWIMMER)
 
 
 def test_noise_alone_is_adequate_in_every_regime():

@@ -1,39 +1,38 @@
 """A law has one value for every voltage and frequency."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from hasel_sim.drive.schedule import DriveSchedule
+from hasel_sim.model import load_model
 from hasel_sim.run import Run
 from hasel_sysid.diagnosis.constancy import trends
+from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.noise import NoiseModel
-from hasel_sysid.problem import Evaluation
+from hasel_sysid.testing.made_up_runs import evaluation_of_runs
 
 NOISE = NoiseModel(white=9e-6, coloured=0.0, correlation=0.5)
 CONDITIONS = [(voltage, frequency) for voltage in (3500.0, 4500.0, 5500.0) for frequency in (0.5, 2.0, 3.5)]
-VALUE = 0.25
+EFFECT, SIZE, VALUE = "viscoelastic_creep", "viscoelastic_creep.modulus_ratio", 0.25
 
 
-def box_run(voltage, frequency):
-    """Two periods of one muscle after the other."""
-    switches = np.arange(5) / (2 * frequency)
-    upper = np.arange(5)[:, None] % 2 == [[0, 1]]
-    return Run(
-        "run",
-        np.arange(0, 2 / frequency, 1 / 120.0),
-        DriveSchedule(switches, np.where(upper, voltage, 0.0)),
-    )
+def box_run(voltage, frequency, time):
+    """One muscle after the other."""
+    switches = np.arange(0.0, time[-1], 0.5 / frequency)
+    upper = np.arange(len(switches))[:, None] % 2 == [[0, 1]]
+    return Run("run", time, DriveSchedule(switches, np.where(upper, voltage, 0.0)))
 
 
-RUNS = [box_run(*condition) for condition in CONDITIONS]
+RUNS = [
+    box_run(voltage, frequency, np.arange(0, 2 / frequency, 1 / 120.0)) for voltage, frequency in CONDITIONS
+]
+ALIKE = [box_run(3500.0, 3.5, run.time) for run in RUNS]
 NUMBERS = np.repeat(np.arange(len(RUNS)), [len(run.time) for run in RUNS])
 TIME = np.concatenate([run.time for run in RUNS])
 VOLTAGE, FREQUENCY = np.array(CONDITIONS)[NUMBERS].T
 
 
 def fitted(growth, by=VOLTAGE, runs=RUNS, at_bound=(), by_finer_mesh=0.0):
-    """A fit to a `drag` whose true size grows by `growth` from the low to the high end of `by`.
+    """A fit to a creep whose true size grows by `growth` from the low to the high end of `by`.
 
     by_finer_mesh: what a finer mesh would do looks like a growth by so much.
     """
@@ -44,31 +43,21 @@ def fitted(growth, by=VOLTAGE, runs=RUNS, at_bound=(), by_finer_mesh=0.0):
     jacobian = np.column_stack([other, own])
     measured = VALUE * (1 + growth * along) * own + noise
     change, *_ = np.linalg.lstsq(jacobian, measured - VALUE * own, rcond=None)
-    parameters = [SimpleNamespace(name="size", scan=()), SimpleNamespace(name="time", scan=(0.1, 1.0))]
-    return SimpleNamespace(
-        model=SimpleNamespace(
-            effects=[SimpleNamespace(id="drag", parameters=parameters)],
-            description=SimpleNamespace(channels=[SimpleNamespace(unit="V")]),
-        ),
-        undetermined=(),
-        at_bound=at_bound,
-        changes_by_refinement={"mesh": VALUE * by_finer_mesh * along * own},
-        evaluation=Evaluation(
-            model=SimpleNamespace(values={"slope": 0.0, "drag.size": VALUE + change[1]}),
-            names=("slope", "drag.size"),
-            simulations=[SimpleNamespace(run=run) for run in runs],
-            residual=measured - VALUE * own - jacobian @ change,
-            jacobian=jacobian,
-            runs=NUMBERS,
-            offsets=np.zeros(len(runs)),
-            frames=(),
-        ),
+    model = load_model("swimmer").with_effects(EFFECT).with_values({SIZE: VALUE + change[1]})
+    evaluation = evaluation_of_runs(
+        runs,
+        measured - VALUE * own - jacobian @ change,
+        jacobian=jacobian,
+        names=("slope", SIZE),
+        model=model,
     )
+    refined = {"mesh": VALUE * by_finer_mesh * along * own}
+    return FitResult(model, evaluation, at_bound, (), 1, "made up", changes_by_refinement=refined)
 
 
 def test_a_value_that_grows_with_voltage_contradicts_the_law():
     """The ends of the trend are the true values there, and the sentence names them."""
-    by_voltage, by_frequency = trends(fitted(0.4), NOISE, ["drag"])
+    by_voltage, by_frequency = trends(fitted(0.4), NOISE, [EFFECT])
     assert by_voltage.values == pytest.approx((0.8 * VALUE, 1.2 * VALUE), rel=0.02)
     assert by_voltage.contradicts and not by_frequency.contradicts
     assert "at 3500 V and" in str(by_voltage) and "at 5500 V: something" in str(by_voltage)
@@ -76,7 +65,7 @@ def test_a_value_that_grows_with_voltage_contradicts_the_law():
 
 def test_a_value_that_falls_with_frequency_contradicts_it_too():
     """From 0.5 Hz to 3.5 Hz."""
-    by_voltage, by_frequency = trends(fitted(-0.6, FREQUENCY), NOISE, ["drag"])
+    by_voltage, by_frequency = trends(fitted(-0.6, FREQUENCY), NOISE, [EFFECT])
     assert by_frequency.contradicts and not by_voltage.contradicts
     assert by_frequency.ends == pytest.approx((0.5, 3.5), rel=0.02)
 
@@ -84,31 +73,31 @@ def test_a_value_that_falls_with_frequency_contradicts_it_too():
 @pytest.mark.parametrize("growth", [0.0, 0.1])
 def test_noise_and_trifles_do_not(growth):
     """One value, and a trend that is certain but small."""
-    assert not any(trend.contradicts for trend in trends(fitted(growth), NOISE, ["drag"]))
+    assert not any(trend.contradicts for trend in trends(fitted(growth), NOISE, [EFFECT]))
 
 
 def test_runs_that_are_all_alike_tell_nothing():
     """One voltage and one frequency: no trend. Nor is there one for what was not added."""
-    assert trends(fitted(0.4, runs=[RUNS[0]] * len(RUNS)), NOISE, ["drag"]) == []
+    assert trends(fitted(0.4, runs=ALIKE), NOISE, [EFFECT]) == []
     assert trends(fitted(0.4), NOISE, ["tether"]) == []
 
 
 def test_what_stands_on_a_bound_has_no_trend():
     """Beyond a bound there is no law that could be contradicted; the same growth inside is one."""
-    assert any(trend.contradicts for trend in trends(fitted(1.0), NOISE, ["drag"]))
-    assert trends(fitted(1.0, at_bound=("drag.size",)), NOISE, ["drag"]) == []
+    assert any(trend.contradicts for trend in trends(fitted(1.0), NOISE, [EFFECT]))
+    assert trends(fitted(1.0, at_bound=(SIZE,)), NOISE, [EFFECT]) == []
 
 
 def test_what_a_finer_mesh_would_take_away_contradicts_no_law():
     """A growth by 40 % that the model's own mesh makes is its error; where that makes 5 %, 40 % are no mesh's."""
-    assert any(trend.contradicts for trend in trends(fitted(0.4, by_finer_mesh=0.05), NOISE, ["drag"]))
-    assert not any(trend.contradicts for trend in trends(fitted(0.4, by_finer_mesh=0.4), NOISE, ["drag"]))
+    assert any(trend.contradicts for trend in trends(fitted(0.4, by_finer_mesh=0.05), NOISE, [EFFECT]))
+    assert not any(trend.contradicts for trend in trends(fitted(0.4, by_finer_mesh=0.4), NOISE, [EFFECT]))
 
 
 def test_what_a_finer_mesh_would_do_is_one_standard_error():
     """It adds to that by noise as squares, to the trend with voltage only, and moves no value."""
-    alone, _ = trends(fitted(0.4), NOISE, ["drag"])
-    by_voltage, by_frequency = trends(fitted(0.4, by_finer_mesh=0.3), NOISE, ["drag"])
+    alone, _ = trends(fitted(0.4), NOISE, [EFFECT])
+    by_voltage, by_frequency = trends(fitted(0.4, by_finer_mesh=0.3), NOISE, [EFFECT])
     assert by_voltage.standard_error == pytest.approx(np.hypot(alone.standard_error, 0.3 * VALUE), rel=0.02)
     assert by_frequency.standard_error < 0.5 * by_voltage.standard_error
     assert by_voltage.values == alone.values

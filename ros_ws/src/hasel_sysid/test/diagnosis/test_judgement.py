@@ -1,31 +1,20 @@
 """The verdict on one effect."""
 
-from types import SimpleNamespace
+from dataclasses import replace
 
 import pytest
+from hasel_sim.effects.base import EffectParameter
 from hasel_sysid.diagnosis.judgement import finding
 from hasel_sysid.diagnosis.result import Verdict
-
-
-def effect(name: str, largest: float = 10.0) -> SimpleNamespace:
-    """An effect with one size, noticed at 1."""
-    size = SimpleNamespace(name="size", unit="1", null=0.0, lower=0.0, upper=largest, typical=1.0, scan=())
-    return SimpleNamespace(id=name, parameters=[size], source=None)
+from hasel_sysid.testing.made_up_effects import made_up_effect, made_up_size, with_made_up
 
 
 @pytest.fixture
 def judged(context):
     """Verdict by effect when 0.01 of the sine is there; only the sine was fitted in full."""
-    whole = context(0.01)
-    for name in ("much_alike", "other", "swallowed"):
-        del whole.finals[name]
-    whole.finals["sine"].model.parameters = {"sine.size": SimpleNamespace(standard_error=0.1)}
-    return lambda name, **keywords: finding(whole, effect(name, **keywords))
-
-
-@pytest.fixture(autouse=True)
-def _no_finer_numerics(monkeypatch):
-    monkeypatch.setattr("hasel_sysid.diagnosis.judgement.with_numerical_error", lambda fit, changes: fit)
+    every = context(0.01)
+    whole = replace(every, finals={"sine": every.finals["sine"]})
+    return lambda name, **keywords: finding(whole, made_up_effect(name, made_up_size(**keywords)))
 
 
 def test_the_best_plausible_fit_is_missing(judged):
@@ -39,13 +28,14 @@ def test_the_best_plausible_fit_is_missing(judged):
 def test_the_value_that_does_most_is_told(context):
     """Of a lag that rises at once and falls slowly the fall, in whatever order they stand."""
     whole = context(0.01)
-    lag = effect("sine")
-    fall = SimpleNamespace(name="fall", unit="s", null=0.0, lower=0.0, upper=9.0, typical=0.1, scan=())
-    lag.parameters.append(fall)
-    model = whole.finals["sine"].model
-    model.values = {"sine.size": 1e-14, "sine.fall": 0.078}
-    model.parameters = {name: SimpleNamespace(standard_error=0.01) for name in model.values}
-    found = finding(whole, lag)
+    fall = EffectParameter("fall", "t", "s", 0.0, 0.0, 9.0, 0.1)
+    lag = made_up_effect("sine", made_up_size(), fall)
+    final = whole.finals["sine"]
+    values = {"sine.size": 1e-14, "sine.fall": 0.078}
+    model = with_made_up(final.model.without_effects("sine"), lag)
+    model = model.with_values(values, dict.fromkeys(values, 0.01))
+    fitted = replace(final, model=model, evaluation=replace(final.evaluation, model=model))
+    found = finding(replace(whole, finals={**whole.finals, "sine": fitted}), lag)
     assert found.leading == "sine.fall"
     assert "a size of 0.078 s removes" in str(found)
 

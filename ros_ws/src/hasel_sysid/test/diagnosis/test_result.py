@@ -1,26 +1,26 @@
 """What is said of an effect: one answer, and no number that nobody can believe."""
 
 import math
-from types import SimpleNamespace
 
 import pytest
 from hasel_sysid.diagnosis.result import Diagnosis, Finding, Verdict
+from hasel_sysid.noise import NoiseModel
 
 RANGE = (0.0, 0.3)
 
 
-def finding(verdict: Verdict, **changes) -> Finding:
-    """Of a tilt in radians that is plausible up to 0.3."""
+def finding(verdict: Verdict, effect: str = "tilt", **changes) -> Finding:
+    """Of a tilt in radians that is plausible up to 0.3, or of another effect like it."""
     given = {
         "probability": 0.0,
         "error_removed": 0.0,
-        "expected": {"tilt.angle": (0.1, 0.01)},
-        "units": {"tilt.angle": "rad"},
+        "expected": {f"{effect}.angle": (0.1, 0.01)},
+        "units": {f"{effect}.angle": "rad"},
         "swallowed": 0.03,
         "visible_above": 0.01,
         "plausible": RANGE,
     }
-    return Finding("tilt", verdict, **{**given, **changes})
+    return Finding(effect, verdict, **{**given, **changes})
 
 
 @pytest.mark.parametrize("limit", [18.0, 540.0, math.inf])
@@ -60,10 +60,10 @@ def test_groups_of_what_is_ruled_out_are_not_told():
     """Who among the absent looks like whom is no question."""
     findings = [
         finding(Verdict.ABSENT),
-        SimpleNamespace(effect="sag", verdict=Verdict.ABSENT),
-        SimpleNamespace(effect="drag", verdict=Verdict.MISSING),
-        SimpleNamespace(effect="friction", verdict=Verdict.ABSENT),
+        finding(Verdict.ABSENT, "sag"),
+        finding(Verdict.MISSING, "drag"),
+        finding(Verdict.ABSENT, "friction"),
     ]
     groups = [("drag", "friction"), ("sag", "tilt")]
-    found = Diagnosis(findings, groups, None, 0.0, 0.0, 0.0, 0.0)
+    found = Diagnosis(findings, groups, NoiseModel(1e-6, 0.0, 0.5), 0.0, 0.0, 0.0, 0.0)
     assert found.groups_in_question == [("drag", "friction")]

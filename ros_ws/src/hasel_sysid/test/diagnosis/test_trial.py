@@ -1,14 +1,14 @@
 """Steps of a trial."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.errors import SimulationError
-from hasel_sysid.diagnosis.candidates import starts
-from hasel_sysid.diagnosis.trial import Trial, Trials, _shortened
+from hasel_sim.model import load_model
+from hasel_sysid.diagnosis.candidates import starts, valued
+from hasel_sysid.diagnosis.trial import Trials, _shortened
 from hasel_sysid.problem import Problem
+from hasel_sysid.testing.made_up_runs import made_up_trial
 
 
 @pytest.fixture(scope="module")
@@ -73,18 +73,12 @@ def test_half_a_step_promises_three_quarters_of_a_whole_one():
     jacobian, residual = np.array([[1.0], [1.0]]), np.array([3.0, 1.0])
     (whole,), *_ = np.linalg.lstsq(jacobian, residual, rcond=None)
     left = residual - jacobian[:, 0] * whole
-    trial = Trial(
-        start=None,
-        model=SimpleNamespace(values={"rate": 0.5}),
-        names=("rate",),
-        brought=("rate",),
-        residual=residual,
-        jacobian=jacobian,
-        step={"rate": 0.5 + whole},
-        predicted=float(left @ left),
-        promised=0.0,
+    rate = "linear_drag.rate"
+    start = valued(catalogue()["linear_drag"], {rate: 0.5})
+    trial = made_up_trial(
+        load_model("beam"), start, {rate: 0.5 + whole}, residual, jacobian, predicted=float(left @ left)
     )
     half = _shortened(trial)
     after = residual - jacobian[:, 0] * 0.5 * whole
-    assert half.step == {"rate": pytest.approx(0.5 + 0.5 * whole)}
+    assert half.step == {rate: pytest.approx(0.5 + 0.5 * whole)}
     assert half.predicted == pytest.approx(after @ after)

@@ -1,20 +1,24 @@
 """What the stages of an improvement come to."""
 
-from types import SimpleNamespace
-
+import numpy as np
 import pytest
+from hasel_sim.model import load_model
+from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.improvement import Stage, Status
 from hasel_sysid.improvement.conclusion import conclude, left_over
+from hasel_sysid.noise import NoiseModel
+from hasel_sysid.testing.made_up_runs import made_up_fit
 
 FLOOR = 0.0024
-NOISE_FLOOR = SimpleNamespace(mean_absolute=FLOOR)
+NOISE_FLOOR = NoiseModel(white=0.5 * np.pi * FLOOR**2, coloured=0.0, correlation=0.5)
+BEAM = load_model("beam")
 SOMETHING, NOISE = 0.002, 0.6
 
 
 def stage(error, *effects, chance=None):
     """A stage with a mean error; chance: of noise alone looking like what it leaves, None if nobody looked."""
-    diagnosis = chance and SimpleNamespace(p_value=chance, noise=NOISE_FLOOR, measured=NOISE_FLOOR)
-    return Stage(effects, SimpleNamespace(mean_absolute_error=error), None, diagnosis)
+    looked = None if chance is None else Diagnosis([], [], NOISE_FLOOR, chance, 0.0, 0.0, 0.0)
+    return Stage(effects, made_up_fit(BEAM, error), None, looked)
 
 
 @pytest.mark.parametrize(
