@@ -191,13 +191,15 @@ class _Search(FullFits):
     def stand_ins(self, gone: str, chosen: EffectSet) -> list[Proposal]:
         """What looks like an effect and promises to do in its place; most promising first.
 
-        What was fitted alone is tried as large as it is there, all else left as it is; the others beside the rest.
+        What was fitted alone is tried as large as it is there, all else left as it is, however little it looks like the
+        effect: beside a model that is out of step, looks say little. The others are tried beside the rest.
         """
         self.say(f"looking for what may stand in the place of {gone}", 0.9)
         others = [e for e in self.prospects[NOTHING] if e not in chosen]
         most_alike = sorted(others, key=partial(self.likeness, gone), reverse=True)[: self.policy.trials]
-        wanted = [e for e in most_alike if chosen - {gone} | {e} not in self.tried]
-        alone = {e: self.known[frozenset({e})] for e in wanted if frozenset({e}) in self.known}
+        sized = [e for e in others if frozenset({e}) in self.known]
+        wanted = [e for e in dict.fromkeys([*most_alike, *sized]) if chosen - {gone} | {e} not in self.tried]
+        alone = {e: self.known[frozenset({e})] for e in wanted if e in sized}
         places = [
             (self.sets.without(self.known[chosen], gone) if alone else None, list(alone)),
             (self.known.get(chosen - {gone}), [e for e in wanted if e not in alone]),

@@ -386,6 +386,28 @@ def test_what_may_stand_in_a_place_is_looked_at_beside_the_rest():
     assert choose(search(sets, POLICY, begun=begun), POLICY).groups == (("a", "b"),)
 
 
+class _BLooksOtherwiseAtFirst(LinearSets):
+    """Beside the baseline, which it puts out of step, b looks like nothing else."""
+
+    def _prospect(self, of, name):
+        found = super()._prospect(of, name)
+        if of.effects or name != "b":
+            return found
+        other = self._centred(smooth_series(np.random.default_rng(5), self.runs)[:, None])
+        return replace(found, jacobian=np.column_stack([of.jacobian, other]), looks=other)
+
+
+def test_what_was_fitted_alone_is_tried_in_a_place_however_little_it_looks_like_it():
+    """Eight others look more like the chosen one than its double does, whose size is known."""
+    series = made_up(1, "abcdefghijk")
+    for name in "cefghijk":
+        series[name] = series["a"] + 0.4 * series[name]
+    series["b"] = series["a"] + 0.01 * series["b"]
+    sets = _BLooksOtherwiseAtFirst(series, {"a": 0.1, "d": 0.3}, WHITE, 1)
+    begun = tuple(sets.fit(frozenset(one), sets.baseline(), ()) for one in ("ad", "d", "b"))
+    assert choose(search(sets, POLICY, begun=begun), POLICY).groups == (("a", "b"),)
+
+
 class _Boasts(_LookOtherwiseAtFirst):
     """What c promises beside other effects is all, and it keeps little of it."""
 
