@@ -4,12 +4,13 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
-from hasel_sysid.selection.choice import alike, all_alike, choose, smallest
-from hasel_sysid.selection.full_fits import FullFits, Progress
+from hasel_sysid.selection.choice import all_alike, choose, smallest
+from hasel_sysid.selection.full_fits import Progress
 from hasel_sysid.selection.policy import Policy
 from hasel_sysid.selection.proposals import Proposal, additions, exchanges, pairs, smaller
 from hasel_sysid.selection.searched import Searched, lasting, plausible, worth_most
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Sets, name_of
+from hasel_sysid.selection.stand_ins import StandIns
 
 Lawful = Callable[[Searched, EffectSet], bool]
 
@@ -47,7 +48,7 @@ def search(
 
 
 @dataclass
-class _Search(FullFits):
+class _Search(StandIns):
     """closely: the sets that were looked beyond with every effect."""
 
     closely: set[EffectSet] = field(default_factory=lambda: {NOTHING})
@@ -167,46 +168,3 @@ class _Search(FullFits):
         if chosen and not self.sets.out_of_time():
             self.say(f"looking for {name_of(chosen)} elsewhere", 0.9)
             self.keep(self.sets.deepest(self.known[chosen]))
-
-    def exchange(self, chosen: EffectSet) -> None:
-        """Fit sets with what looks like one of the effects in its place, as long as they cannot be told apart.
-
-        Of what ended otherwise than it promised, the next promise says as little.
-        """
-        for gone in sorted(chosen) if len(chosen) > 1 else ():
-            for proposal in self.stand_ins(gone, chosen):
-                if not self.fit([proposal], 1):
-                    break
-                same = proposal.effects in self.known and alike(
-                    self.judged(), chosen, proposal.effects, self.policy
-                )
-                if not same and self.kept(proposal):
-                    break
-
-    def kept(self, proposal: Proposal) -> bool:
-        """Whether a fit ended, for better or worse, as likely as it promised to."""
-        ended = self.whitened.get(proposal.effects)
-        return ended is not None and abs(ended.logarithm - self.promised(proposal)) <= self.reach
-
-    def stand_ins(self, gone: str, chosen: EffectSet) -> list[Proposal]:
-        """What looks like an effect and promises to do in its place; most promising first.
-
-        What was fitted alone is tried as large as it is there, all else left as it is, however little it looks like the
-        effect: beside a model that is out of step, looks say little. The others are tried beside the rest.
-        """
-        self.say(f"looking for what may stand in the place of {gone}", 0.9)
-        others = [e for e in self.prospects[NOTHING] if e not in chosen]
-        most_alike = sorted(others, key=partial(self.likeness, gone), reverse=True)[: self.policy.trials]
-        sized = [e for e in others if frozenset({e}) in self.known]
-        wanted = [e for e in dict.fromkeys([*most_alike, *sized]) if chosen - {gone} | {e} not in self.tried]
-        alone = {e: self.known[frozenset({e})] for e in wanted if e in sized}
-        places = [
-            (self.sets.without(self.known[chosen], gone) if alone else None, list(alone)),
-            (self.known.get(chosen - {gone}), [e for e in wanted if e not in alone]),
-        ]
-        found: list[Proposal] = []
-        for rest, effects in places:
-            if rest is not None and not self.sets.out_of_time():
-                seen = self.sets.prospects(rest, effects, self.likelihood.promised, self.policy.trials, alone)
-                found += [Proposal(rest, (prospect,)) for prospect in seen.values()]
-        return [p for p in self.ranked(found) if self.may_stand_in(p, gone, chosen)][: self.policy.fits]
