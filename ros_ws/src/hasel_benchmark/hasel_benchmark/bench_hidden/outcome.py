@@ -5,7 +5,8 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-_NORMAL_95 = 1.96
+from hasel_benchmark.bench_hidden.share import NORMAL_95
+
 VISIBLE_SHARE = 0.5
 """A hidden effect is visible when the fitted baseline's excess rms is at least this share of the noise's."""
 
@@ -24,7 +25,7 @@ class Estimate:
         """Whether the 95 % interval holds the truth; None without an interval."""
         if self.standard_error is None or not np.isfinite(self.standard_error):
             return None
-        return abs(self.value - self.truth) <= _NORMAL_95 * self.standard_error
+        return abs(self.value - self.truth) <= NORMAL_95 * self.standard_error
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@ import json
 import os
 import subprocess
 import sys
+from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -89,7 +90,7 @@ class _Version:
             )
         return json.loads(line)
 
-    def end(self) -> None:
+    def close(self) -> None:
         """Let the process end."""
         self._process.stdin.close()
         self._process.wait()
@@ -128,12 +129,10 @@ def measure_in_turns(checkout: Path) -> InTurns:
     checkout: a clone of this repository at another revision, or the folder that holds its package `hasel_sim`. Raises
     HaselSimError where there is none, or where it cannot be timed.
     """
-    versions = [
-        _Version(folder) for folder in (_package_folder(checkout), Path(hasel_sim.__file__).parents[1])
-    ]
-    rounds = [[version.seconds() for version in versions] for _ in range(ROUNDS)]
-    for version in versions:
-        version.end()
+    folders = _package_folder(checkout), Path(hasel_sim.__file__).parents[1]
+    with ExitStack() as until_all_is_timed:
+        versions = [until_all_is_timed.enter_context(closing(_Version(folder))) for folder in folders]
+        rounds = [[version.seconds() for version in versions] for _ in range(ROUNDS)]
     other, own = (
         {name: float(np.median([one[place][name] for one in rounds])) for name in WORKS} for place in (0, 1)
     )

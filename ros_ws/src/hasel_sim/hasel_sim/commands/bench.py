@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from hasel_sim.bench.cases import fitted_swimmer
 from hasel_sim.bench.convergence import mesh_errors, step_errors
-from hasel_sim.bench.in_turns import measure_in_turns
+from hasel_sim.bench.in_turns import InTurns, measure_in_turns
 from hasel_sim.bench.report import ConvergenceReport, SpeedReport
 from hasel_sim.bench.speed import by_nodes, by_parameters, free_swim_factor, measure_side_by_side
 from hasel_sim.bench.swimming import SwimmingReport, measure_swimming
@@ -48,13 +48,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def run(options: argparse.Namespace) -> int:
     """Print the tables; 0 when every bar is met, else 1."""
     console = Console()
-    if options.against:
-        return _against(options, console)
+    report: ConvergenceReport | InTurns | SwimmingReport | SpeedReport
     with threadpool_limits(1):
         if options.convergence:
-            report: ConvergenceReport | SwimmingReport | SpeedReport = ConvergenceReport(
-                mesh_errors(), step_errors()
-            )
+            report = ConvergenceReport(mesh_errors(), step_errors())
+        elif options.against:
+            try:
+                with console.status("timing two versions in turns"):
+                    report = measure_in_turns(options.against)
+            except HaselSimError as error:
+                print(error, file=sys.stderr)
+                return 1
         elif options.swimming:
             with console.status("timing swims"):
                 report = measure_swimming()
@@ -63,20 +67,9 @@ def run(options: argparse.Namespace) -> int:
     report.print(console)
     if options.json:
         options.json.write_text(json.dumps(report.values(), indent=1))
-    return int(not isinstance(report, ConvergenceReport) and not all(bar.met for bar in report.bars()))
-
-
-def _against(options: argparse.Namespace, console: Console) -> int:
-    try:
-        with console.status("timing two versions in turns"):
-            compared = measure_in_turns(options.against)
-    except HaselSimError as error:
-        print(error, file=sys.stderr)
-        return 1
-    compared.print(console)
-    if options.json:
-        options.json.write_text(json.dumps(compared.values(), indent=1))
-    return 0
+    return int(
+        not isinstance(report, ConvergenceReport | InTurns) and not all(bar.met for bar in report.bars())
+    )
 
 
 if __name__ == "__main__":

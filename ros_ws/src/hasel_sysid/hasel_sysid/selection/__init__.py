@@ -2,8 +2,8 @@
 
 Read in this order: `policy` (every number there is), `sets` (what is chosen among), `likelihood` (the currency),
 `missing` (is anything missing?), `proposals`, `promises` and `search` (add, drop, swap), `stand_ins` (what looks like
-what was chosen), `worth` (what runs left out say of a set), `choice` (where to stop, and what cannot be told apart). None of these knows a simulator;
-`simulated_sets` joins them to one.
+what was chosen), `worth` (what runs left out say of a set), `choice` (where to stop, and what cannot be told apart).
+None of these knows a simulator; `simulated_sets` joins them to one.
 """
 
 from hasel_sysid.selection.choice import Choice, choose

@@ -362,9 +362,11 @@ def test_what_looks_like_a_chosen_one_need_not_be_fitted_if_it_is_told_apart():
 class _LookOtherwiseAtFirst(LinearSets):
     """Beside the baseline, effects look like something else: a model that is out of step shows them out of step."""
 
+    as_they_are = frozenset("a")
+
     def _prospect(self, of, name):
         found = super()._prospect(of, name)
-        if of.effects or name == "a":
+        if of.effects or name in self.as_they_are:
             return found
         other = self._centred(smooth_series(np.random.default_rng(ord(name)), self.runs)[:, None])
         return replace(found, jacobian=np.column_stack([of.jacobian, other]), looks=other)
@@ -386,15 +388,10 @@ def test_what_may_stand_in_a_place_is_looked_at_beside_the_rest():
     assert choose(search(sets, POLICY, begun=begun), POLICY).groups == (("a", "b"),)
 
 
-class _BLooksOtherwiseAtFirst(LinearSets):
-    """Beside the baseline, which it puts out of step, b looks like nothing else."""
+class _BLooksOtherwiseAtFirst(_LookOtherwiseAtFirst):
+    """Of all effects b alone, which puts the baseline out of step."""
 
-    def _prospect(self, of, name):
-        found = super()._prospect(of, name)
-        if of.effects or name != "b":
-            return found
-        other = self._centred(smooth_series(np.random.default_rng(5), self.runs)[:, None])
-        return replace(found, jacobian=np.column_stack([of.jacobian, other]), looks=other)
+    as_they_are = frozenset("acdefghijk")
 
 
 def test_what_was_fitted_alone_is_tried_in_a_place_however_little_it_looks_like_it():
