@@ -10,13 +10,12 @@ from hasel_sim.model import Model
 from hasel_sysid.diagnosis.candidates import Start, resized
 from hasel_sysid.draft import draft
 from hasel_sysid.estimation.bounded import bounded_change
+from hasel_sysid.estimation.opening import is_close
 from hasel_sysid.problem import Evaluation, Problem
 from hasel_sysid.projection import drops, orthonormal
 
 MOST_CHANGE = 0.5
 """A single step changes no parameter but an effect's size by more than this share: beyond, derivatives say nothing."""
-_TOO_ROUGH = 0.15
-"""Share of the simulated motion by which a draft may be wrong."""
 _FAR = 2.0
 """A start that makes the sum of squares this many times worse is too far off for its promise to be believed, or not."""
 _HALVINGS = 2
@@ -74,7 +73,7 @@ class Trials:
         except SimulationError:
             self._model = fitted.model
         error = fitted.residual - self.base.residual
-        if np.linalg.norm(error) > _TOO_ROUGH * np.linalg.norm(fitted.simulated()):
+        if not is_close(error, fitted.simulated()):
             self._model, self.base = fitted.model, fitted
         self._correction = fitted.residual - self.base.residual
 

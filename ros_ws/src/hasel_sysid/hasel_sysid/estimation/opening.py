@@ -12,6 +12,8 @@ from hasel_sysid.where_it_fails.drive_cycle import drive_cycle
 _OUT_OF_STEP = 0.5
 """A model that leaves this share of the measured power moves against the body in part of the time: no derivative of it
 points home."""
+_CLOSE = 0.15
+"""Share of the motion by which a model may be off for what it says to first order to be true of the body."""
 _FEWEST_FRAMES = 12
 _SHORTEST_SHARE, _LONGEST_SHARE = 1 / 64, 0.6
 """Of a run; an opening of more than that is the run itself."""
@@ -30,6 +32,11 @@ def in_step(evaluation: Evaluation) -> bool:
     """Whether a model moves with the body: it leaves less than half of the power of what was measured."""
     measured = evaluation.simulated() + evaluation.residual
     return evaluation.sum_of_squares < _OUT_OF_STEP * float(measured @ measured)
+
+
+def is_close(error: np.ndarray, motion: np.ndarray) -> bool:
+    """Whether a model's error [frames] is so small beside a motion [frames] that first order tells where to go."""
+    return bool(np.linalg.norm(error) <= _CLOSE * np.linalg.norm(motion))
 
 
 def openings(problem: Problem) -> list[Problem]:

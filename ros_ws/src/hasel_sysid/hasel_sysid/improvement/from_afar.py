@@ -33,7 +33,7 @@ def from_afar(
         if problem.time_limit.is_over():
             break
         here = _fitted(opening, fit.model)
-        sets = SimulatedSets(opening, here, effects, decades=True)
+        sets = SimulatedSets(opening, here, effects, given=fit.model)
         begun = _known(sets, rivals, partial(_in_step, opening))
         reached = begun[0].fit if begun else here
         if in_step(reached.evaluation) or len(sets.known_as(reached).effects) >= policy.most_effects:

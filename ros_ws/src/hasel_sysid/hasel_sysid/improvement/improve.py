@@ -10,7 +10,7 @@ from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.diagnosis.candidates import candidate_effects
 from hasel_sysid.diagnosis.explained import Status
-from hasel_sysid.estimation import FitResult, fit_from_afar, in_step
+from hasel_sysid.estimation import FitResult, fit_from_afar, in_step, is_close
 from hasel_sysid.estimation.refinement import changes_by_refinement, with_numerical_error
 from hasel_sysid.improvement.conclusion import conclude, last_diagnosis, near_noise
 from hasel_sysid.improvement.from_afar import from_afar
@@ -53,7 +53,9 @@ def improve(
     near = in_step(fit.evaluation)
     effects = candidate_effects(fit.model, tuple(only) if only else None)
     begun = () if near or opposed else from_afar(problem, fit, effects, policy, partial(_part, progress))
-    sets = SimulatedSets(problem, fit, effects, list(changes.values()) if near else ())
+    far_off = near and not is_close(fit.evaluation.residual, fit.evaluation.simulated())
+    slack, given = list(changes.values()) if near else (), model if far_off else None
+    sets = SimulatedSets(problem, fit, effects, slack, given)
     refined = cache(partial(_refined, problem))
 
     def lawful(found: Searched, effects: EffectSet) -> bool:

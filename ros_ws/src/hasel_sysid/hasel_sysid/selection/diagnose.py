@@ -6,7 +6,7 @@ from dataclasses import replace
 from hasel_sysid.diagnosis import Diagnosis, Verdict
 from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.diagnosis.candidates import candidate_effects
-from hasel_sysid.estimation import FitResult, in_step
+from hasel_sysid.estimation import FitResult, in_step, is_close
 from hasel_sysid.estimation.refinement import changes_by_refinement
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.choice import choose
@@ -27,7 +27,8 @@ def diagnose(
     effects = candidate_effects(fit.model, tuple(only) if only else None)
     changes = changes_by_refinement(problem, fit.evaluation)
     near = in_step(fit.evaluation)
-    sets = SimulatedSets(problem, fit, effects, list(changes.values()) if near else (), decades=not near)
+    given = None if is_close(fit.evaluation.residual, fit.evaluation.simulated()) else fit.model
+    sets = SimulatedSets(problem, fit, effects, list(changes.values()) if near else (), given)
     found = search(sets, policy, progress)
     choice = choose(found, policy)
     said = diagnosis(sets, found, choice, changes)

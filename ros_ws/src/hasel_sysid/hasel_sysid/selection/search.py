@@ -37,9 +37,8 @@ def search(
         found = state.judged()
         if not more and not state.looked_closer(found.best):
             break
-    chosen = smallest(found, policy)
-    state.fit(state.possible(smaller(found.known, chosen)), policy.most_effects)
-    state.fit(state.rivals(found, chosen), policy.fits)
+    found = state.shrunk(found)
+    state.fit(state.rivals(found, smallest(found, policy)), policy.fits)
     state.fit(state.until_a_law(), policy.fits)
     state.deepen(state.chosen())
     if stand_ins:
@@ -119,6 +118,14 @@ class _Search(StandIns):
         base = self.prospects[NOTHING]
         hopeful = sorted(base.values(), key=self.likelihood.promised, reverse=True)[: self.policy.trials]
         yield from pairs(self.known[NOTHING], hopeful)
+
+    def shrunk(self, found: Searched) -> Searched:
+        """With every part of the smallest set fitted that lacks one effect, until no smaller one does."""
+        while self.fit(
+            self.possible(smaller(found.known, smallest(found, self.policy))), self.policy.most_effects
+        ):
+            found = self.judged()
+        return found
 
     def rivals(self, found: Searched, chosen: EffectSet) -> list[Proposal]:
         """Sets of the chosen one's size that come so near to it that they may not be told apart."""

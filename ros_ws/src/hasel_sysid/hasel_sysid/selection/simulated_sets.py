@@ -11,8 +11,9 @@ from hasel_sim.model import Model
 from hasel_sysid.diagnosis.candidates import Start, valued
 from hasel_sysid.diagnosis.context import out_of_range
 from hasel_sysid.diagnosis.trial import Trial, Trials, room
-from hasel_sysid.estimation import FitResult, fit_least_squares
+from hasel_sysid.estimation import FitResult, fit_least_squares, is_close
 from hasel_sysid.estimation.least_squares import finished, fitted_result
+from hasel_sysid.estimation.second_start import better_from
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.first_trials import first_trials, sized_starts
@@ -41,12 +42,12 @@ class SimulatedSets:
         fit: FitResult,
         effects: Sequence[Effect],
         slack: Sequence[np.ndarray] = (),
-        decades: bool = False,
+        given: Model | None = None,
     ) -> None:
-        """slack: errors [frames] that every set makes; decades: look at every effect at sizes over the decades of
-        its range, where the model may be far off.
+        """slack: errors [frames] that every set makes; given: where `fit` is far off, the model to begin with: then
+        every effect is looked at over the decades of its range, and where that leads far off, from the given values.
         """
-        self.problem, self.fitted, self.decades = problem, fit, decades
+        self.problem, self.fitted, self.given = problem, fit, given
         self.effects = {effect.id: effect for effect in effects}
         self.runs = fit.evaluation.runs
         self.measured = fit.evaluation.simulated() + fit.evaluation.residual
@@ -118,7 +119,9 @@ class SimulatedSets:
             return {}
         trials = Trials(self.problem, of.fit.evaluation)
         if of.effects == NOTHING or not self.first:
-            first = first_trials(trials, [self.effects[name] for name in names], self.decades)
+            first = first_trials(
+                trials, [self.effects[name] for name in names], decades=self.given is not None
+            )
             rounds = (most, most // 2)
             self.trials, self.first, self.tried = trials, first, set(trials.tried)
         else:
@@ -159,16 +162,20 @@ class SimulatedSets:
         try:
             model = self._model(near.fit.model, effects, near.effects).with_values({})
             start = {name: _inside(model, name, values[name]) for name in model.free if name in values}
-            found = fit_least_squares(
-                self.problem,
-                model.with_values(start),
-                tolerance=1e-3,
-                most_evaluations=_BRIEF,
-                drafts=False,
-            )
+            found = self._fitted(model.with_values(start))
+            found = better_from(found, self._as_given(found), self._fitted)
         except (HaselSimError, ModelError):
             return None
         return self.known_as(found)
+
+    def _fitted(self, model: Model) -> FitResult:
+        return fit_least_squares(self.problem, model, tolerance=1e-3, most_evaluations=_BRIEF, drafts=False)
+
+    def _as_given(self, fit: FitResult) -> dict[str, float]:
+        """What the model had before any fit, where a fit that began far off has not come close."""
+        if self.given is None or is_close(fit.evaluation.residual, self.measured):
+            return {}
+        return {name: self.given.values[name] for name in self.given.free}
 
     def deepest(self, of: FittedSet) -> FittedSet:
         """The same, or its fit in a deeper valley that begins elsewhere on the body."""

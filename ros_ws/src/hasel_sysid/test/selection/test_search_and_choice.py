@@ -405,6 +405,21 @@ def test_what_was_fitted_alone_is_tried_in_a_place_however_little_it_looks_like_
     assert choose(search(sets, POLICY, begun=begun), POLICY).groups == (("a", "b"),)
 
 
+class _AloneALooksOtherwise(_LookOtherwiseAtFirst):
+    """What is missing looks like another effect beside the baseline, and like itself nowhere."""
+
+    as_they_are = frozenset("bcdefghij")
+
+
+def test_a_larger_set_is_left_for_its_parts_until_no_part_will_do():
+    """Of three effects one is there; it was never fitted alone, nor was any two of them."""
+    series = made_up(1)
+    series["b"] = series["a"] + 1.5 * series["b"]
+    sets = _AloneALooksOtherwise(series, {"a": 0.3}, WHITE, 1)
+    begun = (sets.fit(frozenset("acd"), sets.baseline(), ()),)
+    assert choose(search(sets, POLICY, begun=begun), POLICY).chosen == frozenset("a")
+
+
 class _Boasts(_LookOtherwiseAtFirst):
     """What c promises beside other effects is all, and it keeps little of it."""
 

@@ -1,8 +1,18 @@
 """Sets of effects of the simulator."""
 
+import numpy as np
 import pytest
+from hasel_recording import Recording
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.registry import catalogue, find_effects
+from hasel_sim.model import Model, load_model
+from hasel_sim.parallel import SerialExecutor
+from hasel_sim.run import Run
+from hasel_sim.simulate import simulate
+from hasel_sysid.dataset import Experiment
+from hasel_sysid.estimation import FitResult
 from hasel_sysid.estimation.least_squares import fitted_result
+from hasel_sysid.problem import Problem
 from hasel_sysid.selection.simulated_sets import SimulatedSets
 
 IMPOSSIBLE = '''
@@ -59,3 +69,43 @@ def test_a_look_at_which_nothing_can_be_simulated_finds_nothing(look):
 def test_what_cannot_be_simulated_does_not_take_the_others_with_it(look):
     """The others are found as without it."""
     assert look("pre_bend") == {"pre_bend"}
+
+
+def _swimmer(*effects: str) -> Model:
+    """On a coarse mesh, with amplitudes for two voltages."""
+    model = load_model("swimmer").with_levels([3500.0, 5500.0]).with_effects(*effects)
+    return model.with_numerics(mesh_density=0.5, quadrature_order=2, steps_per_second=120.0)
+
+
+@pytest.fixture
+def heavy_in_water():
+    """Two runs of a swimmer that drags thirty times the usual added mass along, and a fit without it that is far off:
+    its amplitudes say how much the body moved, and not how the muscles pulled.
+    """
+    values = {"amplitude_3500": 0.03, "amplitude_5500": 0.05, "added_mass.added_mass": 3.0}
+    truth, time, experiments = _swimmer("added_mass").with_values(values), np.arange(0.0, 1.5, 1 / 60), []
+    for voltage, frequency in ((3500.0, 1.0), (5500.0, 2.0)):
+        switches = np.arange(0.0, 1.5, 0.5 / frequency)
+        side = np.arange(len(switches)) % 2
+        schedule = DriveSchedule(switches, voltage * np.column_stack([side == 0, side == 1]).astype(float))
+        run = Run(f"{voltage:.0f} V", time, schedule)
+        angle = simulate(truth, run).sin_theta
+        experiments.append(Experiment(Recording(run.name, time, angle, drive_signal=schedule.at(time)), run))
+    problem = Problem(experiments, SerialExecutor())
+    far_off = _swimmer().with_values({"amplitude_3500": 0.036, "amplitude_5500": 0.009})
+    return problem, fitted_result(problem.evaluate(far_off, far_off.free), 1)
+
+
+def test_beside_a_fit_that_is_far_off_an_effect_is_found_over_decades_and_from_the_given_values(
+    heavy_in_water,
+):
+    """From its typical size, and from the fitted amplitudes, no derivative points there."""
+    problem, fit = heavy_in_water
+
+    def fitted(given: Model | None) -> FitResult:
+        sets = SimulatedSets(problem, fit, [catalogue()["added_mass"]], given=given)
+        seen = sets.prospects(sets.baseline(), None, lambda p: -float(p.residual @ p.residual), 4)
+        return sets.fit(frozenset({"added_mass"}), sets.baseline(), seen.values()).fit
+
+    assert fitted(None).evaluation.mean_absolute_error > 0.05
+    assert fitted(_swimmer()).model.values["added_mass.added_mass"] == pytest.approx(3.0, rel=1e-3)
