@@ -7,12 +7,16 @@ from hasel_sim.errors import HaselSimError, SimulationError
 from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis.candidates import is_place
+from hasel_sysid.diagnosis.trial import room
 from hasel_sysid.draft import draft
 from hasel_sysid.estimation import FitResult, fit_least_squares
+from hasel_sysid.estimation.bounded import bounded_change
 from hasel_sysid.problem import Evaluation, Problem
 
 _SHORT = 8
 """Evaluations that the fit of a draft is given."""
+_FOLLOWED = 2
+"""Places from which drafts are fitted: those from which one step promises most."""
 _LOWER = 0.995
 """Share of the squares that a draft must leave at most to be followed: it is not exact elsewhere."""
 _SIZES = (1.0, 3.0)
@@ -54,12 +58,23 @@ def deepest(problem: Problem, fit: FitResult, effects: Collection[str], most_eva
         drafts = Drafts(problem, fit.evaluation)
     except SimulationError:
         return fit
-    found = filter(None, (_fitted(drafts, model, 1e-2, _SHORT) for model in begins))
+    promising = sorted(_promised(drafts, begins), key=lambda pair: pair[0])[:_FOLLOWED]
+    found = filter(None, (_fitted(drafts, model, 1e-2, _SHORT) for _, model in promising))
     best = min(found, key=_squares, default=fit)
     if _squares(best) >= _LOWER * _squares(fit):
         return fit
     deeper = _fitted(problem, fit.model.with_values(best.model.values), 1e-3, most_evaluations)
     return min((fit, deeper), key=_squares) if deeper else fit
+
+
+def _promised(drafts: Drafts, begins: Sequence[Model]) -> list[tuple[float, Model]]:
+    """Sum of squares one bounded step on from every model that can be simulated."""
+    found = drafts.evaluate_each(begins, [model.free for model in begins])
+    return [
+        (bounded_change(one.residual, one.jacobian, *room(one.model, one.names))[1], one.model)
+        for one in found
+        if not isinstance(one, SimulationError)
+    ]
 
 
 def _elsewhere(model: Model, effects: Collection[str]) -> Iterator[Model]:

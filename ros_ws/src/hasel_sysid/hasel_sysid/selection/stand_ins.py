@@ -33,6 +33,14 @@ class StandIns(FullFits):
         ended = self.whitened.get(proposal.effects)
         return ended is not None and abs(ended.logarithm - self.promised(proposal)) <= self.reach
 
+    def acts_alone(self, effect: str) -> bool:
+        """Whether it was fitted alone, and not left without effect."""
+        alone = self.known.get(frozenset({effect}))
+        if alone is None:
+            return False
+        change = alone.without[effect]
+        return float(change @ change) > self.policy.matters * alone.squares
+
     def stand_ins(self, gone: str, chosen: EffectSet) -> list[Proposal]:
         """What looks like an effect and promises to do in its place; most promising first.
 
@@ -42,7 +50,7 @@ class StandIns(FullFits):
         self.say(f"looking for what may stand in the place of {gone}", 0.9)
         others = [e for e in self.prospects[NOTHING] if e not in chosen]
         most_alike = sorted(others, key=partial(self.likeness, gone), reverse=True)[: self.policy.trials]
-        sized = [e for e in others if frozenset({e}) in self.known]
+        sized = [e for e in others if self.acts_alone(e)]
         wanted = [e for e in dict.fromkeys([*most_alike, *sized]) if chosen - {gone} | {e} not in self.tried]
         alone = {e: self.known[frozenset({e})] for e in wanted if e in sized}
         places = [
