@@ -9,14 +9,14 @@ from hasel_sim.errors import HaselSimError, ModelError
 from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis.candidates import Start, valued
-from hasel_sysid.diagnosis.context import out_of_range
-from hasel_sysid.diagnosis.trial import Trial, Trials, room
+from hasel_sysid.diagnosis.trial import Trial, Trials
 from hasel_sysid.estimation import FitResult, fit_least_squares, is_close
 from hasel_sysid.estimation.least_squares import finished, fitted_result
 from hasel_sysid.estimation.second_start import better_from
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.first_trials import first_trials, sized_starts
+from hasel_sysid.selection.known_set import known_set
 from hasel_sysid.selection.noise_bound import bounded_noise
 from hasel_sysid.selection.other_valleys import deepest
 from hasel_sysid.selection.policy import POLICY
@@ -63,32 +63,7 @@ class SimulatedSets:
 
     def known_as(self, fit: FitResult) -> FittedSet:
         """A fit as the search sees it."""
-        evaluation, model = fit.evaluation, fit.model
-        own = frozenset(e.id for e in model.effects if e.id in self.effects)
-        owner = {
-            name: effect
-            for effect in own
-            for name in model.parameters.keys() - model.without_effects(effect).parameters.keys()
-        }
-        moving = [name for name in evaluation.names if name not in fit.at_bound]
-        inside = evaluation.by(moving)
-        without = {effect: np.zeros(len(self.runs)) for effect in own}
-        for effect in own:
-            for p in self.effects[effect].parameters:
-                name = f"{effect}.{p.name}"
-                if name in evaluation.names and not p.scan:
-                    slope = evaluation.jacobian[:, evaluation.names.index(name)]
-                    without[effect] += slope * (model.values[name] - p.null)
-        return FittedSet(
-            own,
-            evaluation.residual,
-            inside.jacobian,
-            *room(model, moving),
-            tuple(owner.get(name, "") for name in moving),
-            without,
-            not any(out_of_range(effect, fit) for effect in own),
-            fit,
-        )
+        return known_set(fit, self.effects)
 
     def compatible(self, effects: EffectSet) -> bool:
         """Whether no two of them exclude each other."""
