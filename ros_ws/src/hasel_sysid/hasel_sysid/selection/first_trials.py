@@ -17,16 +17,23 @@ _SIZES = (0.1, 2.0)
 
 def first_trials(trials: Trials, effects: Sequence[Effect], decades: bool) -> list[Trial]:
     """Beside the baseline; decades: at sizes over the decades of every range. The first batch is tried in any case."""
-    every = [start for effect in effects for start in starts(effect)]
+    typical = [start for effect in effects for start in starts(effect)]
+    typical.sort(key=lambda start: not start.changes_nothing)
+    found = _in_batches(trials, typical, even_late=True)
+    found += nearer(trials, typical, found)
     if decades:
-        every += [start for effect in effects for start in decade_starts(effect)]
-    every.sort(key=lambda start: not start.changes_nothing)
+        found += _in_batches(trials, [start for effect in effects for start in decade_starts(effect)])
+    return found
+
+
+def _in_batches(trials: Trials, begins: Sequence[Start], even_late: bool = False) -> list[Trial]:
+    """As long as there is time; even_late: the first batch in any case."""
     found: list[Trial] = []
-    for begin in range(0, len(every), _BATCH):
-        if begin > 0 and trials.time_is_over():
+    for begin in range(0, len(begins), _BATCH):
+        if trials.time_is_over() and not (even_late and begin == 0):
             break
-        found += trials.first(every[begin : begin + _BATCH])
-    return found if decades else found + nearer(trials, every, found)
+        found += trials.first(begins[begin : begin + _BATCH])
+    return found
 
 
 def sized_starts(of: FittedSet, first: Sequence[Trial], baseline: np.ndarray) -> list[Start]:
