@@ -147,10 +147,13 @@ class SimulatedSets:
         return fit_least_squares(self.problem, model, tolerance=1e-3, most_evaluations=_BRIEF, drafts=False)
 
     def _as_given(self, fit: FitResult) -> dict[str, float]:
-        """What the model had before any fit, where a fit that began far off has not come close."""
-        if self.given is None or is_close(fit.evaluation.residual, self.measured):
+        """Values before any fit, where a fit that began far off has not come close, or of what nothing shows there: an
+        amplitude that no muscle has the time to reach, from which no derivative leads back.
+        """
+        if self.given is None:
             return {}
-        return {name: self.given.values[name] for name in self.given.free}
+        close = is_close(fit.evaluation.residual, self.measured)
+        return {n: self.given.values[n] for n in self.given.free if not close or n in fit.undetermined}
 
     def deepest(self, of: FittedSet) -> FittedSet:
         """The same, or its fit in a deeper valley that begins elsewhere on the body."""
