@@ -24,8 +24,8 @@ def decades(model: Model, name: str) -> list[float]:
 
 
 def over_range(null: float, typical: float, lower: float, upper: float) -> list[float]:
-    """Sizes over a plausible range: of a ratio, evenly in its logarithm; else from the typical size outwards by factors
-    of sqrt(10), to either side of the null that the range has.
+    """Sizes over a plausible range: of a ratio, evenly in its logarithm; else from half a decade below the typical size
+    outwards by factors of sqrt(10), to either side of the null that the range has.
     """
     step = abs(typical - null)
     if null == 1.0 and lower > 0:
@@ -34,7 +34,7 @@ def over_range(null: float, typical: float, lower: float, upper: float) -> list[
         return [typical]
     found = []
     for side, end in ((-1.0, lower), (1.0, upper)):
-        size = step
+        size = step / float(np.sqrt(10.0))
         while side * (end - null) > size:
             found.append(float(null + side * size))
             size *= float(np.sqrt(10.0))
