@@ -34,8 +34,8 @@ def over_range(null: float, typical: float, lower: float, upper: float) -> list[
         return [typical]
     found = []
     for side, end in ((-1.0, lower), (1.0, upper)):
-        size = step / float(np.sqrt(10.0))
-        while side * (end - null) > size:
+        exponent = -0.5
+        while side * (end - null) > (size := step * 10.0**exponent):
             found.append(float(null + side * size))
-            size *= float(np.sqrt(10.0))
+            exponent += 0.5
     return sorted(found)

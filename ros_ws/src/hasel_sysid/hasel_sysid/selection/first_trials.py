@@ -22,7 +22,8 @@ def first_trials(trials: Trials, effects: Sequence[Effect], decades: bool) -> li
     found = _in_batches(trials, typical, even_late=True)
     found += nearer(trials, typical, found)
     if decades:
-        found += _in_batches(trials, [start for effect in effects for start in decade_starts(effect)])
+        every = [start for effect in effects for start in decade_starts(effect)]
+        found += _in_batches(trials, [start for start in every if start not in typical])
     return found
 
 

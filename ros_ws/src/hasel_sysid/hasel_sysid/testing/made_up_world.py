@@ -43,7 +43,7 @@ class MadeUpWorld:
         """One of each voltage at each frequency."""
         time = np.arange(0.0, _DURATION, 1 / _FRAME_RATE)
         return [
-            Run(f"{voltage:.0f}V_{frequency:.1f}Hz", time, _box(voltage, frequency))
+            Run(f"{voltage:.0f}V_{frequency:.1f}Hz", time, box_drive(voltage, frequency))
             for voltage in VOLTAGES
             for frequency in FREQUENCIES
         ]
@@ -164,7 +164,8 @@ class MadeUpProblem(Problem):
         return self._collect(model, names, simulations)
 
 
-def _box(voltage: float, frequency: float) -> DriveSchedule:
+def box_drive(voltage: float, frequency: float) -> DriveSchedule:
+    """Upper and lower muscle in turn, for as long as any made-up run takes."""
     switches = np.arange(0.0, _DURATION, 0.5 / frequency)
     side = np.arange(len(switches)) % 2
     return DriveSchedule(switches, voltage * np.column_stack([side == 0, side == 1]).astype(float))

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from hasel_recording import Recording
-from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.registry import catalogue, find_effects
 from hasel_sim.model import Model, load_model
 from hasel_sim.parallel import SerialExecutor
@@ -14,6 +13,7 @@ from hasel_sysid.estimation import FitResult
 from hasel_sysid.estimation.least_squares import fitted_result
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.simulated_sets import SimulatedSets
+from hasel_sysid.testing.made_up_world import box_drive
 
 IMPOSSIBLE = '''
 """A muscle that cannot be simulated."""
@@ -83,9 +83,7 @@ def heavy_in_water() -> Problem:
     values = {"amplitude_3500": 0.03, "amplitude_5500": 0.05, "added_mass.added_mass": 3.0}
     truth, time, experiments = _swimmer("added_mass").with_values(values), np.arange(0.0, 1.5, 1 / 60), []
     for voltage, frequency in ((3500.0, 1.0), (5500.0, 2.0)):
-        switches = np.arange(0.0, 1.5, 0.5 / frequency)
-        side = np.arange(len(switches)) % 2
-        schedule = DriveSchedule(switches, voltage * np.column_stack([side == 0, side == 1]).astype(float))
+        schedule = box_drive(voltage, frequency)
         run = Run(f"{voltage:.0f} V", time, schedule)
         angle = simulate(truth, run).sin_theta
         experiments.append(Experiment(Recording(run.name, time, angle, drive_signal=schedule.at(time)), run))
