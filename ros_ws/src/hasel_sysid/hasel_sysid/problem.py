@@ -57,6 +57,10 @@ class Evaluation:
         chosen = [s.sin_theta[used] for s, used in zip(self.simulations, self.frames, strict=True)]
         return np.concatenate([series - series.mean() for series in chosen])
 
+    def measured(self) -> np.ndarray:
+        """The measured series at the same frames, the mean of every run removed, [frames]."""
+        return self.simulated() + self.residual
+
 
 class Problem:
     """Measured runs to be explained; `evaluate` is the only thing that simulates."""

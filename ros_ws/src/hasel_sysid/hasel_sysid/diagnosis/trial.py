@@ -10,7 +10,7 @@ from hasel_sim.model import Model
 from hasel_sysid.diagnosis.candidates import Start, resized
 from hasel_sysid.draft import draft
 from hasel_sysid.estimation.bounded import bounded_change
-from hasel_sysid.estimation.opening import is_close
+from hasel_sysid.estimation.opening import is_small
 from hasel_sysid.problem import Evaluation, Problem
 from hasel_sysid.projection import drops, orthonormal
 
@@ -73,7 +73,7 @@ class Trials:
         except SimulationError:
             self._model = fitted.model
         error = fitted.residual - self.base.residual
-        if not is_close(error, fitted.simulated()):
+        if not is_small(error, fitted.simulated()):
             self._model, self.base = fitted.model, fitted
         self._correction = fitted.residual - self.base.residual
 

@@ -30,12 +30,17 @@ class Opening(Experiment):
 
 def in_step(evaluation: Evaluation) -> bool:
     """Whether a model moves with the body: it leaves less than half of the power of what was measured."""
-    measured = evaluation.simulated() + evaluation.residual
+    measured = evaluation.measured()
     return evaluation.sum_of_squares < _OUT_OF_STEP * float(measured @ measured)
 
 
-def is_close(error: np.ndarray, motion: np.ndarray) -> bool:
-    """Whether a model's error [frames] is so small beside a motion [frames] that first order tells where to go."""
+def is_close(evaluation: Evaluation) -> bool:
+    """Whether a model leaves so little of what was measured that first order tells where to go."""
+    return is_small(evaluation.residual, evaluation.measured())
+
+
+def is_small(error: np.ndarray, motion: np.ndarray) -> bool:
+    """Whether what holds of a motion [frames] to first order holds with this error [frames] as well."""
     return bool(np.linalg.norm(error) <= _CLOSE * np.linalg.norm(motion))
 
 

@@ -53,7 +53,7 @@ def improve(
     near = in_step(fit.evaluation)
     effects = candidate_effects(fit.model, tuple(only) if only else None)
     begun = () if near or opposed else from_afar(problem, fit, effects, policy, partial(_part, progress))
-    far_off = near and not is_close(fit.evaluation.residual, fit.evaluation.simulated())
+    far_off = near and not is_close(fit.evaluation)
     slack, given = list(changes.values()) if near else (), model if far_off else None
     sets = SimulatedSets(problem, fit, effects, slack, given)
     refined = cache(partial(_refined, problem))

@@ -27,7 +27,7 @@ def diagnose(
     effects = candidate_effects(fit.model, tuple(only) if only else None)
     changes = changes_by_refinement(problem, fit.evaluation)
     near = in_step(fit.evaluation)
-    given = None if is_close(fit.evaluation.residual, fit.evaluation.simulated()) else fit.model
+    given = None if is_close(fit.evaluation) else fit.model
     sets = SimulatedSets(problem, fit, effects, list(changes.values()) if near else (), given)
     found = search(sets, policy, progress)
     choice = choose(found, policy)

@@ -50,7 +50,7 @@ class SimulatedSets:
         self.problem, self.fitted, self.given = problem, fit, given
         self.effects = {effect.id: effect for effect in effects}
         self.runs = fit.evaluation.runs
-        self.measured = fit.evaluation.simulated() + fit.evaluation.residual
+        self.measured = fit.evaluation.measured()
         self.slack = np.column_stack([np.zeros((len(self.runs), 0)), *slack])
         self.swing = problem.largest_swing
         self.tried: set[str] = set()
@@ -152,7 +152,7 @@ class SimulatedSets:
         """
         if self.given is None:
             return {}
-        close = is_close(fit.evaluation.residual, self.measured)
+        close = is_close(fit.evaluation)
         return {n: self.given.values[n] for n in self.given.free if not close or n in fit.undetermined}
 
     def deepest(self, of: FittedSet) -> FittedSet:
