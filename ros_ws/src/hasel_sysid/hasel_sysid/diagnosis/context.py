@@ -79,18 +79,25 @@ class Context:
 def out_of_range(effect: str, fit: FitResult) -> bool:
     """Whether one of the effect's own parameters would have to lie beyond its plausible range.
 
-    It ended on a bound, and would go on from there by more than noise explains. A part of the effect that is not there
-    (at its null) or that nothing shows does not count.
+    It ended on a bound, and would go on from there by more than noise explains.
+    """
+    return any(_surely_beyond(fit, name) for name in on_edge(effect, fit))
+
+
+def on_edge(effect: str, fit: FitResult) -> list[str]:
+    """The effect's own parameters that ended on a bound.
+
+    A part of the effect that is not there (at its null) or that nothing shows does not count.
     """
     kind = next(e for e in fit.model.effects if e.id == effect)
-    names = {f"{effect}.{p.name}": p.null for p in kind.parameters}
-    return any(
-        name in names
-        and name not in fit.undetermined
-        and not np.isclose(fit.model.values[name], names[name], atol=1e-6)
-        and _surely_beyond(fit, name)
+    nulls = {f"{effect}.{p.name}": p.null for p in kind.parameters}
+    return [
+        name
         for name in fit.at_bound
-    )
+        if name in nulls
+        and name not in fit.undetermined
+        and not np.isclose(fit.model.values[name], nulls[name], atol=1e-6)
+    ]
 
 
 def _surely_beyond(fit: FitResult, name: str) -> bool:

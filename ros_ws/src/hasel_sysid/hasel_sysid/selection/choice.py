@@ -40,10 +40,12 @@ class Choice:
 def choose(found: Searched, policy: Policy, lawful: Callable[[EffectSet], bool] | None = None) -> Choice:
     """The smallest set that is worth as much as the best one, to within its standard error, or leaves hardly more.
 
-    No set is chosen where nothing is missing. lawful: of sets that cannot be told from that one, the first that is a
-    law stands in its place; where none is, the set stays.
+    No set is chosen where nothing is missing. Of sets that cannot be told apart, those come first whose values are not
+    on the edge of their ranges: where the range of one law ends, that of another may go on. lawful: the first that is a
+    law stands in the place of the others; where none is, the set stays.
     """
     same = all_alike(found, smallest(found, policy), policy)
+    same = sorted(same, key=lambda s: found.known[s].on_edge)
     lawless = () if lawful is None else tuple(takewhile(lambda s: not lawful(s), same))
     if len(lawless) == len(same):
         lawless = ()

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from hasel_sim.effects.base import Effect
 
-from hasel_sysid.diagnosis.context import out_of_range
+from hasel_sysid.diagnosis.context import on_edge, out_of_range
 from hasel_sysid.diagnosis.trial import room
 from hasel_sysid.estimation import FitResult
 from hasel_sysid.selection.sets import FittedSet
@@ -36,5 +36,6 @@ def known_set(fit: FitResult, candidates: Mapping[str, Effect]) -> FittedSet:
         tuple(owner.get(name, "") for name in moving),
         without,
         not any(out_of_range(effect, fit) for effect in own),
+        any(on_edge(effect, fit) for effect in own),
         fit,
     )

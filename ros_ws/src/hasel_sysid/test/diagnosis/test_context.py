@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sim.model import load_model
-from hasel_sysid.diagnosis.context import out_of_range
+from hasel_sysid.diagnosis.context import on_edge, out_of_range
 from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.testing.made_up_runs import made_up_evaluation
 
@@ -31,6 +31,16 @@ def ended(value: float, pull: float, at_bound: bool = True, undetermined: bool =
 def test_a_value_at_the_end_of_its_range_is_out_of_it_only_beyond_noise(value, pull, out):
     """What is hidden may lie at the end; an effect at its null is not there, whatever it would take."""
     assert out_of_range("force_length", ended(value, pull)) == out
+
+
+@pytest.mark.parametrize(
+    ("value", "options", "found"),
+    [(1.0, {}, [NAME]), (1.0, {"undetermined": True}, []), (0.5, {"at_bound": False}, []), (0.0, {}, [])],
+    ids=["at its end", "not shown", "inside", "not there"],
+)
+def test_a_value_is_on_the_edge_of_its_range_where_it_ended_there(value, options, found):
+    """However little it would go on from there; what is not there, or not shown, is on no edge."""
+    assert on_edge("force_length", ended(value, 0.0, **options)) == found
 
 
 def test_what_nothing_shows_and_what_no_bound_holds_is_in_range():

@@ -486,6 +486,19 @@ def test_of_sets_that_cannot_be_told_apart_one_that_is_a_law_is_taken():
     assert nothing_else.groups == (("a", "b"),)
 
 
+@pytest.mark.parametrize("apart", [False, True], ids=["alike", "told apart"])
+def test_of_sets_that_cannot_be_told_apart_one_within_its_ranges_comes_first(apart):
+    """One that is worth a little more, but on the edge of a range, is left in the group; what is told apart stays."""
+    series = made_up(2)
+    series["b"] = series["a"] + (1.0 if apart else 0.01) * series["b"]
+    found = search(LinearSets(series, {"a": 0.1, "d": 0.3}, WHITE, 2), POLICY)
+    worth_most = choose(found, POLICY).chosen
+    on_edge = replace(found.known[worth_most], on_edge=True)
+    choice = choose(replace(found, known=found.known | {worth_most: on_edge}), POLICY)
+    assert choice.chosen == (worth_most if apart else worth_most ^ {"a", "b"})
+    assert choice.groups == (() if apart else (("a", "b"),))
+
+
 def test_an_effect_that_does_nothing_stands_for_no_other():
     """While a stranger leaves much, hardly any set is told apart: one that takes nothing away is no law in a place."""
     series = made_up(1)
