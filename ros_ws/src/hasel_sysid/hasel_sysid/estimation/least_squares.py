@@ -1,6 +1,5 @@
 """Trust-region least squares with exact sensitivities (scipy), the default way to fit."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +8,7 @@ from hasel_sim.model import Model
 from scipy.optimize import least_squares
 
 from hasel_sysid.draft import draft
+from hasel_sysid.estimation.asked import AskedModel, NearEnoughError, Progress
 from hasel_sysid.estimation.between_runs import wider_where_runs_disagree
 from hasel_sysid.estimation.bounds import at_bound
 from hasel_sysid.estimation.result import FitResult
@@ -21,9 +21,6 @@ _LEAST_SCALE = 1e-3
 _GENTLER = 4
 """How often to try a gentler start."""
 
-Progress = Callable[[str, float], None]
-"""Called with a line of text and the share done, 0 to 1."""
-
 
 def fit_least_squares(
     problem: Problem,
@@ -32,12 +29,14 @@ def fit_least_squares(
     tolerance: float = 5e-4,
     most_evaluations: int = 25,
     drafts: bool = True,
+    roughly: bool = False,
 ) -> FitResult:
     """Minimise the squared residuals over the model's free parameters within their bounds.
 
     A draft of the model (coarse mesh, long steps) leads most of the way; the model itself goes the rest.
     tolerance: ten times the relative change of the sum of squares at which to stop; drafts: whether to start
-    with the draft, which is a waste of time when the start is already good.
+    with the draft, which is a waste of time when the start is already good; roughly: stop earlier where neighbouring
+    frames share what is left, for then so many fewer squares tell models apart; `finished` goes on from there.
     A fit that ends where no derivative leads on is tried once more (`second_start`).
     Raises SimulationError when even the start cannot be simulated.
     """
@@ -49,7 +48,7 @@ def fit_least_squares(
         model = model.with_values({name: led.model.values[name] for name in model.free})
 
     def fitted(start: Model) -> FitResult:
-        evaluation, more, ended = _minimise(problem, start, progress, tolerance, most_evaluations)
+        evaluation, more, ended = _minimise(problem, start, progress, tolerance, most_evaluations, roughly)
         return replace(fitted_result(evaluation, more), converged=ended)
 
     first = fitted(model)
@@ -65,28 +64,38 @@ def finished(problem: Problem, fit: FitResult, progress: Progress | None = None,
 
 
 def _minimise(
-    problem: Problem, model: Model, progress: Progress | None, tolerance: float, most_evaluations: int
+    problem: Problem,
+    model: Model,
+    progress: Progress | None,
+    tolerance: float,
+    most_evaluations: int,
+    roughly: bool = False,
 ) -> tuple[Evaluation, int, bool]:
     names = model.free
-    search = _Search(problem, model, names, progress, most_evaluations)
+    search = AskedModel(
+        problem, model, names, progress, most_evaluations, 0.1 * tolerance if roughly else 0.0
+    )
     lower, upper, start = _bounds_and_start(model, names)
     scale = np.maximum(np.abs(start), [_scale(model, name) for name in names])
     start = _first_that_runs(search, start, names)
     # in units of their scales, for a step that is short beside all values ends the search: beside a value in Pa, any is
-    found = least_squares(
-        lambda z: search.residual(z * scale),
-        start / scale,
-        jac=lambda z: search.jacobian(z * scale) * scale,
-        bounds=(lower / scale, upper / scale),
-        xtol=0.01 * tolerance,
-        ftol=0.1 * tolerance,
-        gtol=1e-12,
-        max_nfev=most_evaluations,
-    )
+    try:
+        found = least_squares(
+            lambda z: search.residual(z * scale),
+            start / scale,
+            jac=lambda z: search.jacobian(z * scale) * scale,
+            bounds=(lower / scale, upper / scale),
+            xtol=0.01 * tolerance,
+            ftol=0.1 * tolerance,
+            gtol=1e-12,
+            max_nfev=most_evaluations,
+        )
+    except NearEnoughError as reached:
+        return reached.evaluation, search.count, False
     return search.at(np.clip(found.x * scale, lower, upper)), search.count, found.status > 0
 
 
-def _first_that_runs(search: "_Search", start: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
+def _first_that_runs(search: AskedModel, start: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
     """The start, its amplitudes halved until the motion is gentle enough to be simulated."""
     amplitudes = np.array([name.startswith("amplitude_") for name in names])
     for attempt in range(_GENTLER):
@@ -98,37 +107,6 @@ def _first_that_runs(search: "_Search", start: np.ndarray, names: tuple[str, ...
                 raise
             start = np.where(amplitudes, 0.5 * start, start)
     return start
-
-
-class _Search:
-    """Evaluates the model where scipy asks, once per point; a point that cannot be simulated counts as a bad one."""
-
-    def __init__(self, problem: Problem, model: Model, names: tuple[str, ...], progress, most: int) -> None:
-        self.problem, self.model, self.names = problem, model, names
-        self.progress, self.most, self.count = progress, most, 0
-        self._known: dict[bytes, Evaluation] = {}
-        self._first: Evaluation | None = None
-
-    def at(self, x: np.ndarray) -> Evaluation:
-        key = x.tobytes()
-        if key not in self._known:
-            values = dict(zip(self.names, x, strict=True))
-            self._known[key] = self.problem.evaluate(self.model.with_values(values), self.names)
-            self._first = self._first or self._known[key]
-            self.count += 1
-            if self.progress:
-                error = self._known[key].mean_absolute_error
-                self.progress(f"fit, step {self.count}: mean |Δ sin θ| = {error:.5f}", self.count / self.most)
-        return self._known[key]
-
-    def residual(self, x: np.ndarray) -> np.ndarray:
-        try:
-            return self.at(x).residual
-        except SimulationError:
-            return np.full_like(self._first.residual, 1.0)
-
-    def jacobian(self, x: np.ndarray) -> np.ndarray:
-        return -self.at(x).jacobian
 
 
 def _scale(model: Model, name: str) -> float:

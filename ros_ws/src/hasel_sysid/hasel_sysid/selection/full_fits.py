@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from hasel_sysid.selection.promises import Promises
 from hasel_sysid.selection.proposals import Proposal
 from hasel_sysid.selection.searched import plausible
-from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, name_of
+from hasel_sysid.selection.sets import NOTHING, FittedSet, name_of
 
 Progress = Callable[[str, float], None]
 
@@ -37,14 +37,18 @@ class FullFits(Promises):
             self.tried.add(proposal.effects)
             self.say(f"fitting {name_of(proposal.effects)}", min(0.9, 0.1 * len(self.tried)))
             self.keep(self.sets.fit(proposal.effects, proposal.of, proposal.added))
-            self.keep(self._again(proposal.effects))
+            self.keep(self._again(proposal))
             self.keep(self._from_other_sizes(proposal))
             count += 1
             answers += proposal.effects in plausible(self.known)
         return count
 
-    def _again(self, effects: EffectSet) -> FittedSet | None:
-        """From its best smaller set, where it ended with larger squares than that one: then it was lost on its way."""
+    def _again(self, proposal: Proposal) -> FittedSet | None:
+        """From its best smaller set, where it ended with larger squares than that one: then it was lost on its way.
+
+        Not where it began there.
+        """
+        effects = proposal.effects
         below = [part for gone in effects if (part := effects - {gone}) in self.known]
         if not below:
             return None
@@ -53,7 +57,8 @@ class FullFits(Promises):
             return None
         (new,) = effects - best
         prospect = {**self.prospects[NOTHING], **self.prospects.get(best, {})}.get(new)
-        return None if prospect is None else self.sets.fit(effects, self.known[best], (prospect,))
+        begun = proposal.of is self.known[best] and not proposal.dropped and prospect in proposal.added
+        return None if prospect is None or begun else self.sets.fit(effects, self.known[best], (prospect,))
 
     def _from_other_sizes(self, proposal: Proposal) -> FittedSet | None:
         """A fit of one more effect that did not keep its promise: there is more than one valley."""

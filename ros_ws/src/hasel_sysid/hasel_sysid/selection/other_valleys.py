@@ -94,7 +94,9 @@ def _elsewhere(model: Model, effects: Collection[str]) -> Iterator[Model]:
 
 def _fitted(problem: Problem, model: Model, tolerance: float, most: int) -> FitResult | None:
     try:
-        return fit_least_squares(problem, model, tolerance=tolerance, most_evaluations=most, drafts=False)
+        return fit_least_squares(
+            problem, model, tolerance=tolerance, most_evaluations=most, drafts=False, roughly=True
+        )
     except HaselSimError:
         return None
 

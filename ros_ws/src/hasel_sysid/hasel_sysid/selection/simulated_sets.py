@@ -144,7 +144,9 @@ class SimulatedSets:
         return self.known_as(found)
 
     def _fitted(self, model: Model) -> FitResult:
-        return fit_least_squares(self.problem, model, tolerance=1e-3, most_evaluations=_BRIEF, drafts=False)
+        return fit_least_squares(
+            self.problem, model, tolerance=1e-3, most_evaluations=_BRIEF, drafts=False, roughly=True
+        )
 
     def _as_given(self, fit: FitResult) -> dict[str, float]:
         """Values before any fit, where a fit that began far off has not come close, or of what nothing shows there: an

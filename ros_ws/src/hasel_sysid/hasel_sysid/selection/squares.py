@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 
+from hasel_sysid.estimation.independent import independent_share
+
 _MOST = 0.5
 
 
@@ -21,13 +23,9 @@ def surely_larger(error: np.ndarray, than: np.ndarray, runs: np.ndarray) -> floa
 def log_squares(error: np.ndarray, runs: np.ndarray) -> tuple[float, float]:
     """Logarithm of a sum of squares, and its standard error.
 
-    A sum of d independent squares has a relative variance of 2 / d; of a series with the memory m of an autoregression
-    of first order, n (1 - m^2) / (1 + m^2) squares count as independent (Bartlett 1946).
+    A sum of d independent squares has a relative variance of 2 / d.
     """
     squares = float(error @ error)
     if squares == 0.0:
         return -math.inf, 1.0
-    beside = runs[1:] == runs[:-1]
-    memory = abs(float(error[1:][beside] @ error[:-1][beside])) / squares
-    memory = min(memory, 1 - 1 / len(error))
-    return math.log(squares), math.sqrt(2 * (1 + memory**2) / (len(error) * (1 - memory**2)))
+    return math.log(squares), math.sqrt(2 / (len(error) * independent_share(error, runs)))

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hasel_sim.model import load_model, save_model
-from hasel_sysid.estimation.least_squares import fit_least_squares, fitted_result
+from hasel_sysid.estimation.least_squares import finished, fit_least_squares, fitted_result
 from hasel_sysid.problem import Evaluation
 
 
@@ -106,3 +106,46 @@ def test_a_value_on_a_bound_where_nothing_shows_it_is_tried_again_from_its_typic
     assert lost.values[TIME] < 1e-6
     found = fit_least_squares(Lagging(), lost, drafts=False)
     assert found.model.values[TIME] == pytest.approx(0.01, rel=1e-3)
+
+
+class Bending:
+    """Runs whose second series grows with the square of a time constant and stays far off: a fit creeps to its end."""
+
+    def __init__(self, first: np.ndarray, second: np.ndarray):
+        self.first, self.second = first, second
+
+    def evaluate(self, model, names):
+        """As of a problem's, at the model's values."""
+        time = model.values[TIME]
+        residual = (-0.03 - time) * self.first + (1.185 - 0.5 * time**2) * self.second
+        slopes = {STIFFNESS: np.zeros(400), TIME: self.first + time * self.second}
+        return evaluated(model, names, residual, slopes)
+
+
+def fits(problem):
+    """To the end, and roughly."""
+    return [
+        fit_least_squares(problem, far_start(), tolerance=1e-3, drafts=False, roughly=roughly)
+        for roughly in (False, True)
+    ]
+
+
+def test_a_rough_fit_ends_early_where_frames_share_what_is_left():
+    """It says that it has not converged, and goes on to the end when asked to."""
+    angle = np.linspace(0.0, 6.2, 400)
+    problem = Bending(np.cos(angle), np.sin(angle))
+    exact, rough = fits(problem)
+    least = exact.evaluation.sum_of_squares
+    assert exact.converged and not rough.converged
+    assert rough.iterations < 0.7 * exact.iterations
+    assert least < rough.evaluation.sum_of_squares < 1.01 * least
+    end = finished(problem, rough, tolerance=1e-3)
+    assert end.converged
+    assert end.evaluation.sum_of_squares == pytest.approx(least, rel=1e-3)
+
+
+def test_a_rough_fit_goes_to_the_end_where_every_frame_counts():
+    """White noise tells models apart by all of its squares."""
+    exact, rough = fits(Bending(*np.random.default_rng(0).normal(size=(2, 400))))
+    assert rough.evaluation.sum_of_squares == pytest.approx(exact.evaluation.sum_of_squares, rel=1e-3)
+    assert rough.iterations >= exact.iterations - 1

@@ -320,6 +320,25 @@ def test_a_fit_that_ends_as_well_as_a_smaller_set_is_not_repeated():
     assert len(sets.begun) == len(set(sets.begun))
 
 
+class _AlwaysLost(LinearSets):
+    """A fit of two effects ends where the baseline is; begun: where each began."""
+
+    def fit(self, effects, near, added):
+        """As of sets, but for that."""
+        self.begun = [*getattr(self, "begun", []), (effects, near, *added)]
+        fitted = super().fit(effects, near, added)
+        return replace(fitted, residual=self.baseline().residual) if len(effects) > 1 else fitted
+
+
+def test_a_fit_that_was_lost_does_not_begin_once_more_where_it_began():
+    """It would only end there again."""
+    sets = _AlwaysLost(made_up(6), {"a": 0.05, "b": 0.03}, WHITE, 6)
+    chosen(sets)
+    begun = [(effects, *map(id, where)) for effects, *where in sets.begun]
+    assert any(len(effects) > 1 for effects, *_ in begun)
+    assert len(begun) == len(set(begun))
+
+
 def test_while_no_set_describes_the_runs_the_differences_count_for_less():
     """Two that imitate a stranger much alike are not told apart, though their likelihoods are far from equal."""
     stranger = 0.3 * smooth_series(np.random.default_rng(99), run_numbers())
