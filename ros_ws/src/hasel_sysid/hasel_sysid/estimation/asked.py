@@ -7,6 +7,7 @@ from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
 from hasel_sysid.estimation.independent import independent_share
+from hasel_sysid.estimation.opening import is_close
 from hasel_sysid.problem import Evaluation, Problem
 
 Progress = Callable[[str, float], None]
@@ -80,9 +81,12 @@ class AskedModel:
         return -here.jacobian
 
     def _is_near_enough(self, x0: np.ndarray, before: Evaluation, x1: np.ndarray, here: Evaluation) -> bool:
-        """As scipy ends: by a step that gave little, and not because it was held back by a model that fits badly."""
+        """As scipy ends: by a step that gave little, and not because it was held back by a model that fits badly.
+
+        Of a model that is far off, small steps do not tell how far they will lead.
+        """
         gain = before.sum_of_squares - here.sum_of_squares
         foretold = before.residual - before.jacobian @ (x1 - x0)
         kept = gain > _KEPT * (before.sum_of_squares - float(foretold @ foretold))
         share = max(independent_share(here.residual, here.runs), _LEAST_SHARE)
-        return kept and gain * share < self.rough * before.sum_of_squares
+        return kept and is_close(here) and gain * share < self.rough * before.sum_of_squares

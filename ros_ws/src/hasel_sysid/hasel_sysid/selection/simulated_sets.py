@@ -132,7 +132,7 @@ class SimulatedSets:
             for name, value in trial.step.items():
                 if name not in values:
                     values[name] = value
-                elif beside:
+                elif beside and name in base.model.values:
                     values[name] += value - base.model.values[name]
         try:
             model = self._model(near.fit.model, effects, near.effects).with_values({})

@@ -7,6 +7,7 @@ import pytest
 from hasel_sim.model import load_model, save_model
 from hasel_sysid.estimation.least_squares import finished, fit_least_squares, fitted_result
 from hasel_sysid.problem import Evaluation
+from hasel_sysid.testing.made_up_runs import made_up_evaluation
 
 
 def test_the_covariance_of_a_fit_goes_with_its_model(tmp_path):
@@ -111,15 +112,17 @@ def test_a_value_on_a_bound_where_nothing_shows_it_is_tried_again_from_its_typic
 class Bending:
     """Runs whose second series grows with the square of a time constant and stays far off: a fit creeps to its end."""
 
-    def __init__(self, first: np.ndarray, second: np.ndarray):
-        self.first, self.second = first, second
+    def __init__(self, first: np.ndarray, second: np.ndarray, motion: float = 10.0):
+        self.first, self.second, self.time = first, second, np.linspace(0.0, 6.2, 400)
+        self.simulated = motion * np.sin(3 * self.time)
 
     def evaluate(self, model, names):
         """As of a problem's, at the model's values."""
         time = model.values[TIME]
         residual = (-0.03 - time) * self.first + (1.185 - 0.5 * time**2) * self.second
         slopes = {STIFFNESS: np.zeros(400), TIME: self.first + time * self.second}
-        return evaluated(model, names, residual, slopes)
+        jacobian = np.column_stack([slopes[name] for name in names])
+        return made_up_evaluation(residual[None], self.time, None, self.simulated, jacobian, names, model)
 
 
 def fits(problem):
@@ -142,6 +145,14 @@ def test_a_rough_fit_ends_early_where_frames_share_what_is_left():
     end = finished(problem, rough, tolerance=1e-3)
     assert end.converged
     assert end.evaluation.sum_of_squares == pytest.approx(least, rel=1e-3)
+
+
+def test_a_rough_fit_of_what_is_far_off_goes_to_the_end():
+    """There, small steps do not tell how far they will lead."""
+    angle = np.linspace(0.0, 6.2, 400)
+    exact, rough = fits(Bending(np.cos(angle), np.sin(angle), motion=0.1))
+    assert rough.converged
+    assert rough.iterations == exact.iterations
 
 
 def test_a_rough_fit_goes_to_the_end_where_every_frame_counts():

@@ -124,3 +124,17 @@ def test_an_amplitude_that_no_muscle_has_the_time_to_reach_is_given_again(heavy_
 
     assert "amplitude_5500" in fitted(None).undetermined
     assert fitted(_swimmer()).model.values["amplitude_5500"] == pytest.approx(0.05, rel=0.05)
+
+
+def test_two_effects_of_the_drive_that_both_bring_the_onset_are_fitted_together(heavy_in_water):
+    """Each looks better with an onset of the muscles, which the model without them does not have."""
+    effects = [catalogue()[name] for name in ("charging_lag", "current_limit")]
+    baseline = _known(
+        heavy_in_water, _swimmer().with_values({"amplitude_3500": 0.03, "amplitude_5500": 0.05})
+    )
+    sets = SimulatedSets(heavy_in_water, baseline, effects)
+    seen = sets.prospects(sets.baseline(), None, lambda p: -float(p.residual @ p.residual), 4)
+    assert all("onset" in prospect.start.step for prospect in seen.values())
+    both = sets.fit(frozenset(seen), sets.baseline(), list(seen.values()))
+    assert both.effects == {"charging_lag", "current_limit"}
+    assert "onset" in both.fit.model.values and "onset" not in baseline.model.values
