@@ -4,7 +4,7 @@ from hasel_sysid.estimation.adam import fit_adam
 from hasel_sysid.estimation.from_afar import fit_from_afar
 from hasel_sysid.estimation.identify import METHODS, identify
 from hasel_sysid.estimation.least_squares import fit_least_squares
-from hasel_sysid.estimation.opening import in_step, is_close, is_small
+from hasel_sysid.estimation.opening import in_step, is_close
 from hasel_sysid.estimation.result import FitResult
 
 __all__ = [
@@ -16,5 +16,4 @@ __all__ = [
     "identify",
     "in_step",
     "is_close",
-    "is_small",
 ]

@@ -14,7 +14,7 @@ Progress = Callable[[str, float], None]
 """Called with a line of text and the share done, 0 to 1."""
 
 _KEPT = 0.25
-"""Share of its promise that a step must have given for the next one to be no larger (scipy's)."""
+"""Share of its promise that the last step of a search must have given (scipy's)."""
 _LEAST_SHARE = 1 / 30
 """Of independent squares that a rough search reckons with: a step that gives 0.3 % is worth the next."""
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_sysid.estimation import in_step, is_close, is_small
+from hasel_sysid.estimation.opening import in_step, is_close, is_small
 from hasel_sysid.testing.made_up_runs import made_up_evaluation
 
 TIME = np.arange(100.0)
