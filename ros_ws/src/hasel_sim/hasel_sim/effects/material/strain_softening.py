@@ -23,9 +23,9 @@ class StrainSoftening(MaterialEffect):
             "1",
             0.0,
             0.0,
-            0.9,
+            0.7,
             0.3,
-            "10-50 % between 1 and 50 % of strain in filled silicones",
+            "10-50 % between 1 and 50 % of strain in filled silicones; at most as soft as soft_modulus may be",
         ),
         EffectParameter(
             "reference_strain",

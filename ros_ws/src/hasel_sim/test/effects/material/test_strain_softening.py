@@ -46,6 +46,12 @@ def test_small_strains_meet_the_whole_modulus_and_large_ones_what_is_left():
     assert lost == pytest.approx([0.0, 0.5 * SOFTENING, SOFTENING], abs=2e-3)
 
 
+def test_it_leaves_no_body_softer_than_a_wrong_constant_may():
+    """Past its reference strain it is one; with a wider range it would stand for constants beyond theirs."""
+    softening, scale = (catalogue()[effect].parameters[0] for effect in ("strain_softening", "soft_modulus"))
+    assert 1 - softening.upper == pytest.approx(scale.lower)
+
+
 @pytest.mark.filterwarnings("error")
 def test_a_body_that_would_be_turned_inside_out_is_one_sentence():
     """Its stress has no logarithm there; numpy's own warnings would not tell the user why."""
