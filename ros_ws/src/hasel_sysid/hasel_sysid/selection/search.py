@@ -95,13 +95,16 @@ class _Search(StandIns):
         )
 
     def look_beyond_if_anything_is_missing(self, effects: EffectSet) -> None:
-        """The same for the effects whose score is more than noise alone makes of it."""
+        """The same for the effects whose score is more than noise alone makes of it, and for those that cost nothing.
+
+        Beside the baseline, where that score is from, two wrong constants may look alike that together are the answer.
+        """
         if effects in self.prospects or len(effects) >= self.policy.most_effects or self.sets.out_of_time():
             return
         test = self.tested(effects)
         promising = sorted(test.gains, key=lambda effect: -test.gains[effect])[: 2 * self.policy.trials]
         wanted = [e for e in promising if test.gains[e] > test.threshold and self.could_matter(e, effects)]
-        self.look_beyond(effects, wanted)
+        self.look_beyond(effects, list(dict.fromkeys([*wanted, *self.sets.at_null])))
 
     def singles(self) -> list[Proposal]:
         """Sets of one effect, most promising first."""

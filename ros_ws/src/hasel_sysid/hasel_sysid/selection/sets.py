@@ -100,6 +100,8 @@ class Sets(Protocol):
     """Errors that every set is known to make, [frames, n], such as those of the mesh; each run in its own amount."""
     swing: float
     """The largest that was measured, from the mean of its run; what no model has is in proportion to it."""
+    at_null: Collection[str]
+    """Effects that are looked at where they do nothing yet, all of them at hardly more than the cost of one."""
 
     def baseline(self) -> FittedSet:
         """The model without any effect."""

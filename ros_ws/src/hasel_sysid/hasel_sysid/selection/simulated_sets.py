@@ -8,7 +8,7 @@ from hasel_sim.effects.base import Effect
 from hasel_sim.errors import HaselSimError, ModelError
 from hasel_sim.model import Model
 
-from hasel_sysid.diagnosis.candidates import Start, valued
+from hasel_sysid.diagnosis.candidates import Start, starts, valued
 from hasel_sysid.diagnosis.trial import Trial, Trials
 from hasel_sysid.estimation import FitResult, fit_least_squares, is_close
 from hasel_sysid.estimation.least_squares import finished, fitted_result
@@ -49,6 +49,7 @@ class SimulatedSets:
         """
         self.problem, self.fitted, self.given = problem, fit, given
         self.effects = {effect.id: effect for effect in effects}
+        self.null_starts = {e.id: start for e in effects for start in starts(e)[:1] if start.changes_nothing}
         self.runs = fit.evaluation.runs
         self.measured = fit.evaluation.measured()
         self.slack = np.column_stack([np.zeros((len(self.runs), 0)), *slack])
@@ -64,6 +65,11 @@ class SimulatedSets:
     def known_as(self, fit: FitResult) -> FittedSet:
         """A fit as the search sees it."""
         return known_set(fit, self.effects)
+
+    @property
+    def at_null(self) -> Collection[str]:
+        """Effects that may start without effect: beside a set, one simulation has the derivatives of them all."""
+        return self.null_starts.keys()
 
     def compatible(self, effects: EffectSet) -> bool:
         """Whether no two of them exclude each other."""
@@ -120,7 +126,10 @@ class SimulatedSets:
         others = set(names) - set(sized)
         first = [trial for trial in self.first if trial.start.effect.id in others]
         known = [valued(self.effects[name], sized[name].fit.model.values) for name in names if name in sized]
-        return [*known, *sized_starts(of, first, self.fitted.evaluation.residual)]
+        sized = sized_starts(of, first, self.fitted.evaluation.residual)
+        there = [start.values for start in (*known, *sized)]
+        at_null = [self.null_starts[name] for name in names if name in self.null_starts]
+        return [*known, *sized, *(start for start in at_null if start.values not in there)]
 
     def fit(self, effects: EffectSet, near: FittedSet, added: Collection[Prospect]) -> FittedSet | None:
         """Least squares of the model itself, from where the drafts have led."""

@@ -35,6 +35,8 @@ class LinearSets:
     As of `selection.sets.Sets`; `fits` counts the full fits.
     """
 
+    at_null: Collection[str] = ()
+
     def __init__(
         self,
         series: Mapping[str, np.ndarray],

@@ -398,6 +398,26 @@ def test_what_is_left_is_looked_at_from_where_it_is_left():
         assert chosen(sets)[0] == "ad"
 
 
+class _HiddenByAConstant(LinearSets):
+    """Beside the baseline, d looks like one of the model's own constants."""
+
+    def _prospect(self, of, name):
+        found = super()._prospect(of, name)
+        if of.effects or name != "d":
+            return found
+        return replace(found, jacobian=of.jacobian[:, [0, 1, 0]], looks=of.jacobian[:, :1])
+
+
+def test_what_costs_nothing_is_looked_at_beside_every_set():
+    """The second effect looks like nothing beside the baseline, and two others together look just like it."""
+    series = made_up(1)
+    series["d"] = series["b"] + series["c"]
+    sets = _HiddenByAConstant(series, {"a": 0.3, "d": 0.1}, WHITE, 1)
+    assert len(chosen(sets)[0]) == 3
+    sets.at_null = "d"
+    assert chosen(sets)[0] == "ad"
+
+
 def test_what_may_stand_in_a_place_is_looked_at_beside_the_rest():
     """Beside the baseline the double of the chosen one looks like something else, and four others look more like it."""
     series = made_up(1)
