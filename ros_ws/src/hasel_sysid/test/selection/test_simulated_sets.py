@@ -138,3 +138,22 @@ def test_two_effects_of_the_drive_that_both_bring_the_onset_are_fitted_together(
     both = sets.fit(frozenset(seen), sets.baseline(), list(seen.values()))
     assert both.effects == {"charging_lag", "current_limit"}
     assert "onset" in both.fit.model.values and "onset" not in baseline.model.values
+
+
+def test_beside_a_set_what_starts_without_effect_is_looked_at_there(heavy_in_water):
+    """Whatever size of it looked best beside the baseline, where sizes over its range were tried."""
+    constants = [catalogue()[name] for name in ("soft_modulus", "spine_modulus")]
+    amplitudes = {"amplitude_3500": 0.03, "amplitude_5500": 0.05}
+    baseline = _known(heavy_in_water, _swimmer().with_values(amplitudes))
+    softer = _swimmer("spine_modulus").with_values({**amplitudes, "spine_modulus.scale": 0.5})
+    effects = [*constants, catalogue()["added_mass"]]
+    sets = SimulatedSets(heavy_in_water, baseline, effects, given=_swimmer())
+    assert set(sets.at_null) == {"soft_modulus", "spine_modulus"}
+
+    def nearest_to_null(prospect) -> float:
+        return -abs(prospect.start.model.values["soft_modulus.scale"] - 1.0)
+
+    sets.prospects(sets.baseline(), None, lambda p: -float(p.residual @ p.residual), 0)
+    beside = sets.known_as(_known(heavy_in_water, softer))
+    seen = sets.prospects(beside, ["soft_modulus"], nearest_to_null, 0)
+    assert nearest_to_null(seen["soft_modulus"]) == 0.0
