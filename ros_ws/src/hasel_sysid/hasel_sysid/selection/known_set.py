@@ -35,7 +35,13 @@ def known_set(fit: FitResult, candidates: Mapping[str, Effect]) -> FittedSet:
         *room(model, moving),
         tuple(owner.get(name, "") for name in moving),
         without,
-        not any(out_of_range(effect, fit) for effect in own),
+        not any(out_of_range(effect, fit) or _is_a_double(candidates[effect], fit) for effect in own),
         any(on_edge(effect, fit) for effect in own),
         fit,
     )
+
+
+def _is_a_double(effect: Effect, fit: FitResult) -> bool:
+    """Whether an effect does only what free constants of the model do: such as its modulus, which is free already."""
+    sizes = {f"{effect.id}.{p.name}" for p in effect.parameters if not p.scan} & set(fit.evaluation.names)
+    return bool(sizes) and sizes <= set(fit.undetermined)

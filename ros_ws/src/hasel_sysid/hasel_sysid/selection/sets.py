@@ -21,7 +21,7 @@ class FittedSet:
     residual [frames]; jacobian [frames, parameters] of the predicted series, by every parameter that may still move;
     lower, upper [parameters]: by how much each may change; owners [parameters]: the effect of each, empty for the
     model's own; without: by effect, the change of the residual [frames] if it were taken out, to first order;
-    plausible: whether the effects' values lie inside their ranges; on_edge: whether one of them only just does, on a
+    plausible: whether the effects' values lie inside their ranges, and each does what nothing else does; on_edge: whether one of them only just does, on a
     bound; fit: what the problem knows it by.
     """
 

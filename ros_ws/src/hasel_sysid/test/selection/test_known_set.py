@@ -25,3 +25,18 @@ def test_a_set_is_on_edge_where_a_value_of_an_effect_ended_on_a_bound(at_bound, 
     assert found.on_edge == bool(at_bound)
     assert found.plausible
     assert found.jacobian.shape[1] == moving
+
+
+@pytest.mark.parametrize(("undetermined", "answer"), [((), True), ((NAME,), False), (("slope",), True)])
+def test_what_only_does_what_the_model_may_do_already_is_no_answer(undetermined, answer):
+    """Such as a scale of the modulus beside a modulus that is free: the frames show their product alone."""
+    model = load_model("swimmer").with_levels([4500.0]).with_effects("force_length").with_values({NAME: 0.5})
+    evaluation = made_up_evaluation(
+        np.zeros((1, 50)),
+        np.arange(50) / 120,
+        jacobian=np.column_stack([SERIES, SERIES]),
+        names=(NAME, "slope"),
+        model=model,
+    )
+    fit = FitResult(model, evaluation, (), undetermined, 1, "made up")
+    assert known_set(fit, {"force_length": catalogue()["force_length"]}).plausible == answer
