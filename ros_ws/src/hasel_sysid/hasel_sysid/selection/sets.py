@@ -21,8 +21,8 @@ class FittedSet:
     residual [frames]; jacobian [frames, parameters] of the predicted series, by every parameter that may still move;
     lower, upper [parameters]: by how much each may change; owners [parameters]: the effect of each, empty for the
     model's own; without: by effect, the change of the residual [frames] if it were taken out, to first order;
-    plausible: whether the effects' values lie inside their ranges, and each does what nothing else does; on_edge: whether one of them only just does, on a
-    bound; fit: what the problem knows it by.
+    plausible: whether the effects' values lie inside their ranges, and each effect does what nothing else does;
+    on_edge: whether a value only just lies inside, on a bound; fit: what the problem knows it by.
     """
 
     effects: EffectSet
@@ -100,8 +100,10 @@ class Sets(Protocol):
     """Errors that every set is known to make, [frames, n], such as those of the mesh; each run in its own amount."""
     swing: float
     """The largest that was measured, from the mean of its run; what no model has is in proportion to it."""
-    at_null: Collection[str]
-    """Effects that are looked at where they do nothing yet, all of them at hardly more than the cost of one."""
+
+    @property
+    def at_null(self) -> Collection[str]:
+        """Effects that are looked at where they do nothing yet, all of them at hardly more than the cost of one."""
 
     def baseline(self) -> FittedSet:
         """The model without any effect."""
