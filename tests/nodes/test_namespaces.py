@@ -39,8 +39,7 @@ def test_two_rigs_do_not_hear_each_other(tmp_path, environment, listener):
             command.publish(Actuation(voltage=[4000.0, 0.0]))
 
         listener.until(lambda: angles["rig2"][-1].sin_theta > 0.1, 60.0, drive)
-        # on a busy machine telemetry may be late: a fault, which is grounded too
-        assert {state.mode for state in states["rig1"]} <= {SupplyState.STANDBY, SupplyState.FAULT}
+        assert {state.mode for state in states["rig1"]} == {SupplyState.STANDBY}
         assert np.abs([angle.sin_theta for angle in angles["rig1"]]).max() < 0.03
         for name in states:
             assert states[name][-1].header.frame_id == f"{name}/supply"

@@ -126,10 +126,10 @@ class SimulatedSets:
         others = set(names) - set(sized)
         first = [trial for trial in self.first if trial.start.effect.id in others]
         known = [valued(self.effects[name], sized[name].fit.model.values) for name in names if name in sized]
-        sized = sized_starts(of, first, self.fitted.evaluation.residual)
-        there = [start.values for start in (*known, *sized)]
+        resized = sized_starts(of, first, self.fitted.evaluation.residual)
+        there = [start.values for start in (*known, *resized)]
         at_null = [self.null_starts[name] for name in names if name in self.null_starts]
-        return [*known, *sized, *(start for start in at_null if start.values not in there)]
+        return [*known, *resized, *(start for start in at_null if start.values not in there)]
 
     def fit(self, effects: EffectSet, near: FittedSet, added: Collection[Prospect]) -> FittedSet | None:
         """Least squares of the model itself, from where the drafts have led."""
