@@ -6,17 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import gammaincc
 
-from hasel_sysid.diagnosis.explained import NEAR_NOISE
 from hasel_sysid.drive_match import drive_unit
 from hasel_sysid.noise import NoiseModel
+from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Evaluation
 from hasel_sysid.projection import orthonormal
 from hasel_sysid.where_it_fails.drive_cycle import drive_cycle, driven_side
 
 _DRAWS = 400
-_FALSE_DISCOVERIES = 0.01
-_MATTERS = 1.5
-"""A regime fails only where its rms error is this many times what is allowed: laws are judged, not decimals."""
 _FEWEST_FRAMES = 8
 _QUARTERS = 4
 
@@ -46,7 +43,7 @@ class Adequacy:
     @property
     def overall(self) -> bool:
         """Whether all frames together are near what is allowed."""
-        return self.times <= NEAR_NOISE
+        return self.times <= POLICY.near_noise
 
     @property
     def adequate(self) -> bool:
@@ -81,7 +78,7 @@ def adequacy(evaluation: Evaluation, allowed: NoiseModel) -> Adequacy:
         found.append(Misfit(name, float(np.sqrt(own / expected.mean()))))
         chances.append(_chance(own, expected))
     rejected = _beyond_chance(np.array(chances))
-    misfits = [m for m, beyond in zip(found, rejected, strict=True) if beyond and m.times > _MATTERS]
+    misfits = [m for m, beyond in zip(found, rejected, strict=True) if beyond and m.times > POLICY.misfit]
     times = evaluation.mean_absolute_error / allowed.mean_absolute
     misfits.sort(key=lambda misfit: -misfit.times)
     return Adequacy(float(times), allowed.mean_absolute, tuple(misfits))
@@ -140,7 +137,7 @@ def _beyond_chance(chance: np.ndarray) -> np.ndarray:
     if len(chance) == 0:
         return np.zeros(0, dtype=bool)
     order = np.argsort(chance)
-    line = _FALSE_DISCOVERIES * np.arange(1, len(chance) + 1) / len(chance)
+    line = POLICY.level * np.arange(1, len(chance) + 1) / len(chance)
     below = np.flatnonzero(chance[order] <= line)
     rejected = np.zeros(len(chance), dtype=bool)
     if len(below):

@@ -12,12 +12,9 @@ from hasel_sysid.estimation.between_runs import wider_where_runs_disagree
 from hasel_sysid.estimation.directions import seen_directions
 from hasel_sysid.estimation.uncertainty import parameter_covariance
 from hasel_sysid.noise import NoiseModel
+from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Evaluation
 
-_CERTAIN = 4.0
-"""Standard errors."""
-_MATTERS = 0.2
-"""Share of the value by which it may differ between the ends of a range: no rig is exact."""
 _ONE_CONDITION = 1.05
 
 
@@ -40,7 +37,8 @@ class Trend:
     def contradicts(self) -> bool:
         """Whether the values differ beyond doubt, and by as much as matters."""
         difference = abs(self.values[1] - self.values[0])
-        return difference > max(_CERTAIN * self.standard_error, _MATTERS * abs(np.mean(self.values)))
+        certain, matters = 2 * POLICY.doubt, 2 * POLICY.matters
+        return difference > max(certain * self.standard_error, matters * abs(np.mean(self.values)))
 
     def __str__(self) -> str:
         unit = self.unit

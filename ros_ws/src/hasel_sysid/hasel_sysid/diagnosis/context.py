@@ -12,13 +12,8 @@ from hasel_sysid.diagnosis.trial import Trial
 from hasel_sysid.estimation.bounds import further_without_bounds
 from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.noise import NoiseModel
+from hasel_sysid.policy import POLICY
 from hasel_sysid.projection import orthonormal
-
-SIGNIFICANT = 0.01
-"""Chance that noise alone looks like this below which something is missing."""
-_LEAST_EXCESS = 0.05
-_DOUBT = 2.0
-"""Standard errors by which a value may seem to lie beyond its range, and lie at its end."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +47,7 @@ class Context:
     @property
     def excess(self) -> float:
         """Sum of squares above the noise; never less than what the noise's own uncertainty could hide."""
-        return max(self.base - self.floor, _LEAST_EXCESS * self.floor)
+        return max(self.base - self.floor, POLICY.noise_known * self.floor)
 
     def removed(self, effect: str) -> float:
         """Share of the squares above the noise that an effect removes, 0 to 1: to compare effects, not to tell."""
@@ -102,7 +97,7 @@ def on_edge(effect: str, fit: FitResult) -> list[str]:
 
 def _surely_beyond(fit: FitResult, name: str) -> bool:
     error = fit.model.parameters[name].standard_error or 0.0
-    return abs(further_without_bounds(fit.evaluation, name)) > _DOUBT * error
+    return abs(further_without_bounds(fit.evaluation, name)) > POLICY.doubt * error
 
 
 def expected_squares(fitted: np.ndarray, noise: NoiseModel, runs: np.ndarray) -> float:

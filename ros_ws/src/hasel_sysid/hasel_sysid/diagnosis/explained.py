@@ -4,14 +4,7 @@ from enum import Enum
 
 import numpy as np
 
-EXPLAINED = 0.9
-"""Share of the error above the noise that effects must remove to be an explanation."""
-PARTLY = 0.6
-"""Share that they must remove to be part of one."""
-NOISE = 1.05
-"""A mean error up to this many times the noise's is noise."""
-NEAR_NOISE = 1.25
-"""Correlated noise of nine runs is known to 8 %: a mean error within three times that of the noise's is near it."""
+from hasel_sysid.policy import POLICY
 
 
 def share_left(before: float, after: float, noise: float) -> float:
@@ -19,7 +12,7 @@ def share_left(before: float, after: float, noise: float) -> float:
 
     Of the mean |Δ sin θ|, not of its square, which would call a law of the wrong shape an explanation.
     """
-    floor = NOISE * noise
+    floor = (1 + POLICY.noise_known) * noise
     return float(np.clip((after - floor) / max(before - floor, 1e-12), 0.0, 1.0))
 
 
@@ -38,6 +31,6 @@ def status_with(left: float, describes: bool, nothing_else: bool = False) -> Sta
     describes: whether the model with them describes its runs to the noise, without which nothing is explained;
     nothing_else: whether what they leave looks like noise.
     """
-    if describes and (nothing_else or left <= 1 - EXPLAINED):
+    if describes and (nothing_else or left <= POLICY.matters):
         return Status.EXPLAINED
-    return Status.PARTLY_EXPLAINED if left <= 1 - PARTLY else Status.UNEXPLAINED
+    return Status.PARTLY_EXPLAINED if left <= 1 - POLICY.part else Status.UNEXPLAINED

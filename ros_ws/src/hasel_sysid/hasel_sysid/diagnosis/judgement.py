@@ -11,10 +11,9 @@ from hasel_sysid.diagnosis.result import Diagnosis, Finding, Verdict
 from hasel_sysid.diagnosis.signature import Signature
 from hasel_sysid.diagnosis.suspects import numerical_suspects
 from hasel_sysid.estimation.refinement import with_numerical_error
+from hasel_sysid.policy import POLICY
 from hasel_sysid.projection import orthonormal
 
-_MATTERS = 0.4
-"""An effect that removes less than this share of the error above the noise is not what is missing."""
 RULED_OUT = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
 _DETECTION = 3.3
 """Standard errors at which an effect is seen with 95 % certainty at a 5 % false-alarm rate."""
@@ -106,7 +105,7 @@ def _verdict(context: Context, effect, seen: Signature, removed: float) -> tuple
     size, error = left.score(residual, context.noise, runs)
     _, alone = seen.score(context.fit.evaluation.residual, context.noise, runs)
     limit = _DETECTION * alone * abs(seen.size)
-    if effect.id == context.winner and removed >= _MATTERS:
+    if effect.id == context.winner and removed >= POLICY.accused:
         return Verdict.MISSING, limit
     first = _size(effect)
     widest = max(abs(first.lower - first.null), abs(first.upper - first.null))

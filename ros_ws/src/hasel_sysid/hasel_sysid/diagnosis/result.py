@@ -12,6 +12,7 @@ from hasel_sysid.diagnosis.context import Context
 from hasel_sysid.diagnosis.signature import Signature
 from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.noise import NoiseModel
+from hasel_sysid.policy import POLICY
 
 
 class Verdict(str, Enum):
@@ -95,7 +96,7 @@ class Finding:
         limit = f"{self.visible_above:.2g}{unit}"
         if self.verdict is Verdict.ABSENT:
             seen = f"{self.effect} is absent: above {limit} it would have been seen"
-            if self.winner is None or self.error_removed < _WORTH_SAYING:
+            if self.winner is None or self.error_removed < POLICY.matters:
                 return f"{seen}."
             alone = f"without {self.winner} it would imitate {self.error_removed:.0%} of what that explains"
             return f"{seen} beside {self.winner}; {alone}."
@@ -103,15 +104,12 @@ class Finding:
             if not math.isfinite(self.visible_above):
                 return f"{self.effect} is undecided: it could not be simulated on these recordings."
             return f"{self.effect} is undecided: these recordings would show it only above {limit}."
-        if self.swallowed > _WORTH_SAYING:
+        if self.swallowed > POLICY.matters:
             imitated = f"the fitted parameters imitate {self.swallowed:.0%} of it, and of what is left "
         else:
             imitated = ""
         return f"{self.effect} cannot be seen: {imitated}{self._no_size_shows(unit)}."
 
-
-_WORTH_SAYING = 0.1
-"""Shares below this say nothing about an effect that is not there."""
 
 _NEEDS_A_MODEL = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
 

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.diagnosis.adequacy import Misfit
-from hasel_sysid.diagnosis.context import SIGNIFICANT
-from hasel_sysid.diagnosis.explained import NEAR_NOISE, Status, share_left, status_with
+from hasel_sysid.diagnosis.explained import Status, share_left, status_with
 from hasel_sysid.estimation import FitResult
 from hasel_sysid.improvement.result import Improvement, Stage
+from hasel_sysid.policy import POLICY
 
 
 def last_diagnosis(stages: Sequence[Stage]) -> Diagnosis:
@@ -23,7 +23,7 @@ def left_over(stages: Sequence[Stage]) -> float:
 
 def near_noise(fit: FitResult, found: Diagnosis) -> bool:
     """Whether what a fit leaves is as small as the noise, as far as that is known."""
-    return fit.mean_absolute_error <= NEAR_NOISE * found.noise.mean_absolute
+    return fit.mean_absolute_error <= POLICY.near_noise * found.noise.mean_absolute
 
 
 def conclude(
@@ -44,9 +44,9 @@ def conclude(
     unexplained = left_over(stages)
     added = stages[-1].effects
     describes = near_noise(stages[-1].fit, last) and not misfits
-    nothing_left = negligible or (rest is not None and rest.p_value >= SIGNIFICANT)
+    nothing_left = negligible or (rest is not None and rest.p_value >= POLICY.level)
     if not added:
-        missing_nothing = describes and (negligible or first.p_value >= SIGNIFICANT)
+        missing_nothing = describes and (negligible or first.p_value >= POLICY.level)
         status = Status.NOTHING_MISSING if missing_nothing else Status.UNEXPLAINED
         unexplained = 0.0 if missing_nothing else unexplained
     else:

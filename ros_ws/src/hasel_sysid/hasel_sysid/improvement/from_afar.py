@@ -54,7 +54,7 @@ def _handed_on(found: Searched, chosen: EffectSet, policy: Policy) -> list[Model
     wanted = [chosen]
     lasting = worth_most(found)
     for size in range(1, policy.most_effects + 1):
-        wanted += [one for one in lasting if len(one) == size][: policy.fits]
+        wanted += [one for one in lasting if len(one) == size][: policy.effort.fits]
     return [found.known[one].fit.model for one in dict.fromkeys(wanted) if one]
 
 

@@ -9,10 +9,10 @@ from hasel_sim.parallel import executor
 
 from hasel_sysid.dataset import for_model, prepared, usable
 from hasel_sysid.diagnosis import Diagnosis, Verdict
-from hasel_sysid.diagnosis.context import SIGNIFICANT
 from hasel_sysid.diagnosis.explained import Status, status_with
 from hasel_sysid.estimation import FitResult, fit_from_afar, identify
 from hasel_sysid.estimation.least_squares import Progress
+from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.diagnose import diagnose
 
@@ -58,7 +58,7 @@ def diagnose_recordings(
 def status(diagnosis: Diagnosis) -> str:
     """What a diagnosis comes to, before any effect is added: one of the words of the Diagnosis message."""
     describes = diagnosis.adequacy is not None and diagnosis.adequacy.adequate
-    if diagnosis.p_value >= SIGNIFICANT:
+    if diagnosis.p_value >= POLICY.level:
         return (Status.NOTHING_MISSING if describes else Status.UNEXPLAINED).value
     missing = any(finding.verdict is Verdict.MISSING for finding in diagnosis.findings)
     left = 1.0 - diagnosis.explained

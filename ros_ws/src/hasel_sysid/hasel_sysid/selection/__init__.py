@@ -6,8 +6,8 @@ what was chosen), `worth` (what runs left out say of a set), `choice` (where to 
 None of these knows a simulator; `simulated_sets` joins them to one.
 """
 
+from hasel_sysid.policy import POLICY, Policy
 from hasel_sysid.selection.choice import Choice, choose
-from hasel_sysid.selection.policy import POLICY, Policy
 from hasel_sysid.selection.search import search
 from hasel_sysid.selection.searched import Searched
 from hasel_sysid.selection.sets import FittedSet, Prospect, Sets

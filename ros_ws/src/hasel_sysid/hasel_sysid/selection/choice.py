@@ -8,7 +8,7 @@ from itertools import takewhile
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from hasel_sysid.selection.policy import Policy
+from hasel_sysid.policy import Policy
 from hasel_sysid.selection.searched import Searched, likeness, plausible
 from hasel_sysid.selection.sets import NOTHING, EffectSet
 from hasel_sysid.selection.squares import log_squares, squares_judge, surely_larger

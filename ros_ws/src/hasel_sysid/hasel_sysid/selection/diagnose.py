@@ -8,9 +8,9 @@ from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.diagnosis.candidates import candidate_effects
 from hasel_sysid.estimation import FitResult, in_step, is_close
 from hasel_sysid.estimation.refinement import changes_by_refinement
+from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.choice import choose
-from hasel_sysid.selection.policy import POLICY
 from hasel_sysid.selection.search import Progress, search
 from hasel_sysid.selection.simulated_sets import SimulatedSets
 from hasel_sysid.selection.verdicts import diagnosis

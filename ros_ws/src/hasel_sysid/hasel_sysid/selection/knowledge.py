@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from hasel_sysid.policy import Policy
 from hasel_sysid.projection import drops, orthonormal
 from hasel_sysid.selection.likelihood import Likelihood
 from hasel_sysid.selection.missing import Missing, missing
-from hasel_sysid.selection.policy import Policy
 from hasel_sysid.selection.searched import Searched, plausible
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect, Sets
 from hasel_sysid.selection.worth import worth
@@ -89,7 +89,7 @@ class Knowledge:
         """Whether it looks like a good part of what a larger set must take away."""
         fitted = self.known[beside]
         most = drops(self.looks(beside)[effect], orthonormal(fitted.jacobian), fitted.residual)
-        return float(most) > self.policy.hope * self.policy.matters * fitted.squares
+        return float(most) > self.policy.effort.hope * self.policy.matters * fitted.squares
 
     def value(self, effects: EffectSet) -> float:
         """Of a known set: likelier by what noise alone may gain, for every effect more."""

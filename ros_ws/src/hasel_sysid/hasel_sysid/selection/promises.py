@@ -43,7 +43,7 @@ class Promises(Knowledge):
                 continue
             reached = max(map(self.value, plausible(self.known))) - self.reach
             promise = self.promised(proposal) - self.threshold * len(proposal.effects)
-            if answers >= self.policy.width and promise < reached:
+            if answers >= self.policy.effort.width and promise < reached:
                 return
             yield proposal
             answers += proposal.effects in plausible(self.known)
@@ -80,7 +80,7 @@ class Promises(Knowledge):
         before, whole = proposal.of.squares, proposal.whole
         promised = before - float(whole.least_residual @ whole.least_residual)
         kept = before - self.known[proposal.effects].squares if proposal.effects in self.known else 0.0
-        return promised > self.policy.matters * before and kept < self.policy.hope * promised
+        return promised > self.policy.matters * before and kept < self.policy.effort.hope * promised
 
     def likeness(self, one: str, other: str) -> float:
         """Of two effects, beside the set that leaves least of those that both were tried beside."""
@@ -97,4 +97,4 @@ class Promises(Knowledge):
             return True
         without = self.whitened[rest].logarithm
         given = self.whitened[chosen].logarithm - without
-        return self.promised(proposal) - without > self.policy.hope * given
+        return self.promised(proposal) - without > self.policy.effort.hope * given

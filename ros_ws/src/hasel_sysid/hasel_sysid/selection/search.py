@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
+from hasel_sysid.policy import Policy
 from hasel_sysid.selection.choice import all_alike, choose, smallest
 from hasel_sysid.selection.full_fits import Progress
-from hasel_sysid.selection.policy import Policy
 from hasel_sysid.selection.proposals import Proposal, additions, exchanges, pairs, smaller
 from hasel_sysid.selection.searched import Searched, lasting, plausible, worth_most
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Sets, name_of
@@ -38,8 +38,8 @@ def search(
         if not more and not state.looked_closer(found.best):
             break
     found = state.shrunk(found)
-    state.fit(state.rivals(found, smallest(found, policy)), policy.fits)
-    state.fit(state.until_a_law(), policy.fits)
+    state.fit(state.rivals(found, smallest(found, policy)), policy.effort.fits)
+    state.fit(state.until_a_law(), policy.effort.fits)
     state.deepen(state.chosen())
     if stand_ins:
         state.exchange(state.chosen())
@@ -59,19 +59,19 @@ class _Search(StandIns):
 
     def extended(self) -> bool:
         """Whether anything promised more than the best set and was fitted."""
-        if self.fit(self.while_promising(self.better(self.additions([NOTHING]))), self.policy.fits):
+        if self.fit(self.while_promising(self.better(self.additions([NOTHING]))), self.policy.effort.fits):
             return True
-        self.fit(self.singles(), self.policy.fits - sum(map(bool, plausible(self.known))))
+        self.fit(self.singles(), self.policy.effort.fits - sum(map(bool, plausible(self.known))))
         beam = self.beam()
         for one in beam:
             self.look_beyond_if_anything_is_missing(one)
-        return self.fit(self.while_promising(self.better(self.around(beam))), self.policy.fits) > 0
+        return self.fit(self.while_promising(self.better(self.around(beam))), self.policy.effort.fits) > 0
 
     def beam(self) -> list[EffectSet]:
         """The best sets, and the likeliest one where its values are out of range: it is no answer itself, but an
         effect beside it or in its place may be.
         """
-        best = lasting(plausible(self.known), self.value)[: self.policy.width]
+        best = lasting(plausible(self.known), self.value)[: self.policy.effort.width]
         likeliest = max(self.known, key=self.value)
         return best if likeliest in best else [likeliest, *best]
 
@@ -91,7 +91,7 @@ class _Search(StandIns):
         """Learn what one more effect could do to a set."""
         self.say(f"looking beyond {name_of(effects)}", 0.1 * min(len(self.known), 5))
         self.prospects[effects] = self.sets.prospects(
-            self.known[effects], wanted, self.likelihood.promised, self.policy.trials
+            self.known[effects], wanted, self.likelihood.promised, self.policy.effort.trials
         )
 
     def look_beyond_if_anything_is_missing(self, effects: EffectSet) -> None:
@@ -102,7 +102,9 @@ class _Search(StandIns):
         if effects in self.prospects or len(effects) >= self.policy.most_effects or self.sets.out_of_time():
             return
         test = self.tested(effects)
-        promising = sorted(test.gains, key=lambda effect: -test.gains[effect])[: 2 * self.policy.trials]
+        promising = sorted(test.gains, key=lambda effect: -test.gains[effect])[
+            : 2 * self.policy.effort.trials
+        ]
         wanted = [e for e in promising if test.gains[e] > test.threshold and self.could_matter(e, effects)]
         self.look_beyond(effects, list(dict.fromkeys([*wanted, *self.sets.at_null])))
 
@@ -119,7 +121,9 @@ class _Search(StandIns):
         yield from self.additions(beam)
         yield from exchanges(self.known, self.prospects, beam)
         base = self.prospects[NOTHING]
-        hopeful = sorted(base.values(), key=self.likelihood.promised, reverse=True)[: self.policy.trials]
+        hopeful = sorted(base.values(), key=self.likelihood.promised, reverse=True)[
+            : self.policy.effort.trials
+        ]
         yield from pairs(self.known[NOTHING], hopeful)
 
     def shrunk(self, found: Searched) -> Searched:

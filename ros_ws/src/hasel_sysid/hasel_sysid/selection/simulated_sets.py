@@ -14,12 +14,12 @@ from hasel_sysid.estimation import FitResult, fit_least_squares, is_close
 from hasel_sysid.estimation.least_squares import finished, fitted_result
 from hasel_sysid.estimation.second_start import better_from
 from hasel_sysid.noise import NoiseModel
+from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.first_trials import first_trials, sized_starts
 from hasel_sysid.selection.known_set import known_set
 from hasel_sysid.selection.noise_bound import bounded_noise
 from hasel_sysid.selection.other_valleys import deepest
-from hasel_sysid.selection.policy import POLICY
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect
 from hasel_sysid.selection.trial_prospects import (
     Rank,
@@ -28,9 +28,6 @@ from hasel_sysid.selection.trial_prospects import (
     looks_of,
     prospect_of,
 )
-
-_BRIEF = 25
-"""Evaluations that a full fit is given."""
 
 
 class SimulatedSets:
@@ -113,7 +110,7 @@ class SimulatedSets:
             if not best or not keep or self.out_of_time():
                 break
             most_hope = max(prospect.start.promised for prospect in best)
-            going_on = [p for p in best[:keep] if p.start.promised >= POLICY.hope * most_hope]
+            going_on = [p for p in best[:keep] if p.start.promised >= POLICY.effort.hope * most_hope]
             moved = [prospect_of(t, looks, of.effects) for t in trials.further([p.start for p in going_on])]
             best = best_of_each([*moved, *(p for p in best if p not in going_on)], rank)
         return {prospect.effect: prospect for prospect in best}
@@ -154,7 +151,12 @@ class SimulatedSets:
 
     def _fitted(self, model: Model) -> FitResult:
         return fit_least_squares(
-            self.problem, model, tolerance=1e-3, most_evaluations=_BRIEF, drafts=False, roughly=True
+            self.problem,
+            model,
+            tolerance=1e-3,
+            most_evaluations=POLICY.effort.evaluations,
+            drafts=False,
+            roughly=True,
         )
 
     def _as_given(self, fit: FitResult) -> dict[str, float]:
@@ -168,7 +170,7 @@ class SimulatedSets:
 
     def deepest(self, of: FittedSet) -> FittedSet:
         """The same, or its fit in a deeper valley that begins elsewhere on the body."""
-        fit = deepest(self.problem, of.fit, of.effects, _BRIEF)
+        fit = deepest(self.problem, of.fit, of.effects, POLICY.effort.evaluations)
         return of if fit is of.fit else self.known_as(fit)
 
     def without(self, of: FittedSet, gone: str) -> FittedSet | None:

@@ -49,7 +49,9 @@ class StandIns(FullFits):
         """
         self.say(f"looking for what may stand in the place of {gone}", 0.9)
         others = [e for e in self.prospects[NOTHING] if e not in chosen]
-        most_alike = sorted(others, key=partial(self.likeness, gone), reverse=True)[: self.policy.trials]
+        most_alike = sorted(others, key=partial(self.likeness, gone), reverse=True)[
+            : self.policy.effort.trials
+        ]
         sized = [e for e in others if self.acts_alone(e)]
         wanted = [e for e in dict.fromkeys([*most_alike, *sized]) if chosen - {gone} | {e} not in self.tried]
         alone = {e: self.known[frozenset({e})] for e in wanted if e in sized}
@@ -60,6 +62,10 @@ class StandIns(FullFits):
         found: list[Proposal] = []
         for rest, effects in places:
             if rest is not None and not self.sets.out_of_time():
-                seen = self.sets.prospects(rest, effects, self.likelihood.promised, self.policy.trials, alone)
+                seen = self.sets.prospects(
+                    rest, effects, self.likelihood.promised, self.policy.effort.trials, alone
+                )
                 found += [Proposal(rest, (prospect,)) for prospect in seen.values()]
-        return [p for p in self.ranked(found) if self.may_stand_in(p, gone, chosen)][: self.policy.fits]
+        return [p for p in self.ranked(found) if self.may_stand_in(p, gone, chosen)][
+            : self.policy.effort.fits
+        ]

@@ -12,8 +12,8 @@ from hasel_sysid.diagnosis.judgement import RULED_OUT, as_diagnosis, finding
 from hasel_sysid.diagnosis.reached import squares_reached
 from hasel_sysid.diagnosis.signature import signature
 from hasel_sysid.noise import NoiseModel, allowed_noise
+from hasel_sysid.policy import POLICY
 from hasel_sysid.selection.choice import Choice
-from hasel_sysid.selection.policy import POLICY
 from hasel_sysid.selection.searched import Searched
 from hasel_sysid.selection.sets import NOTHING
 from hasel_sysid.selection.simulated_sets import SimulatedSets
