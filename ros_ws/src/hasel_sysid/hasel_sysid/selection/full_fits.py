@@ -1,6 +1,6 @@
 """Fits of proposals in full, once more where they were lost on their way."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from hasel_sysid.selection.promises import Promises
@@ -14,6 +14,11 @@ _AS_GOOD = 1.001
 """A fit that ends with so many times the squares of a smaller set's has lost nothing: ten times its tolerance."""
 
 
+def never(proposal: Proposal, answers: int) -> bool:
+    """Do not leave a proposal, however many answers there are."""
+    return False
+
+
 @dataclass
 class FullFits(Promises):
     """progress: told what is being done, and the share that is done."""
@@ -25,23 +30,49 @@ class FullFits(Promises):
         if self.progress:
             self.progress(text, done)
 
-    def fit(self, proposals: Iterable[Proposal], most: int, even_late: bool = False) -> int:
-        """Fit the first of these in full, until so many are possible answers, at most twice as many; how many were."""
+    def fit(
+        self,
+        proposals: Sequence[Proposal],
+        most: int,
+        even_late: bool = False,
+        enough: Callable[[Proposal, int], bool] = never,
+        then: Sequence[Proposal] = (),
+    ) -> int:
+        """Fit the first of these in full, until so many are possible answers, at most twice as many; how many were.
+
+        enough: whether a proposal is left with those behind it, after so many answers; then: what is likely to be asked
+        for afterwards.
+        """
         count = answers = 0
-        for proposal in proposals:
-            enough = answers >= most or count >= 2 * most
-            if enough or (self.sets.out_of_time() and not even_late):
+        for number, proposal in enumerate(proposals):
+            if answers >= most or count >= 2 * most or (self.sets.out_of_time() and not even_late):
                 break
             if proposal.effects in self.tried:
                 continue
+            if enough(proposal, answers):
+                break
             self.tried.add(proposal.effects)
+            left = min(most - answers, 2 * most - count) - 1
+            likely = self.untried(proposals[number + 1 :])[:left]
+            self.foresee([p for p in likely if not enough(p, answers + 1)] + self.untried(then))
             self.say(f"fitting {name_of(proposal.effects)}", min(0.9, 0.1 * len(self.tried)))
             self.keep(self.sets.fit(proposal.effects, proposal.of, proposal.added))
             self.keep(self._again(proposal))
             self.keep(self._from_other_sizes(proposal))
             count += 1
             answers += proposal.effects in plausible(self.known)
+        self.foresee(self.untried(then))
         return count
+
+    def untried(self, proposals: Sequence[Proposal]) -> list[Proposal]:
+        """The first of these for every set that was not fitted yet."""
+        first = {p.effects: p for p in reversed(proposals) if p.effects not in self.tried}
+        return [p for p in proposals if first.get(p.effects) is p]
+
+    def foresee(self, likely: Sequence[Proposal]) -> None:
+        """Tell what may be fitted next."""
+        late = self.sets.out_of_time()
+        self.sets.foresee([] if late else [(p.effects, p.of, p.added) for p in likely])
 
     def _again(self, proposal: Proposal) -> FittedSet | None:
         """From its best smaller set, where it ended with larger squares than that one: then it was lost on its way.

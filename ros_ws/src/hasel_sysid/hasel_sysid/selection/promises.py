@@ -35,18 +35,12 @@ class Promises(Knowledge):
         more = [p for p in ranked if len(p.effects) <= len(best) or self.matters(p, best)]
         return [p for p in more if p.dropped or self.matters(p, p.of.effects)]
 
-    def while_promising(self, ranked: Iterable[Proposal]) -> Iterator[Proposal]:
-        """A beam's width of possible answers, and as many more as promise no less than what was reached meanwhile."""
-        answers = 0
-        for proposal in ranked:
-            if proposal.effects in self.tried:
-                continue
-            reached = max(map(self.value, plausible(self.known))) - self.reach
-            promise = self.promised(proposal) - self.threshold * len(proposal.effects)
-            if answers >= self.policy.effort.width and promise < reached:
-                return
-            yield proposal
-            answers += proposal.effects in plausible(self.known)
+    def promises_less(self, proposal: Proposal, answers: int) -> bool:
+        """Whether it promises less than what was reached, with as many possible answers as a beam is wide."""
+        if answers < self.policy.effort.width:
+            return False
+        reached = max(map(self.value, plausible(self.known))) - self.reach
+        return self.promised(proposal) - self.threshold * len(proposal.effects) < reached
 
     def matters(self, proposal: Proposal, best: EffectSet) -> bool:
         """Whether it promises to take away what a larger set must."""

@@ -39,7 +39,7 @@ def search(
             break
     found = state.shrunk(found)
     state.fit(state.rivals(found, smallest(found, policy)), policy.effort.fits)
-    state.fit(state.until_a_law(), policy.effort.fits)
+    state.look_for_a_law()
     state.deepen(state.chosen())
     if stand_ins:
         state.exchange(state.chosen())
@@ -59,13 +59,16 @@ class _Search(StandIns):
 
     def extended(self) -> bool:
         """Whether anything promised more than the best set and was fitted."""
-        if self.fit(self.while_promising(self.better(self.additions([NOTHING]))), self.policy.effort.fits):
+        if self.fit(
+            self.better(self.additions([NOTHING])), self.policy.effort.fits, enough=self.promises_less
+        ):
             return True
         self.fit(self.singles(), self.policy.effort.fits - sum(map(bool, plausible(self.known))))
         beam = self.beam()
         for one in beam:
             self.look_beyond_if_anything_is_missing(one)
-        return self.fit(self.while_promising(self.better(self.around(beam))), self.policy.effort.fits) > 0
+        around = self.better(self.around(beam))
+        return self.fit(around, self.policy.effort.fits, enough=self.promises_less) > 0
 
     def beam(self) -> list[EffectSet]:
         """The best sets, and the likeliest one where its values are out of range: it is no answer itself, but an
@@ -129,7 +132,7 @@ class _Search(StandIns):
     def shrunk(self, found: Searched) -> Searched:
         """With every part of the smallest set fitted that lacks one effect, until no smaller one does."""
         while self.fit(
-            self.possible(smaller(found.known, smallest(found, self.policy))), self.policy.most_effects
+            list(self.possible(smaller(found.known, smallest(found, self.policy)))), self.policy.most_effects
         ):
             found = self.judged()
         return found
@@ -140,8 +143,8 @@ class _Search(StandIns):
         parts = [part for gone in chosen if (part := chosen - {gone}) in self.known]
         return self.ranked(self.additions(parts), reach)
 
-    def until_a_law(self) -> Iterator[Proposal]:
-        """What promises most beside the best law, as long as nothing that may stand in the chosen set's place is one.
+    def look_for_a_law(self) -> None:
+        """Fit what promises most beside the best law, until something that may stand in the chosen set's place is one.
 
         That promise may be small: what stood in for an effect by no law has drawn every other value to itself.
         """
@@ -154,12 +157,8 @@ class _Search(StandIns):
         if law not in self.closely:
             self.closely.add(law)
             self.look_beyond(law, None)
-        for proposal in self.ranked(self.additions([law])):
-            if not self.matters(proposal, law):
-                continue
-            yield proposal
-            if self.may_be_a_law(chosen):
-                return
+        beside = [p for p in self.ranked(self.additions([law])) if self.matters(p, law)]
+        self.fit(beside, self.policy.effort.fits, enough=lambda *_: self.may_be_a_law(chosen))
 
     def may_be_a_law(self, chosen: EffectSet) -> bool:
         """Whether a set is a law, or one that may stand in its place."""

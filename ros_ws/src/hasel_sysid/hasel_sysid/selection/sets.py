@@ -89,6 +89,10 @@ def together(of: FittedSet, added: Sequence[Prospect], dropped: Collection[str])
     )
 
 
+Wanted = tuple[EffectSet, FittedSet, Sequence[Prospect]]
+"""A fit that may be asked for."""
+
+
 class Sets(Protocol):
     """Sets of effects that can be looked at and fitted."""
 
@@ -130,7 +134,10 @@ class Sets(Protocol):
     def compatible(self, effects: EffectSet) -> bool:
         """Whether these effects can be in one model."""
 
-    def fit(self, effects: EffectSet, near: FittedSet, added: Collection[Prospect]) -> FittedSet | None:
+    def foresee(self, likely: Sequence["Wanted"]) -> None:
+        """Told which fits are likely to be asked for next, the likeliest first; they may be begun."""
+
+    def fit(self, effects: EffectSet, near: FittedSet, added: Sequence[Prospect]) -> FittedSet | None:
         """Fitted in full, from where the prospects of what is new point to; None where that cannot be simulated."""
 
     def deepest(self, of: FittedSet) -> FittedSet:

@@ -1,7 +1,8 @@
 """Sets of effects of the simulator: drafts for a first look, full fits for what is compared."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Hashable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from hasel_sim.effects.base import Effect
@@ -17,10 +18,11 @@ from hasel_sysid.noise import NoiseModel
 from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.first_trials import first_trials, sized_starts
+from hasel_sysid.selection.fits_ahead import FitsAhead
 from hasel_sysid.selection.known_set import known_set
 from hasel_sysid.selection.noise_bound import bounded_noise
 from hasel_sysid.selection.other_valleys import deepest
-from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect
+from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect, Wanted
 from hasel_sysid.selection.trial_prospects import (
     Rank,
     best_of_each,
@@ -54,6 +56,7 @@ class SimulatedSets:
         self.tried: set[str] = set()
         self.first: list[Trial] = []
         self.trials: Trials | None = None
+        self._fits: FitsAhead[FittedSet | None] = FitsAhead(problem)
 
     def baseline(self) -> FittedSet:
         """The model as it was fitted."""
@@ -128,8 +131,17 @@ class SimulatedSets:
         at_null = [self.null_starts[name] for name in names if name in self.null_starts]
         return [*known, *resized, *(start for start in at_null if start.values not in there)]
 
-    def fit(self, effects: EffectSet, near: FittedSet, added: Collection[Prospect]) -> FittedSet | None:
+    def foresee(self, likely: Sequence[Wanted]) -> None:
+        """Begin these fits where processes would wait for work."""
+        self._fits.foresee({_key(*wanted): partial(self._fit, *wanted) for wanted in likely})
+
+    def fit(self, effects: EffectSet, near: FittedSet, added: Sequence[Prospect]) -> FittedSet | None:
         """Least squares of the model itself, from where the drafts have led."""
+        return self._fits.done(_key(effects, near, added), partial(self._fit, effects, near, added))
+
+    def _fit(
+        self, effects: EffectSet, near: FittedSet, added: Sequence[Prospect], problem: Problem
+    ) -> FittedSet | None:
         base: FitResult = near.fit
         values = dict(base.model.values)
         for prospect in added:
@@ -143,21 +155,11 @@ class SimulatedSets:
         try:
             model = self._model(near.fit.model, effects, near.effects).with_values({})
             start = {name: _inside(model, name, values[name]) for name in model.free if name in values}
-            found = self._fitted(model.with_values(start))
-            found = better_from(found, self._as_given(found), self._fitted)
+            found = _fitted(problem, model.with_values(start))
+            found = better_from(found, self._as_given(found), partial(_fitted, problem))
         except (HaselSimError, ModelError):
             return None
         return self.known_as(found)
-
-    def _fitted(self, model: Model) -> FitResult:
-        return fit_least_squares(
-            self.problem,
-            model,
-            tolerance=1e-3,
-            most_evaluations=POLICY.effort.evaluations,
-            drafts=False,
-            roughly=True,
-        )
 
     def _as_given(self, fit: FitResult) -> dict[str, float]:
         """Values before any fit, where a fit that began far off has not come close, or of what nothing shows there: an
@@ -197,3 +199,19 @@ class SimulatedSets:
 def _inside(model: Model, name: str, value: float) -> float:
     p = model.parameters[name]
     return float(np.clip(value, p.lower, p.upper))
+
+
+def _fitted(problem: Problem, model: Model) -> FitResult:
+    return fit_least_squares(
+        problem,
+        model,
+        tolerance=1e-3,
+        most_evaluations=POLICY.effort.evaluations,
+        drafts=False,
+        roughly=True,
+    )
+
+
+def _key(effects: EffectSet, near: FittedSet, added: Sequence[Prospect]) -> Hashable:
+    """What tells two fits apart: sets and prospects are the same only as the same objects."""
+    return effects, near, tuple(added)

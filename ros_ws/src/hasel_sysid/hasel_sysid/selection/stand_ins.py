@@ -19,8 +19,9 @@ class StandIns(FullFits):
         Of what ended otherwise than it promised, the next promise says as little.
         """
         for gone in sorted(chosen) if len(chosen) > 1 else ():
-            for proposal in self.stand_ins(gone, chosen):
-                if not self.fit([proposal], 1):
+            proposals = self.stand_ins(gone, chosen)
+            for number, proposal in enumerate(proposals):
+                if not self.fit([proposal], 1, then=proposals[number + 1 :]):
                     break
                 same = proposal.effects in self.known and alike(
                     self.judged(), chosen, proposal.effects, self.policy

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from hasel_sysid.noise import NoiseModel
-from hasel_sysid.selection.sets import EffectSet, FittedSet, Prospect
+from hasel_sysid.selection.sets import EffectSet, FittedSet, Prospect, Wanted
 
 RUNS, FRAMES = 8, 80
 
@@ -32,7 +32,7 @@ def smooth_series(generator: np.random.Generator, runs: np.ndarray) -> np.ndarra
 class LinearSets:
     """measured = what two free constants do + the sizes times the series of the effects + noise.
 
-    As of `selection.sets.Sets`; `fits` counts the full fits.
+    As of `selection.sets.Sets`; `fits` counts the full fits, `asked` tells them, with what was foreseen at each.
     """
 
     at_null: Collection[str] = ()
@@ -63,6 +63,8 @@ class LinearSets:
         truth = truth + sum((size * self.series[name] for name, size in sizes.items()), start=0.0)
         self.measured = self._centred(truth[:, None] + noise.sample(self.runs, 1, generator))[:, 0]
         self.fits, self._most_fits = 0, most_fits
+        self.foreseen: list[EffectSet] = []
+        self.asked: list[tuple[EffectSet, list[EffectSet]]] = []
 
     def baseline(self) -> FittedSet:
         """Without any effect."""
@@ -88,9 +90,14 @@ class LinearSets:
         names = [name for name in (self.series if wanted is None else wanted) if name not in of.effects]
         return {name: self._prospect(of, name) for name in names}
 
+    def foresee(self, likely: Sequence[Wanted]) -> None:
+        """Keep in mind what was said to be likely."""
+        self.foreseen = [effects for effects, _, _ in likely]
+
     def fit(self, effects: EffectSet, near: FittedSet, added: Sequence[Prospect]) -> FittedSet | None:
         """Least squares."""
         self.fits += 1
+        self.asked.append((effects, self.foreseen))
         return self._fitted(effects)
 
     def from_other_sizes(self, of: FittedSet, prospect: Prospect) -> Prospect | None:

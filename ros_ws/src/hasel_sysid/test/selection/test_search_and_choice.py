@@ -1,6 +1,7 @@
 """Which set of effects is chosen, on linear problems with a known truth and no simulator."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -591,3 +592,18 @@ def test_the_best_law_is_extended_by_what_promises_little(seed):
     assert frozenset("cd") not in search(sets, POLICY, stand_ins=False).known
     found = search(sets, POLICY, stand_ins=False, lawful=lambda _, effects: effects <= frozenset("cd"))
     assert choose(found, POLICY, lambda effects: effects <= frozenset("cd")).chosen == frozenset("cd")
+
+
+def test_a_search_foresees_which_fits_it_will_ask_for():
+    """The likeliest of those that are foreseen is asked for next, and many are foreseen."""
+    foreseen = came_true = count = 0
+    for seed in range(3):
+        sets = LinearSets(made_up(seed), dict(zip("abcd", (0.3, 0.25, 0.2, 0.2), strict=True)), WHITE, seed)
+        search(sets, POLICY)
+        count += len(sets.asked) - 1
+        for (_, likely), (asked, _) in pairwise(sets.asked):
+            assert len(set(likely)) == len(likely)
+            foreseen += bool(likely)
+            came_true += likely[:1] == [asked]
+    assert foreseen >= count / 3
+    assert came_true >= 0.9 * foreseen

@@ -1,0 +1,62 @@
+"""Fits that are begun before they are asked for, where a single one would leave processes without work."""
+
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from threading import Event
+from typing import Generic, TypeVar
+
+from hasel_sim.errors import SimulationError
+from hasel_sim.model import Model
+
+from hasel_sysid.problem import Evaluation, Problem
+
+Found = TypeVar("Found")
+Fit = Callable[[Problem], Found]
+
+
+class UnaskedError(Exception):
+    """Ends a fit that nobody will ask for."""
+
+
+class Interruptible(Problem):
+    """A problem that is given up as soon as nobody wants to know any more."""
+
+    def __init__(self, of: Problem, unwanted: Event) -> None:
+        super().__init__(of.experiments, of.pool, of.measured_noise, of.time_limit)
+        self._of, self._unwanted = of, unwanted
+
+    def evaluate_each(
+        self, models: Sequence[Model], names: Sequence[Sequence[str]]
+    ) -> list[Evaluation | SimulationError]:
+        """As of the problem itself; raises UnaskedError once it is unwanted."""
+        if self._unwanted.is_set():
+            raise UnaskedError
+        return self._of.evaluate_each(models, names)
+
+
+class FitsAhead(Generic[Found]):
+    """Fits of a problem: the steps of one wait for the longest of its runs; several fill all processes."""
+
+    def __init__(self, problem: Problem) -> None:
+        self._problem = problem
+        self._most = getattr(problem.pool, "workers", 1) - 1
+        self._threads = ThreadPoolExecutor(self._most) if self._most else None
+        self._begun: dict[Hashable, tuple[Future[Found], Event]] = {}
+
+    def foresee(self, likely: Mapping[Hashable, Fit[Found]]) -> None:
+        """Begin the first of these, as many as there are further processes; what was begun otherwise is given up."""
+        if self._threads is None:
+            return
+        wanted = list(likely)[: self._most]
+        for gone in self._begun.keys() - set(wanted):
+            self._begun.pop(gone)[1].set()
+        for key in wanted:
+            if key not in self._begun:
+                unwanted = Event()
+                problem = Interruptible(self._problem, unwanted)
+                self._begun[key] = self._threads.submit(likely[key], problem), unwanted
+
+    def done(self, key: Hashable, fit: Fit[Found]) -> Found:
+        """The result of a fit: of the one that was begun, or of one that is made now."""
+        begun = self._begun.pop(key, None)
+        return fit(self._problem) if begun is None else begun[0].result()
