@@ -39,12 +39,12 @@ class FitsAhead(Generic[Found]):
 
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
-        self._most = getattr(problem.pool, "workers", 1) - 1
-        self._threads = ThreadPoolExecutor(self._most) if self._most else None
+        self._most = getattr(problem.pool, "workers", 1)
+        self._threads = ThreadPoolExecutor(self._most) if self._most > 1 else None
         self._begun: dict[Hashable, tuple[Future[Found], Event]] = {}
 
     def foresee(self, likely: Mapping[Hashable, Fit[Found]]) -> None:
-        """Begin the first of these, as many as there are further processes; what was begun otherwise is given up."""
+        """Begin the first of these, as many as there are processes, if more than one; give up what else was begun."""
         if self._threads is None:
             return
         wanted = list(likely)[: self._most]

@@ -54,7 +54,8 @@ class FullFits(Promises):
             self.tried.add(proposal.effects)
             left = min(most - answers, 2 * most - count) - 1
             likely = self.untried(proposals[number + 1 :])[:left]
-            self.foresee([p for p in likely if not enough(p, answers + 1)] + self.untried(then))
+            likely = [p for p in likely if not enough(p, answers + 1)]
+            self.foresee([proposal, *likely, *self.untried(then)])
             self.say(f"fitting {name_of(proposal.effects)}", min(0.9, 0.1 * len(self.tried)))
             self.keep(self.sets.fit(proposal.effects, proposal.of, proposal.added))
             self.keep(self._again(proposal))

@@ -135,7 +135,7 @@ class Sets(Protocol):
         """Whether these effects can be in one model."""
 
     def foresee(self, likely: Sequence["Wanted"]) -> None:
-        """Told which fits are likely to be asked for next, the likeliest first; they may be begun."""
+        """Told which fits are likely to be asked for, the likeliest first: they may be begun, and others given up."""
 
     def fit(self, effects: EffectSet, near: FittedSet, added: Sequence[Prospect]) -> FittedSet | None:
         """Fitted in full, from where the prospects of what is new point to; None where that cannot be simulated."""

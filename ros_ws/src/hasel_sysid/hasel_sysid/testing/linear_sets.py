@@ -97,7 +97,7 @@ class LinearSets:
     def fit(self, effects: EffectSet, near: FittedSet, added: Sequence[Prospect]) -> FittedSet | None:
         """Least squares."""
         self.fits += 1
-        self.asked.append((effects, self.foreseen))
+        self.asked.append((effects, [likely for likely in self.foreseen if likely != effects]))
         return self._fitted(effects)
 
     def from_other_sizes(self, of: FittedSet, prospect: Prospect) -> Prospect | None:

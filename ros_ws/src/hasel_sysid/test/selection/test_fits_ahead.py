@@ -54,9 +54,9 @@ def test_with_one_process_nothing_is_begun(problem_with):
     assert ahead.done("asked", lambda problem: "made") == "made"
 
 
-def test_as_many_are_begun_as_there_are_further_processes(problem_with):
+def test_as_many_are_begun_as_there_are_processes(problem_with):
     """The likeliest first."""
-    ahead, begun = FitsAhead(problem_with(3)), []
+    ahead, begun = FitsAhead(problem_with(2)), []
     ahead.foresee({name: lambda problem, name=name: begun.append(name) for name in "abc"})
     for name in "ab":
         ahead.done(name, lambda problem: pytest.fail("made again"))
