@@ -59,8 +59,9 @@ def improve(
     refined = cache(partial(_refined, problem))
 
     def lawful(found: Searched, effects: EffectSet) -> bool:
-        fit = refined(found.known[effects])
-        return not against_law(fit, noise_allowed(sets, found), sorted(effects))
+        known, noise, names = found.known[effects], noise_allowed(sets, found), sorted(effects)
+        # what finer numerics change makes errors wider: what speaks for a law without it does so with it
+        return not (against_law(known.fit, noise, names) and against_law(refined(known), noise, names))
 
     found = search(sets, policy, _part(progress, "search", 0.25, 0.95), begun, lawful=lawful)
     choice = choose(found, policy, partial(lawful, found))
@@ -68,9 +69,10 @@ def improve(
     stages = [_stage(with_numerical_error(fit, changes), (), validation, said)]
     if on_stage:
         on_stage(stages[0])
-    for effects_so_far in () if opposed else choice.path[1:]:
+    path = () if opposed else choice.path[1:]
+    for effects_so_far, fitted in zip(path, sets.finished([found.known[s] for s in path]), strict=True):
         order = _in_order(choice, effects_so_far)
-        fit_so_far = refined(sets.finished(found.known[effects_so_far]))
+        fit_so_far = refined(fitted)
         stages.append(_stage(fit_so_far, order, validation, None))
         if on_stage:
             on_stage(stages[-1])

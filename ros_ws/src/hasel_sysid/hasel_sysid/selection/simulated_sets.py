@@ -1,6 +1,6 @@
 """Sets of effects of the simulator: drafts for a first look, full fits for what is compared."""
 
-from collections.abc import Collection, Hashable, Mapping, Sequence
+from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -188,11 +188,16 @@ class SimulatedSets:
         model = model.without_effects(*gone) if gone else model
         return model.with_effects(*(self.effects[e].source or e for e in new)) if new else model
 
-    def finished(self, fitted: FittedSet) -> FittedSet:
-        """The same, where its fit was broken off before it had converged."""
+    def finished(self, every: Sequence[FittedSet]) -> Iterator[FittedSet]:
+        """The same, gone on with where a fit was broken off before it had converged."""
+        self._fits.foresee({one: partial(self._finished, one) for one in every})
+        for one in every:
+            yield self._fits.done(one, partial(self._finished, one))
+
+    def _finished(self, fitted: FittedSet, problem: Problem) -> FittedSet:
         if fitted.fit.converged or self.out_of_time():
             return fitted
-        fit = finished(self.problem, fitted.fit, tolerance=1e-3)
+        fit = finished(problem, fitted.fit, tolerance=1e-3)
         return replace(self.known_as(fit), effects=fitted.effects)
 
 
