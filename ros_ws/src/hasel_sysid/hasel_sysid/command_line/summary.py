@@ -23,7 +23,7 @@ def improvement_lines(
     lines = [_headline(found), *_values(found, comparisons[-1])]
     lines += _errors(comparisons[0], comparisons[-1], found.noise_floor)
     lines += _doubt(found.diagnosis, found.missing)
-    lines += [found.reason, *found.contradictions]
+    lines += [found.reason, *found.contradictions, *found.open_values]
     if found.adequacy is not None and not found.adequacy.adequate:
         lines.append(str(found.adequacy))
     if suggestions:

@@ -6,6 +6,7 @@ from hasel_sysid.diagnosis import Diagnosis, Finding
 from hasel_sysid.diagnosis.adequacy import Adequacy
 from hasel_sysid.diagnosis.explained import Status
 from hasel_sysid.estimation import FitResult
+from hasel_sysid.improvement.open_values import open_values
 from hasel_sysid.noise import NoiseModel
 
 
@@ -60,6 +61,11 @@ class Improvement:
         return self.stages[-1].fit.model
 
     @property
+    def open_values(self) -> tuple[str, ...]:
+        """Of what was found missing the values that are not known, in sentences."""
+        return open_values(self.model, self.missing)
+
+    @property
     def diagnosis(self) -> Diagnosis:
         """The first diagnosis, on the baseline."""
         return self.stages[0].diagnosis
@@ -84,6 +90,7 @@ class Improvement:
                 "explainable_at_all": self.diagnosis.ceiling,
                 "reason": self.reason,
                 "contradictions": list(self.contradictions),
+                "open_values": list(self.open_values),
                 "refused": list(self.refused),
                 "not_tried": self.not_tried,
                 "adequate": self.adequacy is not None and self.adequacy.adequate,
@@ -93,7 +100,9 @@ class Improvement:
 
     def __str__(self) -> str:
         judged = [] if self.adequacy is None or self.adequacy.adequate else [str(self.adequacy)]
-        return "\n".join([*map(str, self.stages), self.reason, *self.contradictions, *judged])
+        return "\n".join(
+            [*map(str, self.stages), self.reason, *self.contradictions, *self.open_values, *judged]
+        )
 
 
 def diagnosis_json(diagnosis: Diagnosis) -> dict:

@@ -86,7 +86,7 @@ def _title(improvement: Improvement) -> str:
 
 def _verdict(improvement: Improvement) -> str:
     said = [said_of(effect, improvement) for effect in improvement.missing[:1]]
-    return " ".join([*said, improvement.reason, *improvement.contradictions])
+    return " ".join([*said, improvement.reason, *improvement.contradictions, *improvement.open_values])
 
 
 def said_of(effect: str, improvement: Improvement) -> str:
