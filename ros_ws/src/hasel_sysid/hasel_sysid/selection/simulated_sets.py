@@ -1,27 +1,24 @@
 """Sets of effects of the simulator: drafts for a first look, full fits for what is compared."""
 
-from collections.abc import Collection, Hashable, Iterator, Mapping, Sequence
-from dataclasses import replace
-from functools import partial
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 import numpy as np
 from hasel_sim.effects.base import Effect
-from hasel_sim.errors import HaselSimError, ModelError
+from hasel_sim.errors import HaselSimError
 from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis.candidates import Start, starts, valued
 from hasel_sysid.diagnosis.trial import Trial, Trials
-from hasel_sysid.estimation import FitResult, fit_least_squares, is_close
-from hasel_sysid.estimation.least_squares import finished, fitted_result
-from hasel_sysid.estimation.second_start import better_from
+from hasel_sysid.estimation import FitResult
+from hasel_sysid.estimation.least_squares import fitted_result
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.first_trials import first_trials, sized_starts
-from hasel_sysid.selection.fits_ahead import FitsAhead
 from hasel_sysid.selection.known_set import known_set
 from hasel_sysid.selection.noise_bound import bounded_noise
 from hasel_sysid.selection.other_valleys import deepest
+from hasel_sysid.selection.set_fits import SetFits
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect, Wanted
 from hasel_sysid.selection.trial_prospects import (
     Rank,
@@ -56,7 +53,7 @@ class SimulatedSets:
         self.tried: set[str] = set()
         self.first: list[Trial] = []
         self.trials: Trials | None = None
-        self._fits: FitsAhead[FittedSet | None] = FitsAhead(problem)
+        self._fits = SetFits(problem, self.effects, given)
 
     def baseline(self) -> FittedSet:
         """The model as it was fitted."""
@@ -133,42 +130,15 @@ class SimulatedSets:
 
     def foresee(self, likely: Sequence[Wanted]) -> None:
         """Begin these fits where processes would wait for work."""
-        self._fits.foresee({_key(*wanted): partial(self._fit, *wanted) for wanted in likely})
+        self._fits.foresee(likely)
 
     def fit(self, effects: EffectSet, near: FittedSet, added: Sequence[Prospect]) -> FittedSet | None:
         """Least squares of the model itself, from where the drafts have led."""
-        return self._fits.done(_key(effects, near, added), partial(self._fit, effects, near, added))
+        return self._fits.fit(effects, near, added)
 
-    def _fit(
-        self, effects: EffectSet, near: FittedSet, added: Sequence[Prospect], problem: Problem
-    ) -> FittedSet | None:
-        base: FitResult = near.fit
-        values = dict(base.model.values)
-        for prospect in added:
-            trial: Trial = prospect.start
-            beside = near.effects == prospect.beside
-            for name, value in trial.step.items():
-                if name not in values:
-                    values[name] = value
-                elif beside and name in base.model.values:
-                    values[name] += value - base.model.values[name]
-        try:
-            model = self._model(near.fit.model, effects, near.effects).with_values({})
-            start = {name: _inside(model, name, values[name]) for name in model.free if name in values}
-            found = _fitted(problem, model.with_values(start))
-            found = better_from(found, self._as_given(found), partial(_fitted, problem))
-        except (HaselSimError, ModelError):
-            return None
-        return self.known_as(found)
-
-    def _as_given(self, fit: FitResult) -> dict[str, float]:
-        """Values before any fit, where a fit that began far off has not come close, or of what nothing shows there: an
-        amplitude that no muscle has the time to reach, from which no derivative leads back.
-        """
-        if self.given is None:
-            return {}
-        close = is_close(fit.evaluation)
-        return {n: self.given.values[n] for n in self.given.free if not close or n in fit.undetermined}
+    def finished(self, every: Sequence[FittedSet]) -> Iterator[FittedSet]:
+        """The same, gone on with where a fit was broken off before it had converged."""
+        return self._fits.finished(every)
 
     def deepest(self, of: FittedSet) -> FittedSet:
         """The same, or its fit in a deeper valley that begins elsewhere on the body."""
@@ -182,41 +152,3 @@ class SimulatedSets:
             return self.known_as(fitted_result(self.problem.evaluate(model, model.free), 1))
         except HaselSimError:
             return None
-
-    def _model(self, model: Model, effects: EffectSet, before: EffectSet) -> Model:
-        gone, new = sorted(before - effects), sorted(effects - before)
-        model = model.without_effects(*gone) if gone else model
-        return model.with_effects(*(self.effects[e].source or e for e in new)) if new else model
-
-    def finished(self, every: Sequence[FittedSet]) -> Iterator[FittedSet]:
-        """The same, gone on with where a fit was broken off before it had converged."""
-        self._fits.foresee({one: partial(self._finished, one) for one in every})
-        for one in every:
-            yield self._fits.done(one, partial(self._finished, one))
-
-    def _finished(self, fitted: FittedSet, problem: Problem) -> FittedSet:
-        if fitted.fit.converged or self.out_of_time():
-            return fitted
-        fit = finished(problem, fitted.fit, tolerance=1e-3)
-        return replace(self.known_as(fit), effects=fitted.effects)
-
-
-def _inside(model: Model, name: str, value: float) -> float:
-    p = model.parameters[name]
-    return float(np.clip(value, p.lower, p.upper))
-
-
-def _fitted(problem: Problem, model: Model) -> FitResult:
-    return fit_least_squares(
-        problem,
-        model,
-        tolerance=1e-3,
-        most_evaluations=POLICY.effort.evaluations,
-        drafts=False,
-        roughly=True,
-    )
-
-
-def _key(effects: EffectSet, near: FittedSet, added: Sequence[Prospect]) -> Hashable:
-    """What tells two fits apart: sets and prospects are the same only as the same objects."""
-    return effects, near, tuple(added)
