@@ -8,7 +8,7 @@ from hasel_sim.model import Parameter
 from hasel_sysid.compare import Comparison
 from hasel_sysid.diagnosis import Diagnosis, Verdict
 from hasel_sysid.improvement import Improvement
-from hasel_sysid.report.from_improvement import said_of
+from hasel_sysid.report.from_improvement import what_is_missing
 from hasel_sysid.report.numbers import error_text, interval_text
 from hasel_sysid.suggest import Suggestion
 
@@ -23,7 +23,7 @@ def improvement_lines(
     lines = [_headline(found), *_values(found, comparisons[-1])]
     lines += _errors(comparisons[0], comparisons[-1], found.noise_floor)
     lines += _doubt(found.diagnosis, found.missing)
-    lines += [found.reason, *found.contradictions, *found.open_values]
+    lines += [found.reason, *found.contradictions, *found.open_values.values()]
     if found.adequacy is not None and not found.adequacy.adequate:
         lines.append(str(found.adequacy))
     if suggestions:
@@ -54,8 +54,7 @@ def diagnosis_lines(found: Diagnosis, comparison: Comparison) -> list[str]:
 
 
 def _headline(found: Improvement) -> str:
-    said = [said_of(effect, found) for effect in found.missing]
-    return " ".join(said) or f"{found.status.value.replace('_', ' ').capitalize()}."
+    return what_is_missing(found) or f"{found.status.value.replace('_', ' ').capitalize()}."
 
 
 def _values(found: Improvement, last: Comparison) -> list[str]:

@@ -1,6 +1,6 @@
 """Which values of an answer stay open: the effect might do nothing there, since something else can do what it does."""
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection
 
 import numpy as np
 from hasel_sim.effects.base import Effect
@@ -12,26 +12,26 @@ _COLLINEAR = 0.95
 """Correlation of two errors from which what the one value takes the other gives."""
 
 
-def open_values(model: Model, effects: Sequence[str]) -> tuple[str, ...]:
-    """Of every one of these effects of a fitted model whose intervals all hold the value at which it does nothing, in a
+def open_values(model: Model, effects: Collection[str]) -> dict[str, str]:
+    """Of these effects of a fitted model those whose intervals all hold the value at which they do nothing, each with a
     sentence: its first size, and the other value that is known only together with it, if there is one.
 
     Together such effects may be needed all the same: then their sum is known, and not the parts.
     """
     chosen = [effect for effect in model.effects if effect.id in effects]
-    return tuple(sentence for effect in chosen for sentence in _open(model, effect))
+    return {effect.id: sentence for effect in chosen if (sentence := _open(model, effect))}
 
 
-def _open(model: Model, effect: Effect) -> Iterator[str]:
+def _open(model: Model, effect: Effect) -> str | None:
     sizes = {f"{effect.id}.{p.name}": p.null for p in effect.parameters if not p.scan}
     fitted = {name: null for name, null in sizes.items() if model.parameters[name].free}
     if not fitted or not all(_may_be(model, name, null) for name, null in fitted.items()):
-        return
+        return None
     name, null = next(iter(fitted.items()))
     unit = "" if model.parameters[name].unit == "1" else f" {model.parameters[name].unit}"
     other, correlation = _closest(model, name, leave_out=sizes)
     instead = f"; {other} can do the same (correlation {correlation:+.2f})" if other else ""
-    yield f"{name} is not known: its interval holds {null:g}{unit}, at which it does nothing{instead}."
+    return f"{name} is not known: its interval holds {null:g}{unit}, at which it does nothing{instead}."
 
 
 def _may_be(model: Model, name: str, value: float) -> bool:

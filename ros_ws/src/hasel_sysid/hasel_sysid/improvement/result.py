@@ -61,8 +61,8 @@ class Improvement:
         return self.stages[-1].fit.model
 
     @property
-    def open_values(self) -> tuple[str, ...]:
-        """Of what was found missing the values that are not known, in sentences."""
+    def open_values(self) -> dict[str, str]:
+        """What was found missing and may do nothing by itself, each with a sentence that says why."""
         return open_values(self.model, self.missing)
 
     @property
@@ -90,7 +90,7 @@ class Improvement:
                 "explainable_at_all": self.diagnosis.ceiling,
                 "reason": self.reason,
                 "contradictions": list(self.contradictions),
-                "open_values": list(self.open_values),
+                "open_values": list(self.open_values.values()),
                 "refused": list(self.refused),
                 "not_tried": self.not_tried,
                 "adequate": self.adequacy is not None and self.adequacy.adequate,
@@ -101,7 +101,7 @@ class Improvement:
     def __str__(self) -> str:
         judged = [] if self.adequacy is None or self.adequacy.adequate else [str(self.adequacy)]
         return "\n".join(
-            [*map(str, self.stages), self.reason, *self.contradictions, *self.open_values, *judged]
+            [*map(str, self.stages), self.reason, *self.contradictions, *self.open_values.values(), *judged]
         )
 
 

@@ -85,17 +85,32 @@ def _title(improvement: Improvement) -> str:
 
 
 def _verdict(improvement: Improvement) -> str:
-    said = [said_of(effect, improvement) for effect in improvement.missing[:1]]
-    return " ".join([*said, improvement.reason, *improvement.contradictions, *improvement.open_values])
+    said = what_is_missing(improvement)
+    more = (improvement.reason, *improvement.contradictions, *improvement.open_values.values())
+    return " ".join([said, *more] if said else more)
 
 
-def said_of(effect: str, improvement: Improvement) -> str:
-    """What the first diagnosis says of an effect, or why it was put in the place of the one found first."""
-    finding = improvement.diagnosis.finding(effect)
-    if finding.verdict is Verdict.MISSING:
-        return str(finding)
-    others = " and ".join(other for other in improvement.missing if other != effect)
-    return f"Of the effects that looked alike at first, {effect} fits best together with {others}."
+def what_is_missing(improvement: Improvement) -> str:
+    """What was found missing, in a sentence; empty where nothing was."""
+    missing, most = improvement.missing, "together they explain most of the error above the noise"
+    if len(missing) < 2:
+        return " ".join(str(improvement.diagnosis.finding(effect)) for effect in missing)
+    sure = [effect for effect in missing if effect not in improvement.open_values]
+    perhaps = [effect for effect in missing if effect in improvement.open_values]
+    if not sure:
+        return f"Perhaps {_listed(perhaps)} are missing: {most}, and by itself each may do nothing."
+    exchanged = [e for e in missing if improvement.diagnosis.finding(e).verdict is not Verdict.MISSING]
+    why = [
+        f" Of the effects that looked alike at first, {effect} fits best together with "
+        f"{_listed([e for e in missing if e != effect])}."
+        for effect in exchanged
+    ]
+    also = f", and perhaps {_listed(perhaps)}" if perhaps else ""
+    return f"{_listed(sure)} {'is' if len(sure) == 1 else 'are'} missing{also}: {most}.{''.join(why)}"
+
+
+def _listed(names: Sequence[str]) -> str:
+    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
 
 
 def _key_numbers(improvement: Improvement, comparisons: Sequence[Comparison]) -> tuple[KeyNumber, ...]:

@@ -10,7 +10,7 @@ from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.improvement.result import Improvement, Stage, Status
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.report.from_diagnosis import diagnosis_content, ranked_rows
-from hasel_sysid.report.from_improvement import improvement_content
+from hasel_sysid.report.from_improvement import improvement_content, what_is_missing
 from hasel_sysid.report.write import render
 from hasel_sysid.testing.made_up_runs import made_up_comparison, made_up_fit
 
@@ -126,3 +126,26 @@ def test_verdict_says_why_an_effect_was_exchanged(improvement):
     verdict = improvement_content(exchanged, comparisons).verdict
     assert "my_effect fits best together with quadratic_drag" in verdict
     assert "my_effect is absent" not in verdict
+
+
+def test_of_several_one_sentence_tells_which_are_known_and_which_only_perhaps(improvement):
+    """A value of which the interval holds nothing at all accuses nobody for certain."""
+    two = ("payload.mass", "quadratic_drag.coefficient")
+    model = load_model("swimmer").with_effects("payload", "quadratic_drag")
+    findings = [Finding(name.partition(".")[0], Verdict.MISSING, 0.5, 0.9, {}, {}, 0.1, 0.1) for name in two]
+    diagnosis = replace(improvement.diagnosis, findings=findings)
+
+    def said(*errors: float) -> str:
+        fitted = model.with_values(dict(zip(two, (0.01, 0.25), strict=True)))
+        last = Stage(
+            ("payload", "quadratic_drag"),
+            _fit(fitted.with_covariance(two, np.diag(np.square(errors))), 0.003),
+            None,
+        )
+        stages = [replace(improvement.stages[0], diagnosis=diagnosis), last]
+        return what_is_missing(replace(improvement, stages=stages, missing=("payload", "quadratic_drag")))
+
+    assert said(0.001, 0.01).startswith("payload and quadratic_drag are missing: together they explain most")
+    assert said(0.02, 0.01).startswith("quadratic_drag is missing, and perhaps payload: together")
+    assert said(0.02, 0.5).startswith("Perhaps payload and quadratic_drag are missing: together")
+    assert said(0.02, 0.5).endswith("by itself each may do nothing.")
