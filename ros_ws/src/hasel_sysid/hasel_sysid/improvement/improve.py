@@ -63,7 +63,11 @@ def improve(
         # what finer numerics change makes errors wider: what speaks for a law without it does so with it
         return not (against_law(known.fit, noise, names) and against_law(refined(known), noise, names))
 
-    found = search(sets, policy, _part(progress, "search", 0.25, 0.95), begun, lawful=lawful)
+    def described(found: Searched, effects: EffectSet) -> bool:
+        return adequacy(found.known[effects].fit.evaluation, noise_allowed(sets, found)).adequate
+
+    report = _part(progress, "search", 0.25, 0.95)
+    found = search(sets, policy, report, begun, lawful=lawful, described=described)
     choice = choose(found, policy, partial(lawful, found))
     said = diagnosis(sets, found, choice, changes)
     stages = [_stage(with_numerical_error(fit, changes), (), validation, said)]

@@ -12,7 +12,7 @@ from hasel_sysid.selection.searched import Searched, lasting, plausible, worth_m
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Sets, name_of
 from hasel_sysid.selection.stand_ins import StandIns
 
-Lawful = Callable[[Searched, EffectSet], bool]
+Judge = Callable[[Searched, EffectSet], bool]
 
 
 def search(
@@ -21,15 +21,16 @@ def search(
     progress: Progress | None = None,
     begun: tuple[FittedSet, ...] = (),
     stand_ins: bool = True,
-    lawful: Lawful | None = None,
+    lawful: Judge | None = None,
+    described: Judge | None = None,
 ) -> Searched:
     """Extend the best sets as long as anything is missing from the best one and something promises to supply it.
 
     begun: further sets that are fitted already; stand_ins: also fit what looks like a chosen effect in its place;
-    lawful: whether what a known set adds is a law.
+    lawful: whether what a known set adds is a law; described: whether a known set describes its runs everywhere.
     """
     known = {f.effects: f for f in (sets.baseline(), *begun)}
-    state = _Search(sets, policy, known, progress=progress, lawful=lawful)
+    state = _Search(sets, policy, known, progress=progress, lawful=lawful, described=described)
     state.look_beyond(NOTHING, None)
     state.fit(state.singles(), 1, even_late=True)
     while True:
@@ -51,7 +52,8 @@ class _Search(StandIns):
     """closely: the sets that were looked beyond with every effect."""
 
     closely: set[EffectSet] = field(default_factory=lambda: {NOTHING})
-    lawful: Lawful | None = None
+    lawful: Judge | None = None
+    described: Judge | None = None
 
     def anything_missing(self) -> bool:
         """From the best set, by more than noise."""
@@ -84,11 +86,17 @@ class _Search(StandIns):
         Beside the baseline effects look otherwise: what holds a body up also puts it out of step there.
         """
         known = best in self.closely or len(best) >= self.policy.most_effects
-        if known or self.sets.out_of_time() or not self.leaves_what_matters(best):
+        if known or self.sets.out_of_time() or not (self.leaves_what_matters(best) or self.fails(best)):
             return False
         self.closely.add(best)
         self.look_beyond(best, None)
         return True
+
+    def fails(self, effects: EffectSet) -> bool:
+        """Whether a set does not describe its runs somewhere: where nothing shows the noise alone, what the best set
+        leaves is all that is known of it, and only its shares tell that some of it is no noise.
+        """
+        return self.described is not None and not self.described(self.judged(), effects)
 
     def look_beyond(self, effects: EffectSet, wanted: list[str] | None) -> None:
         """Learn what one more effect could do to a set."""

@@ -399,6 +399,24 @@ def test_what_is_left_is_looked_at_from_where_it_is_left():
         assert chosen(sets)[0] == "ad"
 
 
+class _NothingShowsTheNoise(_LookOtherwiseAtFirst):
+    """Nor is it known otherwise than by what the best set leaves."""
+
+    def noise(self, known):
+        """What is least among the squares that are left."""
+        return NoiseModel(min(fitted.squares for fitted in known) / len(self.runs), 0.0, 0.5)
+
+
+def test_what_fails_somewhere_is_looked_beyond_though_nothing_else_tells_it_from_noise():
+    """What the best set leaves cannot exceed a noise that is known by it alone; its shares can be no noise."""
+    for seed in range(3):
+        sets = _NothingShowsTheNoise(made_up(seed), {"a": 0.3, "d": 0.05}, WHITE, seed)
+        found = search(sets, POLICY)
+        assert choose(found, POLICY).chosen == {"a"}
+        found = search(sets, POLICY, described=lambda _, effects: effects == frozenset("ad"))
+        assert choose(found, POLICY).chosen == {"a", "d"}
+
+
 class _HiddenByAConstant(LinearSets):
     """Beside the baseline, d looks like one of the model's own constants."""
 
