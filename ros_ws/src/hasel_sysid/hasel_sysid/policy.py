@@ -1,4 +1,7 @@
-"""Every number that a verdict rests on, with its reason, and what a search may spend."""
+"""The numbers that a choice and a verdict rest on, with their reasons, and what a search may spend.
+
+What defines a word or a method (a limit of detection, most of the squares, a fit's tolerance) stands where it is used.
+"""
 
 from dataclasses import dataclass, field, replace
 

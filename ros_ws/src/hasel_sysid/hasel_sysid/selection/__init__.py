@@ -1,6 +1,6 @@
 """Which effects a model lacks: a choice among sets of effects, by one currency.
 
-Every number is in `hasel_sysid.policy`. Read in this order: `sets` (what is chosen among), `likelihood` (the currency),
+The numbers are in `hasel_sysid.policy`. Read in this order: `sets` (what is chosen among), `likelihood` (the currency),
 `missing` (is anything missing?), `proposals`, `promises` and `search` (add, drop, swap), `stand_ins` (what looks like
 what was chosen), `worth` (what runs left out say of a set), `choice` (where to stop, and what cannot be told apart).
 None of these knows a simulator; `simulated_sets` joins them to one.
