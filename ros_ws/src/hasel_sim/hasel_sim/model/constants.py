@@ -1,7 +1,8 @@
 """Numbers of a model file that may be freed: named by their path, such as `material.soft.youngs_modulus_pa`.
 
-Among them are those of the body's shape. They move the nodes of the mesh that the file's own shape has, and with them
-markers and whatever else lies on the fin: a simulation can then be differentiated by them.
+What all materials of a body have in common is one number besides, such as `material.density_kg_per_m3`: a body that was
+weighed has one density. Among them are those of the body's shape. They move the nodes of the mesh that the file's own
+shape has, and with them markers and whatever else lies on the fin: a simulation can then be differentiated by them.
 """
 
 from __future__ import annotations
@@ -32,10 +33,10 @@ REST_CONTRACTION = "rest_contraction"
 def constants(description: Description) -> dict[str, float]:
     """Every number that may be freed, by its path: of shape, materials, regions, muscles, tip plate and medium."""
     found = shape_constants(description)
-    for name in ("soft", "spine"):
-        _collect(getattr(description.material, name), f"material.{name}", found)
-    for region in description.body.regions:
-        _collect(region.material, f"body.regions.{region.name}.material", found)
+    for path, material in _materials(description).items():
+        _collect(material, path, found)
+    for path, parts in shared_constants(description).items():
+        found[path] = found[parts[0]]
     _collect(description.body.tip_plate, "body.tip_plate", found)
     if description.medium is not None:
         for key in ("density_kg_per_m3", "viscosity_pa_s"):
@@ -44,6 +45,23 @@ def constants(description: Description) -> dict[str, float]:
     for muscle in description.muscles:
         for key in ("fibre_stiffness_pa", REST_CONTRACTION):
             found[f"muscles.{muscle.name}.{key}"] = getattr(muscle, key)
+    return found
+
+
+def _materials(description: Description) -> dict[str, BaseModel]:
+    """All materials by their path."""
+    found: dict[str, BaseModel] = {"material.soft": description.material.soft}
+    if description.material.spine is not None:
+        found["material.spine"] = description.material.spine
+    return found | {f"body.regions.{r.name}.material": r.material for r in description.body.regions}
+
+
+def shared_constants(description: Description) -> dict[str, list[str]]:
+    """What all materials have in common, such as one density, by its path: the paths of it in each of them."""
+    found, materials = {}, _materials(description)
+    for key in type(materials["material.soft"]).model_fields if len(materials) > 1 else ():
+        if len({getattr(material, key) for material in materials.values()}) == 1:
+            found[f"material.{key}"] = [f"{path}.{key}" for path in materials]
     return found
 
 
@@ -82,9 +100,15 @@ _Section = TypeVar("_Section", bound=BaseModel)
 
 
 def with_constants(description: Description, values: dict[str, float]) -> Description:
-    """The description with other values at some paths, not validated again; what lies on the body moves with it."""
+    """The description with other values at some paths, not validated again; what lies on the body moves with it.
+
+    What materials have in common is set in all of them, before what is named of a single one.
+    """
     body, known = description.body, shape_constants(description)
-    for path, value in values.items():
+    shared = shared_constants(description)
+    common = {path: values[key] for key, paths in shared.items() if key in values for path in paths}
+    single = {path: value for path, value in values.items() if path not in shared}
+    for path, value in (common | single).items():
         description = _changed(description, path.split("."), value)
     if any(values.get(path, value) != value for path, value in known.items()):
         return _carried(description, body)

@@ -79,7 +79,7 @@ def draw_stages(stages: Sequence[Stage], noise_floor: float) -> Picture:
             place + 0.2, [stage.mae_validation for stage in stages], 0.38, color=UNSEEN, label="unseen runs"
         )
     axis.axhline(noise_floor, color=NOISE, linestyle="--", linewidth=1.0, label="noise floor")
-    axis.set_xticks(place, ["fitted", *("+ " + stage.effects[-1] for stage in stages[1:])])
+    axis.set_xticks(place, ["fitted", *("+ " + stage.added[-1] for stage in stages[1:])])
     axis.set_ylabel("mean |Δ sin θ|")
     axis.legend(frameon=False, fontsize=8)
     _bare(axis)

@@ -91,7 +91,7 @@ def _improve(options: argparse.Namespace) -> int:
 def _next_runs(found: Improvement, pool: Executor) -> list[Suggestion]:
     """The runs that would best tell apart what is still in doubt, at no more voltage than was used already."""
     candidates = in_doubt(found.diagnosis, found.missing)
-    if found.opposed or found.status is Status.NOTHING_MISSING or len(candidates) < 2:
+    if found.opposed or found.constant or found.status is Status.NOTHING_MISSING or len(candidates) < 2:
         return []
     highest = max(found.model.levels, default=0.0)
     return suggest(pool, candidates, found.diagnosis.noise, highest, brief=True)
@@ -103,7 +103,7 @@ def _comparison(
     """A stage's comparison; its fitted runs have been simulated already."""
     model: Model = stage.fit.model
     simulations = [*stage.fit.evaluation.simulations, *simulate_all(pool, model, [e.run for e in unseen])]
-    name = " + ".join([f"{label}, fitted", *stage.effects])
+    name = " + ".join([f"{label}, fitted", *stage.added])
     return comparison_of(model, experiments, simulations, unseen, name)
 
 

@@ -22,8 +22,9 @@ def improvement_lines(
     """Of an improvement; comparisons: of every stage, the fitted baseline first."""
     lines = [_headline(found), *_values(found, comparisons[-1])]
     lines += _errors(comparisons[0], comparisons[-1], found.noise_floor)
-    lines += _doubt(found.diagnosis, found.missing)
-    lines += [found.reason, *found.contradictions, *found.open_values.values()]
+    if not found.constant:
+        lines += [*_doubt(found.diagnosis, found.missing), found.reason]
+    lines += [*found.contradictions, *found.open_values.values()]
     if found.adequacy is not None and not found.adequacy.adequate:
         lines.append(str(found.adequacy))
     if suggestions:
@@ -54,11 +55,14 @@ def diagnosis_lines(found: Diagnosis, comparison: Comparison) -> list[str]:
 
 
 def _headline(found: Improvement) -> str:
+    if found.constant:
+        return found.reason
     return what_is_missing(found) or f"{found.status.value.replace('_', ' ').capitalize()}."
 
 
 def _values(found: Improvement, last: Comparison) -> list[str]:
     names = [name for name in last.model.parameters if name.rpartition(".")[0] in found.missing]
+    names += [found.constant.name] if found.constant else []
     return [_interval(last.model.parameters[name]) for name in names]
 
 

@@ -111,6 +111,7 @@ class Finding:
         return f"{self.effect} cannot be seen: {imitated}{self._no_size_shows(unit)}."
 
 
+_IN_ITS_PLACE = {Verdict.MISSING: Verdict.MISSING_IF_SIZE_MATTERS}
 _NEEDS_A_MODEL = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
 
 
@@ -179,6 +180,15 @@ class Diagnosis:
         to be missing in the end, which may be more or other than what looked best at first.
         """
         return replace(self, findings=[_seen(finding, adequate, added) for finding in self.findings])
+
+    def of_no_effect(self) -> "Diagnosis":
+        """The diagnosis where it turned out that what is wrong is no effect: some could at most stand in its place."""
+        findings = [
+            replace(f, probability=0.0, verdict=_IN_ITS_PLACE.get(f.verdict, f.verdict))
+            for f in self.findings
+        ]
+        context = self.context and replace(self.context, winner=None)
+        return replace(self, findings=findings, probability_none=1.0, context=context)
 
     def finding(self, effect: str) -> Finding:
         """What is said of one effect."""

@@ -16,8 +16,9 @@ def last_diagnosis(stages: Sequence[Stage]) -> Diagnosis:
 
 
 def left_over(stages: Sequence[Stage]) -> float:
-    """Share of the baseline's mean error above the noise that the last stage leaves, 0 to 1."""
-    before, after = stages[0].fit.mean_absolute_error, stages[-1].fit.mean_absolute_error
+    """Share of the baseline's mean error above the noise that the last stage's effects leave, 0 to 1."""
+    by_effects = [stage for stage in stages if not stage.constant]
+    before, after = by_effects[0].fit.mean_absolute_error, by_effects[-1].fit.mean_absolute_error
     return share_left(before, after, last_diagnosis(stages).noise.mean_absolute)
 
 

@@ -12,20 +12,18 @@ from hasel_sysid.diagnosis.candidates import candidate_effects
 from hasel_sysid.diagnosis.explained import Status
 from hasel_sysid.estimation import FitResult, fit_from_afar, in_step, is_close
 from hasel_sysid.estimation.refinement import changes_by_refinement, with_numerical_error
-from hasel_sysid.improvement.conclusion import conclude, last_diagnosis, near_noise
+from hasel_sysid.improvement.conclusion import conclude, last_diagnosis
 from hasel_sysid.improvement.from_afar import from_afar
 from hasel_sysid.improvement.lawful import against_law, without_contradictions
+from hasel_sysid.improvement.reasons import in_order, why_the_last
 from hasel_sysid.improvement.result import Improvement, Stage
 from hasel_sysid.improvement.set_up import opposed_runs
+from hasel_sysid.improvement.wrong_constant import WrongConstant, wrong_constant
 from hasel_sysid.problem import Problem
-from hasel_sysid.selection import POLICY, Choice, Policy, Searched, choose, search
-from hasel_sysid.selection.sets import EffectSet, FittedSet, name_of
+from hasel_sysid.selection import POLICY, Searched, choose, search
+from hasel_sysid.selection.sets import EffectSet, FittedSet
 from hasel_sysid.selection.simulated_sets import SimulatedSets
 from hasel_sysid.selection.verdicts import diagnosis, noise_allowed
-
-_CREDIT = (
-    "takes away a tenth of the squared error that finer numerics leave and foretells left-out runs better"
-)
 
 Progress = Callable[[str, float], None]
 OnStage = Callable[[Stage], None]
@@ -56,7 +54,10 @@ def improve(
     far_off = near and not is_close(fit.evaluation)
     slack, given = list(changes.values()) if near else (), model if far_off else None
     sets = SimulatedSets(problem, fit, effects, slack, given)
-    refined = cache(partial(_refined, problem))
+
+    @cache
+    def refined(known: FittedSet) -> FitResult:
+        return _refined(problem, known.fit)
 
     def lawful(found: Searched, effects: EffectSet) -> bool:
         known, noise, names = found.known[effects], noise_allowed(sets, found), sorted(effects)
@@ -70,81 +71,47 @@ def improve(
     found = search(sets, policy, report, begun, lawful=lawful, described=described)
     choice = choose(found, policy, partial(lawful, found))
     said = diagnosis(sets, found, choice, changes)
+    constant = None if opposed else wrong_constant(sets, found, choice.chosen, policy)
+    if constant:
+        constant = replace(constant, fit=_refined(problem, constant.fit))
+        said = said.of_no_effect()
     stages = [_stage(with_numerical_error(fit, changes), (), validation, said)]
     if on_stage:
         on_stage(stages[0])
-    path = () if opposed else choice.path[1:]
+    if constant:
+        stages.append(_stage(constant.fit, (), validation, None, constant.name))
+        if on_stage:
+            on_stage(stages[-1])
+    path = () if opposed or constant else choice.path[1:]
     for effects_so_far, fitted in zip(path, sets.finished([found.known[s] for s in path]), strict=True):
-        order = _in_order(choice, effects_so_far)
+        order = in_order(choice, effects_so_far)
         fit_so_far = refined(fitted)
         stages.append(_stage(fit_so_far, order, validation, None))
         if on_stage:
             on_stage(stages[-1])
-    if opposed:
-        reason, done = (
-            f"A fault of the set-up comes before any effect: {'; '.join(map(str, opposed))}",
-            False,
-        )
-    else:
-        reason, done = _why_here(found, choice, policy, stages[0])
-        if choice.lawless:
-            reason = f"{reason} {' and '.join(map(name_of, choice.lawless))} would do as well, but by no law."
-    if problem.time_limit.left_something_out:
-        untried = said.not_tried
-        what = f"not tried: {', '.join(untried)}" if untried else "not every set of effects was tried"
-        reason = f"{reason} The search ended at {problem.time_limit}; {what}."
-    return _concluded(stages, reason, done, bool(opposed))
+    reason, done = why_the_last(problem.time_limit, found, choice, policy, stages[0], opposed, constant)
+    return _concluded(stages, reason, done, bool(opposed), constant)
 
 
-def _why_here(found: Searched, choice: Choice, policy: Policy, first: Stage) -> tuple[str, bool]:
-    """Why the chosen set is the last, in a sentence, and whether nothing else is missing."""
-    chance = found.tested(choice.chosen).chance
-    nothing_else = chance >= policy.level
-    if not choice.chosen:
-        if nothing_else and near_noise(first.fit, first.diagnosis):
-            return f"Nothing is missing: noise alone looks like this in {chance:.0%} of cases.", True
-        if nothing_else:
-            return "None of the listed effects stands out from what is left.", False
-        trifle = near_noise(first.fit, first.diagnosis)
-        what = "Nothing that matters is missing: no" if trifle else "Something is missing, but no"
-        return (
-            f"{what} listed effect foretells runs that are left out of the fit better than none does.",
-            trifle,
-        )
-    added = " and ".join(_in_order(choice, choice.chosen))
-    if nothing_else:
-        return f"What is left after adding {added} looks like no other effect.", True
-    if len(choice.chosen) >= policy.most_effects:
-        return f"Effect {policy.most_effects} was the last: more effects could imitate anything.", False
-    nearest = f"; nearest was {name_of(found.best)}" if found.best != choice.chosen else ""
-    return (
-        f"After adding {added} something is still missing, but no further effect {_CREDIT}{nearest}.",
-        False,
-    )
-
-
-def _in_order(choice: Choice, effects: EffectSet) -> tuple[str, ...]:
-    """Effects of a set in the order in which the path to the chosen one takes them in."""
-    order: list[str] = []
-    for step in choice.path:
-        order += sorted(step - set(order))
-    return tuple(effect for effect in order if effect in effects)
-
-
-def _refined(problem: Problem, fitted: FittedSet) -> FitResult:
-    """The fit of a set, with what finer numerics would change."""
-    fit: FitResult = fitted.fit
+def _refined(problem: Problem, fit: FitResult) -> FitResult:
+    """A fit with what finer numerics would change."""
     return with_numerical_error(fit, changes_by_refinement(problem, fit.evaluation))
 
 
 def _stage(
-    fit: FitResult, effects: Sequence[str], validation: Problem | None, said: Diagnosis | None
+    fit: FitResult,
+    effects: Sequence[str],
+    validation: Problem | None,
+    said: Diagnosis | None,
+    constant: str = "",
 ) -> Stage:
     error = None if validation is None else validation.evaluate(fit.model).mean_absolute_error
-    return Stage(tuple(effects), fit, error, said)
+    return Stage(tuple(effects), fit, error, said, constant)
 
 
-def _concluded(stages: list[Stage], reason: str, nothing_else: bool, opposed: bool) -> Improvement:
+def _concluded(
+    stages: list[Stage], reason: str, nothing_else: bool, opposed: bool, constant: WrongConstant | None
+) -> Improvement:
     """The verdict: is what was added a law, and does the model describe its runs?"""
     kept, refused, contradictions = without_contradictions(stages)
     if refused:
@@ -157,7 +124,13 @@ def _concluded(stages: list[Stage], reason: str, nothing_else: bool, opposed: bo
     kept[0] = replace(kept[0], diagnosis=seen)
     status = Status.UNEXPLAINED if opposed else concluded.status
     return replace(
-        concluded, stages=kept, status=status, adequacy=described, refused=refused, opposed=opposed
+        concluded,
+        stages=kept,
+        status=status,
+        adequacy=described,
+        refused=refused,
+        opposed=opposed,
+        constant=constant,
     )
 
 

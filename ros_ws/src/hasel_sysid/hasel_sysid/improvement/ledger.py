@@ -18,13 +18,14 @@ class Ledger:
 
     def add(self, stage: Stage) -> None:
         """Write a stage's model and what was found there."""
-        name = "_".join([f"stage_{self._count}", *(stage.effects or ("baseline",))]) + ".yaml"
+        name = "_".join([f"stage_{self._count}", *(stage.added or ("baseline",))]) + ".yaml"
         save_model(stage.fit.model, self.folder / name)
         self._count += 1
         best = None if stage.diagnosis is None else stage.diagnosis.best
         line = {
             "model": name,
             "effects": list(stage.effects),
+            "constant": stage.constant or None,
             "mae_fit": stage.mae_fit,
             "mae_validation": stage.mae_validation,
             "next": None if best is None else {"effect": best.effect, "finding": str(best)},

@@ -7,6 +7,7 @@ from hasel_sysid.diagnosis.adequacy import Adequacy
 from hasel_sysid.diagnosis.explained import Status
 from hasel_sysid.estimation import FitResult
 from hasel_sysid.improvement.open_values import open_values
+from hasel_sysid.improvement.wrong_constant import WrongConstant
 from hasel_sysid.noise import NoiseModel
 
 
@@ -15,13 +16,19 @@ class Stage:
     """A model of the ladder: its effects beyond the first model's, its fit, and its error on unseen runs.
 
     mae_validation: mean |Δ sin θ| on runs that were never fitted; None where none were given. diagnosis: of what this
-    stage leaves; None for a last stage that was not diagnosed.
+    stage leaves; None for a last stage that was not diagnosed. constant: of the model file, free here and not before.
     """
 
     effects: tuple[str, ...]
     fit: FitResult
     mae_validation: float | None
     diagnosis: Diagnosis | None = None
+    constant: str = ""
+
+    @property
+    def added(self) -> tuple[str, ...]:
+        """What it has beyond the fitted first model."""
+        return (*self.effects, *filter(None, [self.constant]))
 
     @property
     def mae_fit(self) -> float:
@@ -29,7 +36,7 @@ class Stage:
         return self.fit.mean_absolute_error
 
     def __str__(self) -> str:
-        what = "baseline" if not self.effects else " + ".join(("baseline", *self.effects))
+        what = " + ".join(("baseline", *self.added))
         unseen = "" if self.mae_validation is None else f", {self.mae_validation:.5f} on unseen runs"
         return f"{what}: mean |Δ sin θ| {self.mae_fit:.5f} on fitted runs{unseen}"
 
@@ -41,7 +48,8 @@ class Improvement:
     stages: baseline first; missing: effects found missing; unexplained_fraction: of the baseline's mean
     |Δ sin θ| above the noise; reason: why the improvement stopped, in a sentence; contradictions: what tells that an
     added effect is not the whole truth, in sentences; adequacy: whether the last stage describes its runs; refused:
-    effects that were tried and not kept; opposed: whether runs move against the model, a fault of the set-up.
+    effects that were tried and not kept; opposed: whether runs move against the model, a fault of the set-up; constant:
+    that of the model file which the last stage has free instead of any effect.
     """
 
     stages: list[Stage]
@@ -54,6 +62,7 @@ class Improvement:
     adequacy: Adequacy | None = None
     refused: tuple[str, ...] = ()
     opposed: bool = False
+    constant: WrongConstant | None = None
 
     @property
     def model(self):
@@ -92,6 +101,7 @@ class Improvement:
                 "contradictions": list(self.contradictions),
                 "open_values": list(self.open_values.values()),
                 "refused": list(self.refused),
+                "wrong_constant": None if self.constant is None else self.constant.to_json(),
                 "not_tried": self.not_tried,
                 "adequate": self.adequacy is not None and self.adequacy.adequate,
                 "misfits": [] if self.adequacy is None else [asdict(m) for m in self.adequacy.misfits],
@@ -148,6 +158,7 @@ def _finite(number: float) -> float | None:
 def _stage(stage: Stage) -> dict:
     return {
         "effects": list(stage.effects),
+        "constant": stage.constant or None,
         "parameters": {
             name: {"value": p.value, "std": p.standard_error, "unit": p.unit}
             for name, p in stage.fit.model.parameters.items()

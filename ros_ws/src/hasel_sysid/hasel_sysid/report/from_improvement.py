@@ -42,7 +42,7 @@ def improvement_content(
         verdict=_verdict(improvement),
         good=_NEWS[improvement.status],
         key_numbers=_key_numbers(improvement, comparisons),
-        stages=_stages(comparisons, start),
+        stages=_stages(comparisons, start, improvement),
         noise_floor=improvement.noise_floor,
         ranking=tuple(_final(row, last.fit.model) for row in ranked_rows(improvement.diagnosis)),
         groups=improvement.diagnosis.groups_in_question,
@@ -75,6 +75,8 @@ def _final(row: RankedRow, model: Model) -> RankedRow:
 
 
 def _title(improvement: Improvement) -> str:
+    if improvement.constant:
+        return f"A number of the model file is wrong: {improvement.constant.name}"
     names = " and ".join(improvement.missing)
     return {
         Status.NOTHING_MISSING: "Nothing is missing from the model",
@@ -130,22 +132,25 @@ def _key_numbers(improvement: Improvement, comparisons: Sequence[Comparison]) ->
     numbers.append(
         KeyNumber(error_text(improvement.noise_floor), "noise floor", "what a perfect model would leave")
     )
-    explained = percent(1 - improvement.unexplained_fraction)
-    numbers.append(KeyNumber(explained, "explained", "of the error above the noise"))
+    if not improvement.constant:
+        explained = percent(1 - improvement.unexplained_fraction)
+        numbers.append(KeyNumber(explained, "explained", "of the error above the noise"))
     return tuple(numbers)
 
 
-def _stages(comparisons: Sequence[Comparison], start: Comparison | None) -> tuple[Stage, ...]:
+def _stages(
+    comparisons: Sequence[Comparison], start: Comparison | None, improvement: Improvement
+) -> tuple[Stage, ...]:
     stages = []
     if start is not None:
         stages.append(
             Stage("start", start.mean_absolute_error, start.mean_absolute_error_unseen, "before the fit")
         )
     known: set[str] = set()
-    for comparison in comparisons:
-        added = [effect.id for effect in comparison.model.effects if effect.id not in known]
+    for comparison, stage in zip(comparisons, improvement.stages, strict=True):
+        added = [name for name in stage.added if name not in known]
         label = "fit" if not stages or comparison is comparisons[0] else "+ " + ", ".join(added)
-        values = [f"{effect}: {_values(comparison, effect)}" for effect in added]
+        values = [f"{name}: {_values(comparison, name)}" for name in added]
         stages.append(
             Stage(
                 label,
@@ -158,15 +163,19 @@ def _stages(comparisons: Sequence[Comparison], start: Comparison | None) -> tupl
     return tuple(stages)
 
 
-def _values(comparison: Comparison, effect: str) -> str:
-    found = {n: p for n, p in comparison.model.parameters.items() if n.startswith(f"{effect}.")}
+def _values(comparison: Comparison, added: str) -> str:
+    """Of an effect's parameters, or of a constant."""
+    found = {n: p for n, p in comparison.model.parameters.items() if n == added or n.startswith(f"{added}.")}
     return ", ".join(
-        f"{name.removeprefix(f'{effect}.')} = {value_with_error(p.value, p.standard_error, p.unit)}"
+        f"{name.removeprefix(added).removeprefix('.') or 'value'} = "
+        f"{value_with_error(p.value, p.standard_error, p.unit)}"
         for name, p in found.items()
     )
 
 
 def _remains(improvement: Improvement) -> tuple[str, ...]:
+    if improvement.constant:
+        return ()
     last = improvement.stages[-1].diagnosis
     left = f"{improvement.unexplained_fraction:.0%} of the baseline's error above the noise is left."
     return (left, *(() if last is None else what_remains(last)))

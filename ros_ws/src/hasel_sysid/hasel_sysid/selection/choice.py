@@ -64,19 +64,25 @@ def smallest(found: Searched, policy: Policy) -> EffectSet:
     """The set to take; none where nothing is missing."""
     if found.first.chance >= policy.level:
         return NOTHING
-    best = found.worths[found.best]
-    enough = [s for s in plausible(found.known) if _worth_as_much(found, s, best, policy)]
+    enough = [s for s in plausible(found.known) if _worth_as_much(found, s, policy)]
     return min(enough, key=lambda s: (len(s), -found.worths[s].total))
 
 
-def _worth_as_much(found: Searched, effects: EffectSet, best: Worth, policy: Policy) -> bool:
-    more = best.over(found.worths[effects])
+def _worth_as_much(found: Searched, effects: EffectSet, policy: Policy) -> bool:
+    return does_as_much(found, found.worths[effects], found.known[effects].residual, found.best, policy)
+
+
+def does_as_much(
+    found: Searched, worth: Worth, residual: np.ndarray, than: EffectSet, policy: Policy
+) -> bool:
+    """Whether a model of this worth, which leaves this residual [frames], stands for a known set that is larger."""
+    more = found.worths[than].over(worth)
     if more.total <= policy.standard_errors * more.standard_error:
         return True
     # what finer numerics would take away as well is not to an effect's credit
     left = [
-        found.likelihood.squares_beyond_slack(found.known[s].residual, policy.doubt)
-        for s in (effects, found.best)
+        found.likelihood.squares_beyond_slack(each, policy.doubt)
+        for each in (residual, found.known[than].residual)
     ]
     return left[1] > (1 - policy.matters) * left[0]
 

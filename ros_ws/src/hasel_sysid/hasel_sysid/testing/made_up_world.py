@@ -10,6 +10,7 @@ from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.base import Effect
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model, load_model
+from hasel_sim.model.constants import constants
 from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run, Simulation
 
@@ -30,11 +31,19 @@ class MadeUpWorld:
 
     A value that stands for a time or a place turns its effect's series into another one, in proportion to its logarithm
     (or to the value itself where it may be zero or negative). alike: pairs of effects whose series differ by a tenth;
-    shared: how many series all others are mixed of, but for a tenth of their own (0: none).
+    shared: how many series all others are mixed of, but for a tenth of their own (0: none); constants: of the model
+    file, each of which moves the angle as these effects of typical size do together if it is a fifth larger.
     """
 
-    def __init__(self, seed: int, alike: Mapping[str, str] | None = None, shared: int = 0) -> None:
+    def __init__(
+        self,
+        seed: int,
+        alike: Mapping[str, str] | None = None,
+        shared: int = 0,
+        constants: Mapping[str, Sequence[str]] | None = None,
+    ) -> None:
         self._seed, self._alike, self._shared = seed, dict(alike or {}), shared
+        self._constants = dict(constants or {})
         self._known: dict[str, list[np.ndarray]] = {}
         self.model = load_model("swimmer").with_levels(list(VOLTAGES))
 
@@ -67,6 +76,10 @@ class MadeUpWorld:
                 self._add(total, name, (value / 0.05) * _DRIVEN, float(name.partition("_")[2]))
             elif name == "slope":
                 self._add(total, name, 0.02 * np.log(max(value, 1e-6)))
+            for effect in self._constants.get(name, ()):
+                self._add(
+                    total, effect, _EFFECT * (value / constants(self.model.description)[name] - 1) / 0.2
+                )
         for effect in effects:
             size, turn = 0.0, 0.0
             for p in effect.parameters:
