@@ -9,6 +9,7 @@ from hasel_sim.model.value_text import value_with_error
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.diagnosis import Verdict
 from hasel_sysid.improvement.result import Improvement, Status
+from hasel_sysid.improvement.wrong_constant import WrongConstant
 from hasel_sysid.report.content import KeyNumber, NextRun, RankedRow, ReportContent, Stage
 from hasel_sysid.report.from_diagnosis import ranked_rows, what_remains
 from hasel_sysid.report.from_results import comparison_content, parameter_rows
@@ -42,7 +43,7 @@ def improvement_content(
         verdict=_verdict(improvement),
         good=_NEWS[improvement.status],
         key_numbers=_key_numbers(improvement, comparisons),
-        stages=_stages(comparisons, start, improvement),
+        stages=_stages(comparisons, start, improvement.constant),
         noise_floor=improvement.noise_floor,
         ranking=tuple(_final(row, last.fit.model) for row in ranked_rows(improvement.diagnosis)),
         groups=improvement.diagnosis.groups_in_question,
@@ -139,7 +140,7 @@ def _key_numbers(improvement: Improvement, comparisons: Sequence[Comparison]) ->
 
 
 def _stages(
-    comparisons: Sequence[Comparison], start: Comparison | None, improvement: Improvement
+    comparisons: Sequence[Comparison], start: Comparison | None, constant: WrongConstant | None
 ) -> tuple[Stage, ...]:
     stages = []
     if start is not None:
@@ -147,8 +148,8 @@ def _stages(
             Stage("start", start.mean_absolute_error, start.mean_absolute_error_unseen, "before the fit")
         )
     known: set[str] = set()
-    for comparison, stage in zip(comparisons, improvement.stages, strict=True):
-        added = [name for name in stage.added if name not in known]
+    for comparison in comparisons:
+        added = [name for name in _own_names(comparison.model, constant) if name not in known]
         label = "fit" if not stages or comparison is comparisons[0] else "+ " + ", ".join(added)
         values = [f"{name}: {_values(comparison, name)}" for name in added]
         stages.append(
@@ -161,6 +162,12 @@ def _stages(
         )
         known |= set(added)
     return tuple(stages)
+
+
+def _own_names(model: Model, constant: WrongConstant | None) -> list[str]:
+    """Effects of a model, and the constant where it is free."""
+    found = [effect.id for effect in model.effects]
+    return [*found, constant.name] if constant and constant.name in model.parameters else found
 
 
 def _values(comparison: Comparison, added: str) -> str:
