@@ -5,9 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hasel_sim.model import load_model
+from hasel_sysid.command_line.summary import improvement_lines
+from hasel_sysid.diagnosis.adequacy import Adequacy
 from hasel_sysid.diagnosis.result import Diagnosis, Finding, Verdict
 from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.improvement.result import Improvement, Stage, Status
+from hasel_sysid.improvement.wrong_constant import WrongConstant
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.report.from_diagnosis import diagnosis_content, ranked_rows
 from hasel_sysid.report.from_improvement import improvement_content, what_is_missing
@@ -115,6 +118,38 @@ def test_unexplained_is_no_good_news(improvement):
     content = improvement_content(none, [made_up_comparison(model, "fitted", 0.03, 0.04)])
     assert content.title == "None of the listed effects explains the measurements"
     assert content.good is False
+
+
+def test_a_wrong_number_is_a_stage_of_its_own(improvement):
+    """Title, verdict and terminal name it with its value and what was given; no share is said to be explained."""
+    name, baseline = "material.density_kg_per_m3", improvement.stages[0].fit.model
+    freed = baseline.with_freed(name).with_values({name: 1136.0}, {name: 2.0})
+    constant = WrongConstant(name, 900.0, _fit(freed, 0.003), frozenset({"soft_modulus", "spine_modulus"}))
+    first = replace(improvement.stages[0], diagnosis=improvement.diagnosis.of_no_effect())
+    stages = [first, Stage((), constant.fit, 0.004, constant=name)]
+    found = Improvement(
+        stages,
+        Status.UNEXPLAINED,
+        (),
+        1.0,
+        0.0024,
+        str(constant),
+        adequacy=Adequacy(1.0, 0.0025),
+        constant=constant,
+    )
+    shown = [made_up_comparison(s.fit.model, "s", s.mae_fit, s.mae_validation) for s in stages]
+    content = improvement_content(found, shown)
+    assert content.title == f"A number of the model file is wrong: {name}"
+    assert "in place of 900 kg/m^3, does as much as soft_modulus + spine_modulus" in content.verdict
+    assert [stage.label for stage in content.stages] == ["fit", f"+ {name}"]
+    assert "value = 1136.0 ± 2.0 kg/m^3" in content.stages[-1].note
+    assert "explained" not in [number.label for number in content.key_numbers]
+    assert all(row.verdict != "missing" and row.probability == 0.0 for row in content.ranking)
+    assert name in render(content)
+    lines = improvement_lines(found, shown, [])
+    assert lines[0] == found.reason
+    assert lines.count(found.reason) == 1
+    assert lines[1].startswith(f"  {name} = 1136")
 
 
 def test_verdict_says_why_an_effect_was_exchanged(improvement):
