@@ -46,10 +46,10 @@ def looked_at(problem: Problem, fitted: Evaluation, least: float, policy: Policy
         for name in names:
             own = seen.by((*fitted.names, name))
             found.append(_look(name, freed(model, name), own.names, fitted.residual, own.jacobian))
-    given = fitted.sum_of_squares - least
-    best = _most_promising(found, fitted.sum_of_squares - effort.hope * given)[: effort.trials]
+    removed = fitted.sum_of_squares - least
+    best = _most_promising(found, fitted.sum_of_squares - effort.hope * removed)[: effort.trials]
     further = _one_step_on(problem, model, best, correction)
-    promising = _most_promising(further, fitted.sum_of_squares - (1 - policy.matters) * given)
+    promising = _most_promising(further, fitted.sum_of_squares - (1 - policy.matters) * removed)
     return [look.name for look in promising[: effort.fits]]
 
 
