@@ -87,7 +87,7 @@ class Finding:
             return f"{self.effect} {what}: a size{value} removes {share}."
         if self.verdict is Verdict.MISSING_IF_SIZE_MATTERS:
             if self.error_removed > 0.5:
-                return f"{self.effect} could stand in its place: it would remove {share}."
+                return f"{self.effect} could be what is missing: it would remove {share}."
             return f"{self.effect} may be there with a size{value}, but removes only {share}."
         if self.verdict is Verdict.NOT_JUDGED:
             return f"{self.effect} is not judged: the model does not describe these runs yet."
@@ -115,11 +115,11 @@ _IN_ITS_PLACE = {Verdict.MISSING: Verdict.MISSING_IF_SIZE_MATTERS}
 _NEEDS_A_MODEL = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
 
 
-def _seen(finding: Finding, adequate: bool, added: Sequence[str]) -> Finding:
-    if finding.effect in added:
+def _seen(finding: Finding, adequate: bool, added: Sequence[str] | None) -> Finding:
+    if added and finding.effect in added:
         others = tuple(effect for effect in added if effect != finding.effect)
         return replace(finding, verdict=Verdict.MISSING, beside=others)
-    if added and finding.verdict is Verdict.MISSING:
+    if added is not None and finding.verdict is Verdict.MISSING:
         return replace(finding, verdict=Verdict.MISSING_IF_SIZE_MATTERS)
     if not adequate and finding.verdict in _NEEDS_A_MODEL:
         return replace(finding, verdict=Verdict.NOT_JUDGED)
@@ -173,11 +173,12 @@ class Diagnosis:
         """The noise alone; `noise` is what a right model may leave, with what is allowed for discrepancy."""
         return (self.context and self.context.measured) or self.noise
 
-    def seen_beside(self, adequate: bool, added: Sequence[str] = ()) -> "Diagnosis":
+    def seen_beside(self, adequate: bool, added: Sequence[str] | None = None) -> "Diagnosis":
         """The diagnosis as it may be said of a model that describes its runs, or does not.
 
         Where it does not, no effect is absent, undecided or invisible: nobody can know yet. added: what turned out
-        to be missing in the end, which may be more or other than what looked best at first.
+        to be missing in the end, which may be more or other than what looked best at first, or nothing; None where
+        nobody asked.
         """
         return replace(self, findings=[_seen(finding, adequate, added) for finding in self.findings])
 

@@ -15,7 +15,13 @@ from hasel_sysid.estimation.refinement import changes_by_refinement, with_numeri
 from hasel_sysid.improvement.conclusion import conclude, last_diagnosis
 from hasel_sysid.improvement.from_afar import from_afar
 from hasel_sysid.improvement.lawful import against_law, without_contradictions
-from hasel_sysid.improvement.reasons import in_order, why_the_last
+from hasel_sysid.improvement.reasons import (
+    by_no_law,
+    in_order,
+    too_little,
+    what_was_not_tried,
+    why_the_last,
+)
 from hasel_sysid.improvement.result import Improvement, Stage
 from hasel_sysid.improvement.set_up import opposed_runs
 from hasel_sysid.improvement.wrong_constant import WrongConstant, wrong_constant
@@ -89,8 +95,10 @@ def improve(
         stages.append(_stage(fit_so_far, order, validation, None))
         if on_stage:
             on_stage(stages[-1])
-    reason, done = why_the_last(problem.time_limit, found, choice, policy, stages[0], opposed, constant)
-    return _concluded(stages, reason, done, bool(opposed), constant)
+    reason, done = why_the_last(found, choice, policy, stages[0], opposed, constant)
+    concluded = _concluded(stages, reason, done, bool(opposed), constant)
+    untried = what_was_not_tried(problem.time_limit, said)
+    return replace(concluded, reason=f"{concluded.reason} {untried}") if untried else concluded
 
 
 def _refined(problem: Problem, fit: FitResult) -> FitResult:
@@ -112,26 +120,30 @@ def _stage(
 def _concluded(
     stages: list[Stage], reason: str, nothing_else: bool, opposed: bool, constant: WrongConstant | None
 ) -> Improvement:
-    """The verdict: is what was added a law, and does the model describe its runs?"""
+    """The verdict: is what was added a law, does it explain anything, and does the model describe its runs?"""
     kept, refused, contradictions = without_contradictions(stages)
     if refused:
-        reason = f"{' and '.join(refused)} would lower the error, but by no law: not added."
-        nothing_else = False
-    described = adequacy(kept[-1].fit.evaluation, last_diagnosis(kept).noise)
-    concluded = conclude(kept, reason, nothing_else, contradictions, described.misfits)
-    first = kept[0].diagnosis
-    seen = replace(first.seen_beside(described.adequate, concluded.missing), adequacy=described)
-    kept[0] = replace(kept[0], diagnosis=seen)
-    status = Status.UNEXPLAINED if opposed else concluded.status
-    return replace(
-        concluded,
-        stages=kept,
-        status=status,
-        adequacy=described,
-        refused=refused,
-        opposed=opposed,
-        constant=constant,
-    )
+        reason, nothing_else = by_no_law(refused), False
+    concluded = _judged(kept, reason, nothing_else, contradictions)
+    tried = kept[-1].effects
+    if concluded.status is Status.UNEXPLAINED and tried:
+        refused = (*refused, *tried)
+        reason = too_little(tried, concluded.unexplained_fraction)
+        concluded = _judged(kept[:1], reason, False, contradictions)
+    if opposed:
+        concluded = replace(concluded, status=Status.UNEXPLAINED)
+    return replace(concluded, refused=refused, opposed=opposed, constant=constant)
+
+
+def _judged(
+    stages: list[Stage], reason: str, nothing_else: bool, contradictions: Sequence[str]
+) -> Improvement:
+    """The verdict on stages, and the first one's diagnosis as it may be said beside it."""
+    described = adequacy(stages[-1].fit.evaluation, last_diagnosis(stages).noise)
+    concluded = conclude(stages, reason, nothing_else, contradictions, described.misfits)
+    seen = stages[0].diagnosis.seen_beside(described.adequate, concluded.missing)
+    first = replace(stages[0], diagnosis=replace(seen, adequacy=described))
+    return replace(concluded, stages=[first, *stages[1:]], adequacy=described)
 
 
 def _part(progress: Progress | None, name: str, begin: float, end: float) -> Progress | None:

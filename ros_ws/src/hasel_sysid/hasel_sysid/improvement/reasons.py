@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from hasel_sysid.data_gate import Finding
+from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.improvement.conclusion import near_noise
 from hasel_sysid.improvement.result import Stage
 from hasel_sysid.improvement.wrong_constant import WrongConstant
@@ -17,7 +18,6 @@ _CREDIT = (
 
 
 def why_the_last(
-    time_limit: TimeLimit,
     found: Searched,
     choice: Choice,
     policy: Policy,
@@ -34,11 +34,28 @@ def why_the_last(
         reason, done = _why_here(found, choice, policy, first)
         if choice.lawless:
             reason = f"{reason} {' and '.join(map(name_of, choice.lawless))} would do as well, but by no law."
-    if time_limit.left_something_out:
-        untried = first.diagnosis.not_tried if first.diagnosis else []
-        what = f"not tried: {', '.join(untried)}" if untried else "not every set of effects was tried"
-        reason = f"{reason} The search ended at {time_limit}; {what}."
     return reason, done
+
+
+def too_little(effects: Sequence[str], left: float) -> str:
+    """Why effects that leave this share of the error above the noise are not added."""
+    return (
+        f"{listed(effects)} would take away {1 - left:.0%} of the error above the noise, which explains too "
+        "little of it: not added."
+    )
+
+
+def by_no_law(effects: Sequence[str]) -> str:
+    """Why effects are not added whose size would have to change."""
+    return f"{listed(effects)} would lower the error, but by no law: not added."
+
+
+def what_was_not_tried(time_limit: TimeLimit, first: Diagnosis) -> str:
+    """What there was no time for, in a sentence; empty where there was time for everything."""
+    if not time_limit.left_something_out:
+        return ""
+    untried = f"not tried: {', '.join(first.not_tried)}" if first.not_tried else ""
+    return f"The search ended at {time_limit}; {untried or 'not every set of effects was tried'}."
 
 
 def _why_here(found: Searched, choice: Choice, policy: Policy, first: Stage) -> tuple[str, bool]:
@@ -56,7 +73,7 @@ def _why_here(found: Searched, choice: Choice, policy: Policy, first: Stage) -> 
             f"{what} listed effect foretells runs that are left out of the fit better than none does.",
             trifle,
         )
-    added = " and ".join(in_order(choice, choice.chosen))
+    added = listed(in_order(choice, choice.chosen))
     if nothing_else:
         return f"What is left after adding {added} looks like no other effect.", True
     if len(choice.chosen) >= policy.most_effects:
@@ -74,3 +91,8 @@ def in_order(choice: Choice, effects: EffectSet) -> tuple[str, ...]:
     for step in choice.path:
         order += sorted(step - set(order))
     return tuple(effect for effect in order if effect in effects)
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names in a sentence: a, b and c."""
+    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))

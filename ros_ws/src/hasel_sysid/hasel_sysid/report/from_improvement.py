@@ -8,6 +8,7 @@ from hasel_sim.model.value_text import value_with_error
 
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.diagnosis import Verdict
+from hasel_sysid.improvement.reasons import listed
 from hasel_sysid.improvement.result import Improvement, Status
 from hasel_sysid.improvement.wrong_constant import WrongConstant
 from hasel_sysid.report.content import KeyNumber, NextRun, RankedRow, ReportContent, Stage
@@ -101,19 +102,15 @@ def what_is_missing(improvement: Improvement) -> str:
     sure = [effect for effect in missing if effect not in improvement.open_values]
     perhaps = [effect for effect in missing if effect in improvement.open_values]
     if not sure:
-        return f"Perhaps {_listed(perhaps)} are missing: {most}, and by itself each may do nothing."
+        return f"Perhaps {listed(perhaps)} are missing: {most}, and by itself each may do nothing."
     exchanged = [e for e in missing if improvement.diagnosis.finding(e).verdict is not Verdict.MISSING]
     why = [
         f" Of the effects that looked alike at first, {effect} fits best together with "
-        f"{_listed([e for e in missing if e != effect])}."
+        f"{listed([e for e in missing if e != effect])}."
         for effect in exchanged
     ]
-    also = f", and perhaps {_listed(perhaps)}" if perhaps else ""
-    return f"{_listed(sure)} {'is' if len(sure) == 1 else 'are'} missing{also}: {most}.{''.join(why)}"
-
-
-def _listed(names: Sequence[str]) -> str:
-    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+    also = f", and perhaps {listed(perhaps)}" if perhaps else ""
+    return f"{listed(sure)} {'is' if len(sure) == 1 else 'are'} missing{also}: {most}.{''.join(why)}"
 
 
 def _key_numbers(improvement: Improvement, comparisons: Sequence[Comparison]) -> tuple[KeyNumber, ...]:

@@ -45,6 +45,22 @@ def test_a_stranger_is_not_explained():
     assert improved((), stranger=0.02).status in (Status.UNEXPLAINED, Status.PARTLY_EXPLAINED)
 
 
+def test_what_explains_too_little_is_not_added():
+    """It is reported as tried, with what it would take away; the model stays the baseline, and nothing is missing."""
+    tried = []
+    found = improved((), stranger=0.02, on_stage=tried.append)
+    assert found.status is Status.UNEXPLAINED
+    assert set(found.refused) == set(tried[-1].effects)
+    assert len(found.refused) > 0
+    assert [stage.effects for stage in found.stages] == [()]
+    assert found.model.effects == ()
+    assert found.missing == ()
+    assert not [f for f in found.diagnosis.findings if f.verdict is Verdict.MISSING]
+    assert "of the error above the noise, which explains too little of it: not added" in found.reason
+    assert not found.adequacy.adequate
+    assert found.unexplained_fraction == 1.0
+
+
 def test_the_number_of_effects_is_kept_to():
     """Three are hidden, two may be added: what is left is not called explained."""
     found = improved(("slow_creep", "pre_bend", "gravity_tilt"), most_effects=2)
