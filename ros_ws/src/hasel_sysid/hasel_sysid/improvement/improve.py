@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from functools import cache, partial
+from functools import partial
 
 from hasel_sim.model import Model
 
@@ -14,7 +14,8 @@ from hasel_sysid.estimation import FitResult, fit_from_afar, in_step, is_close
 from hasel_sysid.estimation.refinement import changes_by_refinement, with_numerical_error
 from hasel_sysid.improvement.conclusion import conclude, last_diagnosis
 from hasel_sysid.improvement.from_afar import from_afar
-from hasel_sysid.improvement.lawful import against_law, without_contradictions
+from hasel_sysid.improvement.judges import Judges, refined
+from hasel_sysid.improvement.lawful import without_contradictions
 from hasel_sysid.improvement.reasons import (
     by_no_law,
     in_order,
@@ -24,12 +25,11 @@ from hasel_sysid.improvement.reasons import (
 )
 from hasel_sysid.improvement.result import Improvement, Stage
 from hasel_sysid.improvement.set_up import opposed_runs
-from hasel_sysid.improvement.wrong_constant import WrongConstant, wrong_constant
+from hasel_sysid.improvement.wrong_constant import WrongConstant
 from hasel_sysid.problem import Problem
-from hasel_sysid.selection import POLICY, Searched, choose, search
-from hasel_sysid.selection.sets import EffectSet, FittedSet
+from hasel_sysid.selection import POLICY, choose, search
 from hasel_sysid.selection.simulated_sets import SimulatedSets
-from hasel_sysid.selection.verdicts import diagnosis, noise_allowed
+from hasel_sysid.selection.verdicts import diagnosis
 
 Progress = Callable[[str, float], None]
 OnStage = Callable[[Stage], None]
@@ -60,26 +60,14 @@ def improve(
     far_off = near and not is_close(fit.evaluation)
     slack, given = list(changes.values()) if near else (), model if far_off else None
     sets = SimulatedSets(problem, fit, effects, slack, given)
-
-    @cache
-    def refined(known: FittedSet) -> FitResult:
-        return _refined(problem, known.fit)
-
-    def lawful(found: Searched, effects: EffectSet) -> bool:
-        known, noise, names = found.known[effects], noise_allowed(sets, found), sorted(effects)
-        # what finer numerics change makes errors wider: what speaks for a law without it does so with it
-        return not (against_law(known.fit, noise, names) and against_law(refined(known), noise, names))
-
-    def described(found: Searched, effects: EffectSet) -> bool:
-        return adequacy(found.known[effects].fit.evaluation, noise_allowed(sets, found)).adequate
-
+    judges = Judges(sets, policy, opposed)
     report = _part(progress, "search", 0.25, 0.95)
-    found = search(sets, policy, report, begun, lawful=lawful, described=described)
-    choice = choose(found, policy, partial(lawful, found))
+    found = search(sets, policy, report, begun, judges)
+    choice = choose(found, policy, partial(judges.lawful, found))
     said = diagnosis(sets, found, choice, changes)
-    constant = None if opposed else wrong_constant(sets, found, choice.chosen, policy)
+    constant = judges.constant(found, choice.chosen)
     if constant:
-        constant = replace(constant, fit=_refined(problem, constant.fit))
+        constant = replace(constant, fit=refined(problem, constant.fit))
         said = said.of_no_effect()
     stages = [_stage(with_numerical_error(fit, changes), (), validation, said)]
     if on_stage:
@@ -91,19 +79,13 @@ def improve(
     path = () if opposed or constant else choice.path[1:]
     for effects_so_far, fitted in zip(path, sets.finished([found.known[s] for s in path]), strict=True):
         order = in_order(choice, effects_so_far)
-        fit_so_far = refined(fitted)
-        stages.append(_stage(fit_so_far, order, validation, None))
+        stages.append(_stage(judges.refined(fitted), order, validation, None))
         if on_stage:
             on_stage(stages[-1])
     reason, done = why_the_last(found, choice, policy, stages[0], opposed, constant)
     concluded = _concluded(stages, reason, done, bool(opposed), constant)
     untried = what_was_not_tried(problem.time_limit, said)
     return replace(concluded, reason=f"{concluded.reason} {untried}") if untried else concluded
-
-
-def _refined(problem: Problem, fit: FitResult) -> FitResult:
-    """A fit with what finer numerics would change."""
-    return with_numerical_error(fit, changes_by_refinement(problem, fit.evaluation))
 
 
 def _stage(

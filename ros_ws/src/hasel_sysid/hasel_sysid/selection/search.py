@@ -1,8 +1,9 @@
 """The search over sets of effects: add, exchange, drop; what promises most is fitted in full."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Protocol
 
 from hasel_sysid.policy import Policy
 from hasel_sysid.selection.choice import all_alike, choose, smallest
@@ -12,7 +13,18 @@ from hasel_sysid.selection.searched import Searched, lasting, plausible, worth_m
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Sets, name_of
 from hasel_sysid.selection.stand_ins import StandIns
 
-Judge = Callable[[Searched, EffectSet], bool]
+
+class Judges(Protocol):
+    """What may be asked of a known set beyond how likely it is."""
+
+    def lawful(self, found: Searched, effects: EffectSet) -> bool:
+        """Whether what it adds is a law."""
+
+    def described(self, found: Searched, effects: EffectSet) -> bool:
+        """Whether it describes its runs everywhere."""
+
+    def named(self, found: Searched, effects: EffectSet) -> bool:
+        """Whether its effects would be said to be missing: what is not named needs nothing that stands in its place."""
 
 
 def search(
@@ -20,17 +32,16 @@ def search(
     policy: Policy,
     progress: Progress | None = None,
     begun: tuple[FittedSet, ...] = (),
+    judges: Judges | None = None,
     stand_ins: bool = True,
-    lawful: Judge | None = None,
-    described: Judge | None = None,
 ) -> Searched:
     """Extend the best sets as long as anything is missing from the best one and something promises to supply it.
 
-    begun: further sets that are fitted already; stand_ins: also fit what looks like a chosen effect in its place;
-    lawful: whether what a known set adds is a law; described: whether a known set describes its runs everywhere.
+    begun: further sets that are fitted already; judges: of sets, beyond their likelihoods; stand_ins: also fit what
+    looks like a chosen effect in its place.
     """
     known = {f.effects: f for f in (sets.baseline(), *begun)}
-    state = _Search(sets, policy, known, progress=progress, lawful=lawful, described=described)
+    state = _Search(sets, policy, known, progress=progress, judges=judges)
     state.look_beyond(NOTHING, None)
     state.fit(state.singles(), 1, even_late=True)
     while True:
@@ -39,10 +50,11 @@ def search(
         if not more and not state.looked_closer(found.best):
             break
     found = state.shrunk(found)
-    state.fit(state.rivals(found, smallest(found, policy)), policy.effort.fits)
-    state.look_for_a_law()
+    if state.would_be_named(smallest(found, policy)):
+        state.fit(state.rivals(found, smallest(found, policy)), policy.effort.fits)
+        state.look_for_a_law()
     state.deepen(state.chosen())
-    if stand_ins:
+    if stand_ins and state.would_be_named(state.chosen()):
         state.exchange(state.chosen())
     return state.judged()
 
@@ -52,8 +64,11 @@ class _Search(StandIns):
     """closely: the sets that were looked beyond with every effect."""
 
     closely: set[EffectSet] = field(default_factory=lambda: {NOTHING})
-    lawful: Judge | None = None
-    described: Judge | None = None
+    judges: Judges | None = None
+
+    def would_be_named(self, effects: EffectSet) -> bool:
+        """Whether its effects would be said to be missing."""
+        return self.judges is None or self.judges.named(self.judged(), effects)
 
     def anything_missing(self) -> bool:
         """From the best set, by more than noise."""
@@ -96,7 +111,7 @@ class _Search(StandIns):
         """Whether a set does not describe its runs somewhere: where nothing shows the noise alone, what the best set
         leaves is all that is known of it, and only its shares tell that some of it is no noise.
         """
-        return self.described is not None and not self.described(self.judged(), effects)
+        return self.judges is not None and not self.judges.described(self.judged(), effects)
 
     def look_beyond(self, effects: EffectSet, wanted: list[str] | None) -> None:
         """Learn what one more effect could do to a set."""
@@ -157,7 +172,7 @@ class _Search(StandIns):
         That promise may be small: what stood in for an effect by no law has drawn every other value to itself.
         """
         chosen = smallest(self.judged(), self.policy)
-        if not chosen or self.lawful is None or self.may_be_a_law(chosen):
+        if not chosen or self.judges is None or self.may_be_a_law(chosen):
             return
         law = self.best_law(len(chosen) - 1)
         if law is None or self.sets.out_of_time():
@@ -171,18 +186,22 @@ class _Search(StandIns):
     def may_be_a_law(self, chosen: EffectSet) -> bool:
         """Whether a set is a law, or one that may stand in its place."""
         found = self.judged()
-        return any(self.lawful(found, one) for one in all_alike(found, chosen, self.policy))
+        return any(self.is_law(found, one) for one in all_alike(found, chosen, self.policy))
 
     def best_law(self, size: int) -> EffectSet | None:
         """Of the known sets of a size that are laws, the one that is worth most; no effect at all is one."""
         found = self.judged()
         every = [one for one in worth_most(found) if len(one) == size]
-        return next((one for one in every if not one or self.lawful(found, one)), None)
+        return next((one for one in every if not one or self.is_law(found, one)), None)
 
     def chosen(self) -> EffectSet:
         """The set that would be taken now."""
         found = self.judged()
-        return choose(found, self.policy, partial(self.lawful, found) if self.lawful else None).chosen
+        return choose(found, self.policy, partial(self.is_law, found)).chosen
+
+    def is_law(self, found: Searched, effects: EffectSet) -> bool:
+        """Whether what a known set adds is a law; where nobody judges, everything is."""
+        return self.judges is None or self.judges.lawful(found, effects)
 
     def deepen(self, chosen: EffectSet) -> None:
         """Look for a deeper valley of the set to be taken."""

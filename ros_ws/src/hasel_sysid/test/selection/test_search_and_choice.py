@@ -1,6 +1,7 @@
 """Which set of effects is chosen, on linear problems with a known truth and no simulator."""
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -13,6 +14,27 @@ from hasel_sysid.testing.linear_sets import LinearSets, run_numbers, smooth_seri
 WHITE = NoiseModel(0.03**2, 0.0, 0.5)
 SLOW = NoiseModel(0.01**2, 0.03**2, 0.9)
 NAMES = tuple("abcdefghij")
+
+
+@dataclass(frozen=True)
+class Judged:
+    """What is said of sets beyond their likelihoods: everything is right unless told otherwise."""
+
+    is_law: Callable[[frozenset], bool] = lambda effects: True
+    describes: Callable[[frozenset], bool] = lambda effects: True
+    is_named: Callable[[frozenset], bool] = lambda effects: True
+
+    def lawful(self, found, effects):
+        """Whether what a set adds is a law."""
+        return self.is_law(effects)
+
+    def described(self, found, effects):
+        """Whether a set describes its runs."""
+        return self.describes(effects)
+
+    def named(self, found, effects):
+        """Whether its effects would be said to be missing."""
+        return self.is_named(effects)
 
 
 def made_up(seed, names=NAMES, runs=None):
@@ -379,6 +401,21 @@ def test_what_looks_like_a_chosen_one_need_not_be_fitted_if_it_is_told_apart():
     assert sum(len(effects) == 2 and "d" in effects for effects in found.known) == 2
 
 
+def test_what_is_not_named_is_not_looked_for_in_other_shapes():
+    """Effects that would not be said to be missing need no look-alikes, and the choice is the same without them."""
+    series = made_up(1)
+    series["b"] = series["a"] + 0.01 * series["b"]
+    sets = LinearSets(series, {"a": 0.1, "d": 0.3}, WHITE, 1)
+    begun = tuple(sets.fit(frozenset(one), sets.baseline(), ()) for one in ("ad", "d"))
+    named, unnamed = (
+        search(sets, POLICY, begun=begun, judges=Judged(is_named=lambda _, answer=answer: answer))
+        for answer in (True, False)
+    )
+    assert choose(named, POLICY).chosen == choose(unnamed, POLICY).chosen == {"a", "d"}
+    assert choose(named, POLICY).groups == (("a", "b"),)
+    assert frozenset("bd") in set(named.known) - set(unnamed.known)
+
+
 class _LookOtherwiseAtFirst(LinearSets):
     """Beside the baseline, effects look like something else: a model that is out of step shows them out of step."""
 
@@ -413,7 +450,7 @@ def test_what_fails_somewhere_is_looked_beyond_though_nothing_else_tells_it_from
         sets = _NothingShowsTheNoise(made_up(seed), {"a": 0.3, "d": 0.05}, WHITE, seed)
         found = search(sets, POLICY)
         assert choose(found, POLICY).chosen == {"a"}
-        found = search(sets, POLICY, described=lambda _, effects: effects == frozenset("ad"))
+        found = search(sets, POLICY, judges=Judged(describes=frozenset("ad").__eq__))
         assert choose(found, POLICY).chosen == {"a", "d"}
 
 
@@ -584,9 +621,9 @@ def test_while_what_is_chosen_is_no_law_what_promises_as_much_is_fitted():
     left = {frozenset(name) for name in "abcefg"} - set(known)
     assert left
     for only in left:
-        found = search(sets, POLICY, stand_ins=False, lawful=lambda _, effects, only=only: effects == only)
+        found = search(sets, POLICY, stand_ins=False, judges=Judged(is_law=only.__eq__))
         assert choose(found, POLICY, lambda effects, only=only: effects == only).chosen == only
-    every = search(sets, POLICY, stand_ins=False, lawful=lambda found, effects: True)
+    every = search(sets, POLICY, stand_ins=False, judges=Judged())
     assert set(every.known) == set(known)
 
 
@@ -608,7 +645,9 @@ def test_the_best_law_is_extended_by_what_promises_little(seed):
         series[name] = series["a"] + 0.02 * series[name]
     sets = WithinReach(series, {"a": 0.1, "b": 0.1}, WHITE, seed)
     assert frozenset("cd") not in search(sets, POLICY, stand_ins=False).known
-    found = search(sets, POLICY, stand_ins=False, lawful=lambda _, effects: effects <= frozenset("cd"))
+    found = search(
+        sets, POLICY, stand_ins=False, judges=Judged(is_law=lambda effects: effects <= frozenset("cd"))
+    )
     assert choose(found, POLICY, lambda effects: effects <= frozenset("cd")).chosen == frozenset("cd")
 
 
