@@ -10,6 +10,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from hasel_sim.mechanics import branch_loops as loops
+from hasel_sim.simd import lane_tuple
+
 
 class Branches:
     """The branches' moduli, times and shares of C : E at the start of a run [branches, lanes].
@@ -56,12 +59,14 @@ class Branches:
         """
         if not np.any(step):
             return stresses.sum(axis=0)
-        left, gain = self.factors(step)
-        return (left[:, None, None, None] * stresses).sum(axis=0) - gain.sum(axis=0) * green
+        out = np.empty((1, *green.shape))
+        loops.history(*self.factors(step), stresses[None], green[None], out, lane_tuple(green.shape[-1]))
+        return out[0]
 
     def advance(
         self, stresses: np.ndarray, green: np.ndarray, new_green: np.ndarray, step: float | np.ndarray
     ) -> np.ndarray:
         """Stresses of all branches at the end of a step."""
-        left, gain = (factor[:, None, None, None] for factor in self.factors(step))
-        return left * stresses + gain * (new_green - green)
+        out, lane = np.empty((1, *stresses.shape)), lane_tuple(green.shape[-1])
+        loops.advance(*self.factors(step), stresses[None], green[None], new_green[None], out, lane)
+        return out[0]

@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from hasel_sim.mechanics import slope_loops
+from hasel_sim.mechanics import branch_loops, slope_loops
 from hasel_sim.mechanics.balance import balance
 from hasel_sim.mechanics.banded import BandMatrix, singular_matrix
 from hasel_sim.mechanics.banded_lu import clear_band
+from hasel_sim.mechanics.lane_loops import copy_lanes
 from hasel_sim.mechanics.law_table import LawTable
 from hasel_sim.mechanics.law_terms import add_site_matrix
 from hasel_sim.mechanics.linearisation import Strained
@@ -37,6 +38,9 @@ class StepSlopes:
         self._found = np.empty(nodal), np.empty((*points, 3, lanes))
         self._at_rest = np.zeros((columns, 1, lanes))
         self._no_stress = np.empty((0, *points, 3, lanes))
+        carried = (columns, *points, 3, lanes)
+        self._history, self._green = (np.empty(carried if len(solid.branches) else 0) for _ in range(2))
+        self._branch = np.empty((columns, len(solid.branches), *carried[1:]) if len(solid.branches) else 0)
 
     def advance(
         self, part: Part, slopes: StateSlopes, by_contraction: np.ndarray, chosen: np.ndarray
@@ -48,7 +52,6 @@ class StepSlopes:
         """
         state, drive, c, lane = part.before, part.drive, part.coefficients, self._lane
         moving = slopes.position, slopes.velocity, slopes.acceleration
-        before = None if slopes.branch is None else slopes.copy()
         strained = Strained(self.system, part.motion)
         driven = self._driven(part)
         self._laws.linearise(strained, drive, c.matrix_weights)
@@ -62,7 +65,7 @@ class StepSlopes:
             driven,
             (rate, inertia),
             np.concatenate([self._at_rest, by_contraction], axis=1),
-            self._no_stress if before is None else self._history(before, c.at),
+            self._no_stress if slopes.branch is None else self._carried(slopes, c.at),
             (self._laws.terms[2][0], self._laws.by_rate),
             self._right,
             lane,
@@ -75,8 +78,8 @@ class StepSlopes:
         slope_loops.pad(self._right, self._padded, lane)
         solve(self._matrix, self._padded, lane)
         slope_loops.advance(moving, instead, self._padded, c.to_end, chosen, lane)
-        if before is not None:
-            self._advance_branches(part, before, slopes, chosen)
+        if slopes.branch is not None:
+            self._advance_branches(part, slopes, chosen)
 
     def _driven(self, part: Part) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The solid's coefficients, the contraction and what the branches carry, where a step balances."""
@@ -105,23 +108,25 @@ class StepSlopes:
         if (bad >= 0).all():
             raise singular_matrix(bad[0])
 
-    def _history(self, slopes: StateSlopes, at: float | np.ndarray) -> np.ndarray:
+    def _carried(self, slopes: StateSlopes, at: float | np.ndarray) -> np.ndarray:
         """Changes of the stress that the branches carry to the balance, [columns, elements, points, 3, lanes]."""
-        left, gain = self.system.solid.branches.factors(at)
-        return np.einsum("bl,cbegsl->cegsl", left, slopes.branch) - gain.sum(axis=0) * slopes.green
+        factors = self.system.solid.branches.factors(at)
+        branch_loops.history(*factors, slopes.branch, slopes.green, self._history, self._lane)
+        return self._history
 
-    def _advance_branches(
-        self, part: Part, before: StateSlopes, slopes: StateSlopes, chosen: np.ndarray
-    ) -> None:
-        solid, step = self.system.solid, part.coefficients.step
-        F = solid.gradient(part.after.position)
-        green = np.stack([solid.green_stress_along(F, solid.gradient(x)) for x in slopes.position])
-        left, gain = (factor[:, None, None, None] for factor in solid.branches.factors(step))
-        branch = left * before.branch + gain * (green - before.green)[:, None]
+    def _advance_branches(self, part: Part, slopes: StateSlopes, chosen: np.ndarray) -> None:
+        """Once the derivatives of the positions are those of the step's end."""
+        solid, step, lane = self.system.solid, part.coefficients.step, self._lane
+        green, branch, F = self._green, self._branch, solid.gradient(part.after.position)
+        law = solid.places, solid.shear, solid.linear_lame
+        branch_loops.green_along(slopes.position, F, *law, green, lane)
+        factors = solid.branches.factors(step)
+        branch_loops.advance(*factors, slopes.branch, slopes.green, green, branch, lane)
         for column, parameter in enumerate(self.parameters):
             if isinstance(parameter, SolidSlope):
                 _add_branch_parameter(parameter, part.before, part.after, step, branch[column], green[column])
-        slopes.green[..., chosen], slopes.branch[..., chosen] = green[..., chosen], branch[..., chosen]
+        copy_lanes(green, slopes.green, chosen, lane)
+        copy_lanes(branch, slopes.branch, chosen, lane)
 
 
 def _add_branch_parameter(

@@ -1,0 +1,52 @@
+"""Compiled loops over the stresses of internal branches and over their derivatives, see `branches`.
+
+Stresses [branches, elements, points, 3, lanes], C : E [elements, points, 3, lanes]; derivatives have the columns first.
+What a step leaves and adds: left, gain [branches, lanes].
+"""
+
+import numpy as np
+from numba import njit
+
+from hasel_sim.mechanics.strain import deformation, green_stress_direction
+from hasel_sim.simd import load, store, zero
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def history(left, gain, stresses, green, out, lane):
+    """Derivatives of what the branches carry over a step, [columns, elements, points, 3, lanes]."""
+    lanes, branches = len(lane), stresses.shape[1]
+    size = green.size // max(1, green.shape[0])
+    total = zero(lane)
+    for b in range(branches):
+        total = total + load(gain, b * lanes, lane)
+    for c in range(green.shape[0]):
+        for at in range(0, size, lanes):
+            kept = zero(lane) - total * load(green, c * size + at, lane)
+            for b in range(branches):
+                old = load(stresses, (c * branches + b) * size + at, lane)
+                kept = kept + load(left, b * lanes, lane) * old
+            store(out, c * size + at, kept)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def green_along(moved, F, places, shear, lame, out, lane):
+    """Derivatives of C : E along those of the positions, moved [columns, nodes, 2, lanes], at a deformation F."""
+    elements, gradients, _, stretch = places
+    change = np.empty_like(F)
+    for c in range(moved.shape[0]):
+        deformation(moved[c], elements, gradients, stretch, change, lane)
+        green_stress_direction(F, change, shear, lame, out[c], lane)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def advance(left, gain, stresses, green, new_green, out, lane):
+    """Derivatives of the branches' stresses at the end of a step, where those of C : E are `new_green`."""
+    lanes, branches = len(lane), stresses.shape[1]
+    size = green.size // max(1, green.shape[0])
+    for c in range(green.shape[0]):
+        for at in range(0, size, lanes):
+            more = load(new_green, c * size + at, lane) - load(green, c * size + at, lane)
+            for b in range(branches):
+                place = (c * branches + b) * size + at
+                old = load(left, b * lanes, lane) * load(stresses, place, lane)
+                store(out, place, old + load(gain, b * lanes, lane) * more)
