@@ -53,18 +53,21 @@ class SetFits:
             model = self._model(near.fit.model, effects, near.effects).with_values({})
             start = {name: _inside(model, name, values[name]) for name in model.free if name in values}
             found = _fitted(problem, model.with_values(start))
-            found = better_from(found, self._as_given(found), partial(_fitted, problem))
+            begun_close = is_close(base.evaluation)
+            found = better_from(found, self._as_given(found, begun_close), partial(_fitted, problem))
         except (HaselSimError, ModelError):
             return None
         return known_set(found, self._effects)
 
-    def _as_given(self, fit: FitResult) -> dict[str, float]:
+    def _as_given(self, fit: FitResult, begun_close: bool) -> dict[str, float]:
         """Values before any fit, where a fit that began far off has not come close, or of what nothing shows there: an
         amplitude that no muscle has the time to reach, from which no derivative leads back.
+
+        A fit that began beside a set that is close and ended far off lacks an effect, and not its way.
         """
         if self._given is None:
             return {}
-        close = is_close(fit.evaluation)
+        close = begun_close or is_close(fit.evaluation)
         return {n: self._given.values[n] for n in self._given.free if not close or n in fit.undetermined}
 
     def _model(self, model: Model, effects: EffectSet, before: EffectSet) -> Model:

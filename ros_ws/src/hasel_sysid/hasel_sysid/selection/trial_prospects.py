@@ -9,6 +9,8 @@ from hasel_sysid.diagnosis.trial import Trial, Trials, room
 from hasel_sysid.selection.sets import EffectSet, Prospect
 
 _OTHER_SIZES = (0.25, 0.5, 2.0, 4.0)
+_FOLLOWED = 2
+"""Of the other sizes, those whose next step promises most."""
 
 Rank = Callable[[Prospect], float]
 """How much a prospect is worth, by which the best of each effect is told."""
@@ -18,7 +20,8 @@ def from_other_sizes(trials: Trials, of: Prospect) -> Prospect | None:
     """The same effect from where other sizes lead, one step on; None where it has no size to begin with."""
     start = of.start.start
     sizes = [size for factor in _OTHER_SIZES if (size := resized(start, factor)).values != start.values]
-    moved = trials.further(trials.first(sizes))
+    tried = sorted(trials.first(sizes), key=lambda trial: trial.predicted)
+    moved = trials.further(tried[:_FOLLOWED])
     if not moved:
         return None
     best = min(moved, key=lambda trial: trial.sum_of_squares)
