@@ -15,7 +15,7 @@ from hasel_sim.simd import load, store, zero
 def history(left, gain, stresses, green, out, lane):
     """Derivatives of what the branches carry over a step, [columns, elements, points, 3, lanes]."""
     lanes, branches = len(lane), stresses.shape[1]
-    size = green.size // max(1, green.shape[0])
+    size = green.shape[1] * green.shape[2] * green.shape[3] * lanes
     total = zero(lane)
     for b in range(branches):
         total = total + load(gain, b * lanes, lane)
@@ -42,7 +42,7 @@ def green_along(moved, F, places, shear, lame, out, lane):
 def advance(left, gain, stresses, green, new_green, out, lane):
     """Derivatives of the branches' stresses at the end of a step, where those of C : E are `new_green`."""
     lanes, branches = len(lane), stresses.shape[1]
-    size = green.size // max(1, green.shape[0])
+    size = green.shape[1] * green.shape[2] * green.shape[3] * lanes
     for c in range(green.shape[0]):
         for at in range(0, size, lanes):
             more = load(new_green, c * size + at, lane) - load(green, c * size + at, lane)

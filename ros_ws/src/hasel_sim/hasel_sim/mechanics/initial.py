@@ -99,12 +99,10 @@ def _branch_slopes(
     system: System, state: State, parameters: list[ResidualSlope], slopes: StateSlopes
 ) -> None:
     solid = system.solid
-    F = solid.gradient(state.position)
     slopes.branch = np.zeros((len(parameters), *state.branch.shape))
-    slopes.green = np.zeros((len(parameters), *state.green.shape))
+    slopes.green = solid.green_stress_along(solid.gradient(state.position), slopes.position)
     for column, parameter in enumerate(parameters):
-        change = solid.green_stress_along(F, solid.gradient(slopes.position[column]))
-        slopes.green[column], slopes.branch[column] = change, solid.branches.at_start(change)
+        slopes.branch[column] = solid.branches.at_start(slopes.green[column])
         if isinstance(parameter, SolidSlope):
             for other, sign in parameter.solids:
                 green = other.green_stress(other.gradient(state.position))

@@ -6,7 +6,7 @@ from copy import copy
 import numpy as np
 
 from hasel_sim.effects.base import Coefficients
-from hasel_sim.mechanics import assembly, constitutive, strain
+from hasel_sim.mechanics import assembly, branch_loops, constitutive, strain
 from hasel_sim.mechanics.branches import Branches
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.mesh.serendipity import reference_gradients
@@ -112,10 +112,11 @@ class Solid:
         strain.green_stress(F, self.shear, self.linear_lame, out, self._lane)
         return out
 
-    def green_stress_along(self, F: np.ndarray, change: np.ndarray) -> np.ndarray:
-        """Change of C : E along a change of F."""
-        out = np.empty((*self.areas.shape, 3, F.shape[-1]))
-        strain.green_stress_direction(F, change, self.shear, self.linear_lame, out, self._lane)
+    def green_stress_along(self, F: np.ndarray, moved: np.ndarray) -> np.ndarray:
+        """Changes of C : E along those of the positions [columns, nodes, 2, lanes], one column after the other."""
+        out = np.empty((len(moved), *self.areas.shape, 3, F.shape[-1]))
+        law = self.places, self.shear, self.linear_lame
+        branch_loops.green_along(np.ascontiguousarray(moved), F, *law, out, self._lane)
         return out
 
     def _at(self, F, rate, contraction: np.ndarray, history: np.ndarray | None, step) -> tuple:

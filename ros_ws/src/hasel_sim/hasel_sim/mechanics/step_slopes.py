@@ -38,9 +38,8 @@ class StepSlopes:
         self._found = np.empty(nodal), np.empty((*points, 3, lanes))
         self._at_rest = np.zeros((columns, 1, lanes))
         self._no_stress = np.empty((0, *points, 3, lanes))
-        carried = (columns, *points, 3, lanes)
-        self._history, self._green = (np.empty(carried if len(solid.branches) else 0) for _ in range(2))
-        self._branch = np.empty((columns, len(solid.branches), *carried[1:]) if len(solid.branches) else 0)
+        self._history = np.empty((columns, *points, 3, lanes))
+        self._branch = np.empty((columns, len(solid.branches), *points, 3, lanes))
 
     def advance(
         self, part: Part, slopes: StateSlopes, by_contraction: np.ndarray, chosen: np.ndarray
@@ -117,11 +116,11 @@ class StepSlopes:
     def _advance_branches(self, part: Part, slopes: StateSlopes, chosen: np.ndarray) -> None:
         """Once the derivatives of the positions are those of the step's end."""
         solid, step, lane = self.system.solid, part.coefficients.step, self._lane
-        green, branch, F = self._green, self._branch, solid.gradient(part.after.position)
-        law = solid.places, solid.shear, solid.linear_lame
-        branch_loops.green_along(slopes.position, F, *law, green, lane)
-        factors = solid.branches.factors(step)
-        branch_loops.advance(*factors, slopes.branch, slopes.green, green, branch, lane)
+        green, branch = (
+            solid.green_stress_along(solid.gradient(part.after.position), slopes.position),
+            self._branch,
+        )
+        branch_loops.advance(*solid.branches.factors(step), slopes.branch, slopes.green, green, branch, lane)
         for column, parameter in enumerate(self.parameters):
             if isinstance(parameter, SolidSlope):
                 _add_branch_parameter(parameter, part.before, part.after, step, branch[column], green[column])

@@ -10,7 +10,7 @@ from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation.adam import fit_adam
 from hasel_sysid.estimation.from_afar import fit_from_afar
 from hasel_sysid.estimation.least_squares import Progress
-from hasel_sysid.estimation.refinement import changes_by_refinement, with_numerical_error
+from hasel_sysid.estimation.refinement import refined
 from hasel_sysid.estimation.result import FitResult
 from hasel_sysid.estimation.second_start import asleep, better_from, left_without_effect
 from hasel_sysid.problem import Problem
@@ -34,4 +34,4 @@ def identify(problem: Problem, model: Model, method: str, progress: Progress | N
     fit = better_from(first, sleeping, fitted, model)
     if not sleeping:
         fit = better_from(first, left_without_effect(first), fitted)
-    return with_numerical_error(fit, changes_by_refinement(problem, fit.evaluation))
+    return refined(problem, fit)

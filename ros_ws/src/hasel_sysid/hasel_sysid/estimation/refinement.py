@@ -54,3 +54,8 @@ def with_numerical_error(fit: FitResult, changes: Mapping[str, np.ndarray]) -> F
     return replace(
         fit, model=fit.model.with_covariance(names, covariance), changes_by_refinement=dict(changes)
     )
+
+
+def refined(problem: Problem, fit: FitResult) -> FitResult:
+    """The same, its refinements simulated now."""
+    return with_numerical_error(fit, changes_by_refinement(problem, fit.evaluation))

@@ -11,10 +11,10 @@ from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.diagnosis.candidates import candidate_effects
 from hasel_sysid.diagnosis.explained import Status
 from hasel_sysid.estimation import FitResult, fit_from_afar, in_step, is_close
-from hasel_sysid.estimation.refinement import changes_by_refinement, with_numerical_error
+from hasel_sysid.estimation.refinement import changes_by_refinement, refined, with_numerical_error
 from hasel_sysid.improvement.conclusion import conclude, last_diagnosis
 from hasel_sysid.improvement.from_afar import from_afar
-from hasel_sysid.improvement.judges import Judges, refined
+from hasel_sysid.improvement.judges import Judges
 from hasel_sysid.improvement.lawful import without_contradictions
 from hasel_sysid.improvement.reasons import (
     by_no_law,

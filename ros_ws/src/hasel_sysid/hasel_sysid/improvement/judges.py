@@ -4,17 +4,16 @@ from collections.abc import Sequence
 
 from hasel_sysid.data_gate import Finding
 from hasel_sysid.diagnosis.adequacy import adequacy
-from hasel_sysid.diagnosis.explained import share_left
+from hasel_sysid.diagnosis.explained import Status, status_with
 from hasel_sysid.estimation import FitResult
-from hasel_sysid.estimation.refinement import changes_by_refinement, with_numerical_error
+from hasel_sysid.estimation.refinement import refined
 from hasel_sysid.improvement.lawful import against_law
 from hasel_sysid.improvement.wrong_constant import WrongConstant, wrong_constant
 from hasel_sysid.policy import Policy
-from hasel_sysid.problem import Problem
 from hasel_sysid.selection.searched import Searched
-from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet
+from hasel_sysid.selection.sets import EffectSet, FittedSet
 from hasel_sysid.selection.simulated_sets import SimulatedSets
-from hasel_sysid.selection.verdicts import noise_allowed
+from hasel_sysid.selection.verdicts import noise_allowed, share_left_by
 
 
 class Judges:
@@ -47,10 +46,9 @@ class Judges:
         """
         if self._opposed or not effects:
             return False
-        before, after = (found.known[each].fit.mean_absolute_error for each in (NOTHING, effects))
-        left = share_left(before, after, noise_allowed(self._sets, found).mean_absolute)
-        enough = left <= 1 - self._policy.part or self.described(found, effects)
-        return enough and self.constant(found, effects) is None
+        left = share_left_by(found, effects, noise_allowed(self._sets, found))
+        status = status_with(left, self.described(found, effects), nothing_else=True)
+        return status is not Status.UNEXPLAINED and self.constant(found, effects) is None
 
     def constant(self, found: Searched, chosen: EffectSet) -> WrongConstant | None:
         """The number of the model file that comes before a chosen set."""
@@ -59,8 +57,3 @@ class Judges:
         if chosen not in self._constants:
             self._constants[chosen] = wrong_constant(self._sets, found, chosen, self._policy)
         return self._constants[chosen]
-
-
-def refined(problem: Problem, fit: FitResult) -> FitResult:
-    """A fit with what finer numerics would change."""
-    return with_numerical_error(fit, changes_by_refinement(problem, fit.evaluation))

@@ -15,7 +15,7 @@ from hasel_sysid.noise import NoiseModel, allowed_noise
 from hasel_sysid.policy import POLICY
 from hasel_sysid.selection.choice import Choice
 from hasel_sysid.selection.searched import Searched
-from hasel_sysid.selection.sets import NOTHING
+from hasel_sysid.selection.sets import NOTHING, EffectSet
 from hasel_sysid.selection.simulated_sets import SimulatedSets
 
 
@@ -24,7 +24,8 @@ def diagnosis(
 ) -> Diagnosis:
     """Of the baseline: every effect by the weight of the sets that hold it; changes: by finer numerics [frames]."""
     context = _context(sets, found, choice, changes)
-    left = _left(found, choice, context.noise)
+    # what none of the effects accounts for
+    left = share_left_by(found, choice.chosen, context.noise) if choice.chosen else 1.0
     none = left if found.first.chance < found.level else 1.0
     groups = list(choice.groups)
     findings = [
@@ -71,10 +72,10 @@ def noise_allowed(sets: SimulatedSets, found: Searched) -> NoiseModel:
     return allowed_noise(found.likelihood.noise, POLICY.discrepancy * sets.swing)
 
 
-def _left(found: Searched, choice: Choice, noise: NoiseModel) -> float:
-    """Share of the mean error above the noise that the chosen set leaves: what none of the effects accounts for."""
-    before, after = (found.known[s].fit.mean_absolute_error for s in (NOTHING, choice.chosen))
-    return share_left(before, after, noise.mean_absolute) if choice.chosen else 1.0
+def share_left_by(found: Searched, effects: EffectSet, noise: NoiseModel) -> float:
+    """Share of the baseline's mean error above the noise that a known set leaves."""
+    before, after = (found.known[s].fit.mean_absolute_error for s in (NOTHING, effects))
+    return share_left(before, after, noise.mean_absolute)
 
 
 def _order(one: Finding, choice: Choice) -> float:
