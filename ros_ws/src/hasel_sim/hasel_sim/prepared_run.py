@@ -18,6 +18,9 @@ from hasel_sim.model.start_values import response_parameters
 from hasel_sim.model_mesh import marker_rows
 from hasel_sim.run import Run
 
+_ROUND_OFF = np.sqrt(np.finfo(float).eps)
+"""Difference step of an onset over the top of its range, since from 0 it passes through values of no size."""
+
 
 class PreparedRun:
     """One run with one model; `names` are the parameters by which it will be differentiated.
@@ -142,8 +145,10 @@ class PreparedRun:
         parameter = self.model.parameter(name)
         if name in constants(self.model.description):
             return constant_parameter(self.model, name)
+        magnitude = parameter.magnitude or 0.1
+        step = max(1e-6 * magnitude, _ROUND_OFF * parameter.upper) if self.model.is_onset(name) else 0.0
         return EffectParameter(
-            name, name, parameter.unit, 0.0, parameter.lower, parameter.upper, parameter.magnitude or 0.1
+            name, name, parameter.unit, 0.0, parameter.lower, parameter.upper, magnitude, difference=step
         )
 
     def at_frames(self, series: np.ndarray) -> np.ndarray:

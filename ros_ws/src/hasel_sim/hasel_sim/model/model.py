@@ -155,6 +155,11 @@ class Model:
             freed[name] = Parameter(name, known[name], unit_of(name), -float("inf"), float("inf"))
         return replace(self, parameters=freed)
 
+    def with_held(self, *names: str) -> "Model":
+        """A copy in which these parameters are not fitted. Raises ModelError for an unknown name."""
+        held = {name: replace(self.parameter(name), free=False) for name in names}
+        return replace(self, parameters={**self.parameters, **held})
+
     def with_constants_settled(self, *names: str) -> "Model":
         """A copy whose file itself has these constants at their values, which are then no parameters any more.
 

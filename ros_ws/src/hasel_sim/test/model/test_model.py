@@ -45,6 +45,15 @@ def test_what_cannot_be_is_refused(change, expected, swimmer):
         change(swimmer)
 
 
+def test_what_is_held_keeps_its_value_and_is_not_fitted(swimmer):
+    """The others stay free; a name that is no parameter is refused."""
+    held = swimmer.with_held("slope")
+    assert held.values == swimmer.values
+    assert set(swimmer.free) - set(held.free) == {"slope"}
+    with pytest.raises(ModelError, match="slop"):
+        swimmer.with_held("slop")
+
+
 def test_an_effect_of_the_muscles_is_refused_on_a_body_without():
     """The beam has none."""
     with pytest.raises(ModelError, match="acts on the muscles"):

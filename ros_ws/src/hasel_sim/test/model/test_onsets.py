@@ -1,8 +1,12 @@
 """The onset of muscles as a parameter."""
 
+import numpy as np
 import pytest
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.errors import ModelError
 from hasel_sim.model import load_model, save_model
+from hasel_sim.prepared_run import PreparedRun
+from hasel_sim.run import Run
 
 LEVELS = (3500.0, 4500.0, 5500.0)
 
@@ -62,3 +66,19 @@ def test_a_file_from_before_gets_one(tmp_path):
     text = path.read_text()
     path.write_text(text[: text.index("  onset:")])
     assert load_model(path).values["onset"] == 0.0
+
+
+@pytest.mark.parametrize("onset", [0.0, 1e-4, 1e-2, 1.0])
+def test_its_derivative_is_not_round_off_near_none(onset):
+    """A search that starts at none passes through onsets of no size; there too the slope is that of half a volt."""
+    time = np.arange(0.0, 1.0, 1 / 120)
+    signal = np.where((time % 0.5 < 0.25)[:, None], [4500.0, 0.0], [0.0, 4500.0])
+    run = Run("square", time, DriveSchedule(time, signal, ("upper", "lower")))
+    model = swimmer("charging_lag").with_values(
+        {"charging_lag.charge_time": 0.05, "charging_lag.discharge_time": 0.05, "onset": onset}
+    )
+    ready = PreparedRun(model, run, ("onset",))
+    times = ready.plan.balance_times
+    slope = ready.contraction_slopes(times)[:, 0]
+    above, below = (ready.contraction(times, {**model.values, "onset": v}) for v in (onset + 0.5, onset))
+    assert np.abs(slope - (above - below) / 0.5).max() < 1e-3 * np.abs(slope).max()

@@ -33,7 +33,8 @@ def fit_least_squares(
 ) -> FitResult:
     """Minimise the squared residuals over the model's free parameters within their bounds.
 
-    A draft of the model (coarse mesh, long steps) leads most of the way; the model itself goes the rest.
+    A draft of the model (coarse mesh, long steps) leads most of the way, without the onsets that start at none; the
+    model itself goes the rest.
     tolerance: ten times the relative change of the sum of squares at which to stop; drafts: whether to start
     with the draft, which is a waste of time when the start is already good; roughly: stop earlier where neighbouring
     frames share what is left, for then so many fewer squares tell models apart; `finished` goes on from there.
@@ -42,18 +43,19 @@ def fit_least_squares(
     """
     if not model.free:
         return fitted_result(problem.evaluate(model), 1)
-    count = 0
-    if drafts:
-        led, count, _ = _minimise(problem, draft(model), progress, 1e-2, most_evaluations)
-        model = model.with_values({name: led.model.values[name] for name in model.free})
 
-    def fitted(start: Model) -> FitResult:
+    def fitted(start: Model, led: bool) -> FitResult:
+        count = 0
+        if led:
+            first = _without_onsets(draft(start))
+            found, count, _ = _minimise(problem, first, progress, 1e-2, most_evaluations)
+            start = start.with_values({name: found.model.values[name] for name in first.free})
         evaluation, more, ended = _minimise(problem, start, progress, tolerance, most_evaluations, roughly)
-        return replace(fitted_result(evaluation, more), converged=ended)
+        return replace(fitted_result(evaluation, count + more), converged=ended)
 
-    first = fitted(model)
-    found = better_from(first, unseen_parts(first) | onsets_to_doubt(first), fitted)
-    return replace(found, iterations=count + found.iterations)
+    first = fitted(model, drafts)
+    doubted = onsets_to_doubt(first)
+    return better_from(first, unseen_parts(first) | doubted, lambda start: fitted(start, bool(doubted)))
 
 
 def finished(problem: Problem, fit: FitResult, progress: Progress | None = None, **options) -> FitResult:
@@ -93,6 +95,11 @@ def _minimise(
     except NearEnoughError as reached:
         return reached.evaluation, search.count, False
     return search.at(np.clip(found.x * scale, lower, upper)), search.count, found.status > 0
+
+
+def _without_onsets(model: Model) -> Model:
+    """Onsets of 0 are left there: beside sizes that are still far off, a late beginning looks like half of an effect."""
+    return model.with_held(*(name for name in model.free if model.is_onset(name) and not model.values[name]))
 
 
 def _first_that_runs(search: AskedModel, start: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
