@@ -14,7 +14,7 @@ from hasel_sim.mechanics.law_terms import add_site_matrix
 from hasel_sim.simd import store, zero
 
 SLOW_WITH_ONE_MATRIX, SLOW = 0.1, 1.0
-"""Corrections that do not shrink to this share of the last want another way."""
+"""Corrections that do not shrink to this share of the last, with one matrix: in the mean, want another way."""
 
 
 @njit(cache=True, error_model="numpy")
@@ -39,7 +39,7 @@ def _judge(iteration, always, vector, unknowns, end_position, bad, progress, tak
             taken[k] = False
         if taken[k]:
             arrived[k] = size < tolerance or (fresh and size**2 < square)
-            last[k] = size
+            last[k] = size if fresh else max(size, slow * last[k])  # one that shrinks far lends to the next
         wanted[k] = wanted[k] and (taken[k] or arrived[k])
         due[k] = taken[k] and arrived[k]
 

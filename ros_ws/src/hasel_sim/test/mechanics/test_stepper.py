@@ -9,6 +9,7 @@ from hasel_sim.mechanics.marcher import Marcher
 from hasel_sim.mechanics.motion import DriveState
 from hasel_sim.mechanics.stepper import Stepper
 from hasel_sim.mechanics.steps import plan_steps
+from hasel_sim.simulate import simulate
 
 PULLED = DriveState.single(np.array([5000.0, 0.0]), np.array([0.01, 0.0]), 0.0)
 STEPS = plan_steps(np.arange(5) / 120, 120.0, 0.9, 0.0, 4 / 120).coefficients
@@ -50,6 +51,16 @@ def test_a_step_that_one_matrix_does_not_find_is_made_with_more(swimmer):
     state, more = run(swimmer, fails_at=(tries,))
     assert more == tries + 1
     assert state.position == pytest.approx(expected.position, abs=1e-9)
+
+
+def test_long_steps_are_seldom_made_anew(swimmer, boxes, monkeypatch):
+    """One slow correction after a fast one is no reason for a matrix of every correction's own."""
+    tries = []
+    again = Marcher.try_again
+    monkeypatch.setattr(Marcher, "try_again", lambda self, step: tries.append(step) or again(self, step))
+    model = swimmer.with_numerics(mesh_density=0.7, quadrature_order=2, steps_per_second=120)
+    simulate(model, boxes(duration=2.0))
+    assert len(tries) < 0.4 * 240
 
 
 def test_a_step_that_is_not_found_is_made_in_two(swimmer):

@@ -98,7 +98,7 @@ def _minimise(
 
 
 def _without_onsets(model: Model) -> Model:
-    """Onsets of 0 are left there: beside sizes that are still far off, a late beginning looks like half of an effect."""
+    """Onsets of 0 are left there: beside sizes still far off, a late beginning looks like half of an effect."""
     return model.with_held(*(name for name in model.free if model.is_onset(name) and not model.values[name]))
 
 
