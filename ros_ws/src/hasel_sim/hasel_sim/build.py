@@ -133,7 +133,8 @@ class Builder:
 
     def _stress_law(self, effect: MaterialEffect, p: SimpleNamespace) -> StressLaw:
         fibres = np.array([0.0, *(muscle.fibre_stiffness_pa for muscle in self._described.muscles)])
-        return StressLaw(effect, p, self.mesh, fibres, self._shear)
+        points = self.model.description.numerics.quadrature_order**2
+        return StressLaw(effect, p, self.mesh, points, fibres, self._shear)
 
     def residual_slope(self, name: str) -> ResidualSlope:
         """The derivative of the residual by one of the model's parameters."""

@@ -3,6 +3,8 @@
 import numpy as np
 
 from hasel_sim.mechanics.assembly import scatter_sites
+from hasel_sim.mechanics.copies import Copies
+from hasel_sim.mechanics.laws import by_point
 from hasel_sim.mechanics.motion import DriveState, Motion
 from hasel_sim.mechanics.site_force import DIFFERENCE, SiteForce
 from hasel_sim.simd import lane_tuple
@@ -20,6 +22,7 @@ class ForceLaw(SiteForce):
     def _use_lanes(self, values: list) -> None:
         super()._use_lanes(values)
         self._slopes: dict[str, np.ndarray] = {}
+        self._moved_twice = Copies.central({name: DIFFERENCE[name] for name in self._moved_by}, 2)
         self._by_contraction: np.ndarray | None = None
 
     def linearise(self, motion: Motion, drive: DriveState) -> None:
@@ -27,33 +30,24 @@ class ForceLaw(SiteForce):
         if "contraction" in self.effect.depends_on:
             self._by_contraction = self._contraction_slope(motion, drive)
         if self._moved_by:
-            self._differentiate(self._moved(motion), drive)
+            self._differentiate(motion, drive)
 
     def _contraction_slope(self, motion: Motion, drive: DriveState) -> np.ndarray:
-        here = {name: field[None] for name, field in self._moved(motion).items()}
-        out = np.empty((len(drive.contraction), *here["position"].shape[1:]))
+        out = np.empty((len(drive.contraction), *self._reference.shape, len(self.values)))
         for muscle, step in enumerate(_CONTRACTION_DIFFERENCE * np.eye(len(drive.contraction))):
             more, less = (
-                self._force(here, drive.with_contraction(drive.contraction + sign * step[:, None]))[0]
+                self._force(motion, drive.with_contraction(drive.contraction + sign * step[:, None]))[0]
                 for sign in (1.0, -1.0)
             )
-            out[muscle] = (more - less) / (2 * _CONTRACTION_DIFFERENCE)
+            out[muscle] = by_point(more - less) / (2 * _CONTRACTION_DIFFERENCE)
         return out
 
-    def _differentiate(self, at: dict[str, np.ndarray], drive: DriveState) -> None:
-        names = self._moved_by
-        copies = 4 * len(names)
-        fields = {name: np.repeat(field[None], copies, axis=0) for name, field in at.items()}
-        for index, name in enumerate(names):
-            for component in range(2):
-                first = 4 * index + 2 * component
-                fields[name][first, :, component] += DIFFERENCE[name]
-                fields[name][first + 1, :, component] -= DIFFERENCE[name]
-        force = self._force(fields, drive)
-        force = force.reshape(len(names), 2, 2, *force.shape[1:])
-        for index, name in enumerate(names):
-            change = (force[index, :, 0] - force[index, :, 1]) / (2 * DIFFERENCE[name])
-            self._slopes[name] = np.ascontiguousarray(change.transpose(1, 2, 0, 3))
+    def _differentiate(self, motion: Motion, drive: DriveState) -> None:
+        force = self._force(motion, drive, self._moved_twice)
+        lanes = force.shape[1]
+        for name in self._moved_by:
+            self._slopes[name] = np.zeros((*self._reference.shape, 2, lanes))
+            self._moved_twice.add_derivative(name, force, np.ones(lanes), self._slopes[name])
 
     def weighted(self, position, velocity, acceleration) -> tuple[np.ndarray, np.ndarray]:
         """Less the derivatives, weighted per lane: by the value and by the tangent at the sites [n, 2, 2, lanes]."""

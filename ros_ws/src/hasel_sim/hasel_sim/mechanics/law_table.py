@@ -2,32 +2,27 @@
 
 import numpy as np
 
-from hasel_sim.mechanics.linearisation import Strained
+from hasel_sim.mechanics.law_terms import site_groups
+from hasel_sim.mechanics.linearisation import StrainedSystem
 from hasel_sim.mechanics.motion import DriveState, Motion
+from hasel_sim.mechanics.strained import Strained
 from hasel_sim.mechanics.system import System
 
 
 class LawTable:
     """Forces and additional stresses of every effect, called at one motion, with their derivatives where wanted.
 
-    terms: nodal forces out of balance [nodes, 2, lanes]; the sites of all force effects (where each begins in the list
-    of nodes, nodes, shape, slope, weight, derivatives by the value and by the tangent of the end-of-step acceleration
-    [sites, 2, 2, lanes]); the place of every element among those with further stress or -1, and their stress
-    [n, points, 4, lanes] and its derivative [n, points, 4, 4, lanes]. Empty where there are no effects; an effect at
-    its null value contributes zeros. by_rate: derivative of the further stress by the rate of the deformation
-    [n, points, 4, 4, lanes] alone, of `linearise`.
+    terms: nodal forces out of balance [nodes, 2, lanes]; the sites of all force effects (their `SiteGroups`,
+    derivatives by the value and by the tangent of the end-of-step acceleration [sites, 2, 2, lanes]); the place of
+    every element among those with further stress or -1, and their stress [n, points, 4, lanes] and its derivative
+    [n, points, 4, 4, lanes]. Empty where there are no effects; an effect at its null value contributes zeros. by_rate:
+    derivative of the further stress by the rate of the deformation [n, points, 4, 4, lanes] alone, of `linearise`.
     """
 
     def __init__(self, system: System) -> None:
         self._system, solid, lanes = system, system.solid, system.lanes
-        sites = [law.sites for law in system.forces]
-        counts = np.concatenate([[0], *(np.full(len(s.nodes), s.nodes.shape[1]) for s in sites)])
-        start = np.cumsum(counts).astype(np.intp)
-        nodes, shape, slope, weight = (
-            np.concatenate([np.zeros(0), *(getattr(s, name).ravel() for s in sites)])
-            for name in ("nodes", "shape", "slope", "weight")
-        )
-        slopes = np.zeros((2, len(start) - 1, 2, 2, lanes))
+        laws = [(law.sites, law.looks_along) for law in system.forces]
+        slopes = np.zeros((2, sum(len(sites.nodes) for sites, _ in laws), 2, 2, lanes))
         concerned = [law.elements for law in system.stresses]
         elements = np.unique(np.concatenate([np.zeros(0, dtype=np.intp), *concerned]))
         further = np.full(len(solid.elements), -1)
@@ -38,7 +33,7 @@ class LawTable:
         )
         self.terms = (
             np.zeros((*system.nodes.shape, lanes)),
-            (start, nodes.astype(np.intp), shape, slope, weight, slopes[0], slopes[1]),
+            (site_groups(laws), slopes[0], slopes[1]),
             (further, stress, matrix),
         )
 
@@ -57,7 +52,7 @@ class LawTable:
             self._call_stresses(motion, drive, weights)
 
     def _call_forces(self, motion: Motion, drive: DriveState, weights: np.ndarray | None) -> None:
-        forces, (*_, by_value, by_tangent), _ = self.terms
+        forces, (_, by_value, by_tangent), _ = self.terms
         forces[:] = 0.0
         first = 0
         for law in self._system.forces:
@@ -71,22 +66,22 @@ class LawTable:
     def _call_stresses(self, motion: Motion, drive: DriveState, weights: np.ndarray | None) -> None:
         _, _, (further, stress, matrix) = self.terms
         solid = self._system.solid
-        F, rate = solid.gradient(motion.position), solid.gradient(motion.velocity)
+        at = Strained(solid, motion)
         stress[:] = 0.0
         if weights is not None:
             matrix[:] = 0.0
         for law in self._system.stresses:
             places = further[law.elements]
             if weights is None:
-                stress[places] += law.stress(F, rate, drive)
+                stress[places] += law.stress(at, drive)
                 continue
-            own, by_motion = law.respond(F, rate, drive, weights)
+            own, by_motion = law.respond(at, drive, weights)
             stress[places] += own
             matrix[places] += by_motion
 
-    def linearise(self, at: Strained, drive: DriveState, weights: np.ndarray) -> None:
+    def linearise(self, at: StrainedSystem, drive: DriveState, weights: np.ndarray) -> None:
         """Differentiate every effect as exactly as differences can; terms and weights as in `call`."""
-        _, (*_, by_value, by_tangent), (further, _, matrix) = self.terms
+        _, (_, by_value, by_tangent), (further, _, matrix) = self.terms
         first = 0
         for law in self._system.forces:
             last = first + len(law.sites.nodes)
@@ -97,7 +92,7 @@ class LawTable:
             matrix[:], self.by_rate[:] = 0.0, 0.0
         for stress in self._system.stresses:
             places = further[stress.elements]
-            for name, moduli in stress.moduli(at.F, at.rate, drive).items():
+            for name, moduli in stress.moduli(at, drive).items():
                 matrix[places] += weights[("deformation", "rate").index(name)] * moduli
                 if name == "rate":
                     self.by_rate[places] += moduli
@@ -108,7 +103,7 @@ class LawTable:
             law.add_directions(None, rate, acceleration, out)
 
     def add_contraction(
-        self, at: Strained, drive: DriveState, by_contraction: np.ndarray, out: np.ndarray
+        self, at: StrainedSystem, drive: DriveState, by_contraction: np.ndarray, out: np.ndarray
     ) -> None:
         """Add what effects change with the contraction, by_contraction [columns, muscles, lanes], to out."""
         if not self:

@@ -1,14 +1,22 @@
 """What force and stress effects share: one call for all lanes with the same values, unless it looks at the drive."""
 
-from collections.abc import Callable, Sequence
+import dataclasses
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
-_OF_THE_DRIVE = ("voltage", "contraction", "time")
+from hasel_sim.errors import nearest_name
+
+OF_THE_DRIVE = ("voltage", "contraction", "time")
 
 
-def grouped(values: Sequence[SimpleNamespace | None]) -> list[tuple[np.ndarray, SimpleNamespace]]:
+Groups = list[tuple[np.ndarray, SimpleNamespace]]
+"""Lanes and the values of an effect that they share."""
+
+
+def grouped(values: Sequence[SimpleNamespace | None]) -> Groups:
     """Lanes with equal values of an effect, and these values; a lane without the effect (None) is in no group."""
     groups: list[tuple[list[int], SimpleNamespace]] = []
     for lane, own in enumerate(values):
@@ -23,50 +31,68 @@ def grouped(values: Sequence[SimpleNamespace | None]) -> list[tuple[np.ndarray, 
     return [(np.array(lanes), own) for lanes, own in groups]
 
 
-def one_by_one(groups: list[tuple[np.ndarray, SimpleNamespace]]) -> list[tuple[np.ndarray, SimpleNamespace]]:
+def one_by_one(groups: Groups) -> Groups:
     """Every lane a group of its own."""
     return [(lanes[n : n + 1], own) for lanes, own in groups for n in range(len(lanes))]
 
 
-def watched(kind: type, names: Sequence[str] = _OF_THE_DRIVE) -> type:
-    """The same class of points, whose objects note in `looked` whether one of these attributes was asked for.
+def on_demand(kind: type, of_the_drive: Sequence[str] = OF_THE_DRIVE) -> Any:
+    """The same class of points, of which an attribute is made when an effect asks for it.
 
-    Only a lane's own drive is right for its points; lanes go into one call as long as nobody looks at it.
+    `looked` tells whether it asked for what is the drive's. Only a lane's own drive is right for its points; lanes go
+    into one call as long as nobody looks at it.
     """
+    fields = {field.name for field in dataclasses.fields(kind)}
 
-    class Watched(kind):
-        looked = False
+    class OnDemand(kind):
+        def __init__(self, known: Mapping[str, Any], made: Callable[[str], Any]) -> None:
+            self.__dict__.update(known, _made=made)
 
-        def __getattribute__(self, name: str):
-            if name in names:
-                object.__getattribute__(self, "__dict__")["looked"] = True
-            return object.__getattribute__(self, name)
+        def __getattr__(self, name: str) -> Any:
+            if name not in fields:
+                raise AttributeError(f"{kind.__name__} has no '{name}'; {nearest_name(name, fields)}")
+            value = self.__dict__[name] = self._made(name)
+            return value
 
-    return Watched
+        def asked_for(self, names: Iterable[str]) -> bool:
+            """Whether any of these was made."""
+            return not self.__dict__.keys().isdisjoint(names)
+
+        @property
+        def looked(self) -> bool:
+            return self.asked_for(of_the_drive)
+
+    return OnDemand
 
 
 def by_group(
-    groups: list[tuple[np.ndarray, SimpleNamespace]],
-    fields: dict[str, np.ndarray],
-    call: Callable[[dict[str, np.ndarray], np.ndarray, SimpleNamespace], np.ndarray],
+    groups: Groups,
+    shape: tuple[int, ...],
+    ask: Callable[[np.ndarray, SimpleNamespace], np.ndarray | None],
 ) -> np.ndarray:
-    """What an effect returns for fields [copies, n, k, lanes], in the same shape; zero in lanes of no group.
+    """What an effect answers at points, [copies, lanes, n, k]; zero in lanes of no group.
 
-    call: from fields [copies lanes n, k], the lanes and their values, to an array like the fields.
+    ask: from the lanes of a group and their values to the answer [copies lanes n, k], or None where the lanes must be
+    asked one by one.
     """
-    shape = next(iter(fields.values())).shape
     out = np.zeros(shape)
     for lanes, values in groups:
-        everyone = len(lanes) == shape[-1]
-        rows = {
-            name: (field if everyone else field[..., lanes]).transpose(0, 3, 1, 2).reshape(-1, shape[2])
-            for name, field in fields.items()
-        }
-        found = call(rows, lanes, values).reshape(shape[0], len(lanes), *shape[1:3])
-        if everyone:
-            return np.ascontiguousarray(found.transpose(0, 2, 3, 1))
-        out[..., lanes] = found.transpose(0, 2, 3, 1)
+        found = ask(lanes, values)
+        if found is not None and len(lanes) == shape[1]:
+            return np.ascontiguousarray(found, dtype=float).reshape(shape)
+        parts = (
+            [(lanes, found)]
+            if found is not None
+            else [(lane[None], ask(lane[None], values)) for lane in lanes]
+        )
+        for some, answer in parts:
+            out[:, some] = np.asarray(answer).reshape(shape[0], len(some), *shape[2:])
     return out
+
+
+def by_point(rows: np.ndarray) -> np.ndarray:
+    """Rows of the points of every lane [lanes, n, k], as [n, k, lanes]."""
+    return np.ascontiguousarray(rows.transpose(1, 2, 0))
 
 
 def repeated(rows: np.ndarray, copies: int) -> np.ndarray:

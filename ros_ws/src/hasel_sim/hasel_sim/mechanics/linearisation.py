@@ -1,6 +1,5 @@
 """The derivatives of a mechanical system's residual at one motion."""
 
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -8,27 +7,19 @@ import numpy as np
 from hasel_sim.mechanics import assembly
 from hasel_sim.mechanics.banded import BandMatrix
 from hasel_sim.mechanics.motion import DriveState, Motion
+from hasel_sim.mechanics.strained import Strained
 from hasel_sim.simd import lane_tuple
 
 if TYPE_CHECKING:
     from hasel_sim.mechanics.system import System
 
 
-class Strained:
-    """A `System` at one motion: F and its rate [elements, points, 4, lanes], found when asked for."""
+class StrainedSystem(Strained):
+    """A `System` at one motion."""
 
     def __init__(self, system: "System", motion: Motion) -> None:
-        self.system, self.motion = system, motion
-
-    @cached_property
-    def F(self) -> np.ndarray:
-        """Deformation gradient [1]."""
-        return self.system.strain(self.motion)[0]
-
-    @cached_property
-    def rate(self) -> np.ndarray:
-        """Its rate [1/s]."""
-        return self.system.strain(self.motion)[1]
+        super().__init__(system.solid, motion)
+        self.system = system
 
     def by_contraction(self, drive: DriveState) -> np.ndarray:
         """Derivative of the residual by the contraction of every muscle, [muscles, nodes, 2, lanes]."""
@@ -40,7 +31,7 @@ class Strained:
         """Add what effects have of it to out [muscles, nodes, 2, lanes]."""
         for law in self.system.stresses:
             if law.concerns_muscles:
-                for muscle, slope in enumerate(law.contraction_slopes(self.F, self.rate, drive)):
+                for muscle, slope in enumerate(law.contraction_slopes(self, drive)):
                     P = np.zeros_like(self.F)
                     P[law.elements] = slope
                     self.system.solid.add_force(P, out[muscle])
@@ -48,7 +39,7 @@ class Strained:
             law.add_contraction(out)
 
 
-class Linearisation(Strained):
+class Linearisation(StrainedSystem):
     """Derivatives of a `System`'s residual at one motion: as a band matrix, and along given directions."""
 
     def __init__(
@@ -60,7 +51,6 @@ class Linearisation(Strained):
         load_factor: float = 1.0,
     ) -> None:
         super().__init__(system, motion)
-        self.F, self.rate = system.strain(motion)
         self.elastic, self.viscous, self._load_factor = elastic, viscous, load_factor
 
     def matrix(

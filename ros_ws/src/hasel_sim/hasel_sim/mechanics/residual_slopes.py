@@ -6,7 +6,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from hasel_sim.mechanics.force_law import ForceLaw
-from hasel_sim.mechanics.linearisation import Strained
+from hasel_sim.mechanics.linearisation import StrainedSystem
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.solid import Solid
 from hasel_sim.mechanics.state import State
@@ -21,7 +21,7 @@ class ResidualSlope(Protocol):
         self,
         motion: Motion,
         drive: DriveState,
-        line: Strained,
+        line: StrainedSystem,
         state: State,
         at: float | np.ndarray,
         out: np.ndarray,
@@ -126,8 +126,7 @@ class StressSlope(_Difference):
     def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
         """Add the nodal forces of the stress's derivative."""
         P = np.zeros_like(line.F)
-        change = self.more.stress(line.F, line.rate, drive) - self.less.stress(line.F, line.rate, drive)
-        P[self.more.elements] = change / self.width
+        P[self.more.elements] = self.more.excess(self.less, line, drive) / self.width
         line.system.solid.add_force(P, out)
 
 

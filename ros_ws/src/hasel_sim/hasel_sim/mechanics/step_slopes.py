@@ -9,7 +9,7 @@ from hasel_sim.mechanics.banded_lu import clear_band
 from hasel_sim.mechanics.lane_loops import copy_lanes
 from hasel_sim.mechanics.law_table import LawTable
 from hasel_sim.mechanics.law_terms import add_site_matrix
-from hasel_sim.mechanics.linearisation import Strained
+from hasel_sim.mechanics.linearisation import StrainedSystem
 from hasel_sim.mechanics.newton import factorise, solve
 from hasel_sim.mechanics.part import Part
 from hasel_sim.mechanics.residual_slopes import ResidualSlope, SolidSlope
@@ -51,7 +51,7 @@ class StepSlopes:
         """
         state, drive, c, lane = part.before, part.drive, part.coefficients, self._lane
         moving = slopes.position, slopes.velocity, slopes.acceleration
-        strained = Strained(self.system, part.motion)
+        strained = StrainedSystem(self.system, part.motion)
         driven = self._driven(part)
         self._laws.linearise(strained, drive, c.matrix_weights)
         self._factorise(part, driven)

@@ -12,6 +12,7 @@ from hasel_sim.mechanics.linearisation import Linearisation
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.solid import Solid
 from hasel_sim.mechanics.state import State
+from hasel_sim.mechanics.strained import Strained
 from hasel_sim.mechanics.stress_law import StressLaw
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.simd import lane_tuple
@@ -41,7 +42,7 @@ class System:
         self._forget()
 
     def _forget(self) -> None:
-        self._last_strain: tuple[Motion, np.ndarray, np.ndarray] | None = None
+        self._last_strain: Strained | None = None
         self._last_stress: tuple[Motion, DriveState, Memory, np.ndarray] | None = None
 
     @staticmethod
@@ -80,25 +81,24 @@ class System:
             return Memory()
         return Memory(self.solid.branches.history(state.branch, state.green, at), at)
 
-    def strain(self, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    def strain(self, motion: Motion) -> Strained:
         """Deformation gradient and its rate; kept for the last motion, which is asked for several times."""
-        if self._last_strain is None or self._last_strain[0] is not motion:
-            F, rate = self.solid.gradient(motion.position), self.solid.gradient(motion.velocity)
-            self._last_strain = motion, F, rate
-        return self._last_strain[1:]
+        if self._last_strain is None or self._last_strain.motion is not motion:
+            self._last_strain = Strained(self.solid, motion)
+        return self._last_strain
 
     def _first_piola(
         self, motion: Motion, drive: DriveState, memory: Memory
     ) -> tuple[np.ndarray, np.ndarray]:
         """Deformation gradient and first Piola stress; kept for the last motion likewise."""
-        F, rate = self.strain(motion)
+        at = self.strain(motion)
         last = self._last_stress
         if last is None or last[0] is not motion or last[1] is not drive or last[2] is not memory:
-            P = self.solid.stress(F, rate, drive.contraction, memory.history, memory.step)
+            P = self.solid.stress(at.F, at.rate, drive.contraction, memory.history, memory.step)
             for law in self.stresses:
-                P[law.elements] += law.stress(F, rate, drive)
+                P[law.elements] += law.stress(at, drive)
             self._last_stress = motion, drive, memory, P
-        return F, self._last_stress[3]
+        return at.F, self._last_stress[3]
 
     def second_piola(self, motion: Motion, drive: DriveState, memory: Memory) -> np.ndarray:
         """Second Piola stress [Pa] (xx, yy, xy) at the Gauss points, [elements, points, 3, lanes]."""
@@ -111,10 +111,10 @@ class System:
         self, motion: Motion, drive: DriveState, memory: Memory, load_factor: float = 1.0
     ) -> Linearisation:
         """All derivatives of the residual by the motion, at this motion; valid until the next call."""
-        F, rate = self.strain(motion)
-        elastic, viscous = self.solid.moduli(F, rate, drive.contraction, memory.history, memory.step)
+        at = self.strain(motion)
+        elastic, viscous = self.solid.moduli(at.F, at.rate, drive.contraction, memory.history, memory.step)
         for law in self.stresses:
-            law.add_moduli(F, rate, drive, elastic, viscous)
+            law.add_moduli(at, drive, elastic, viscous)
         for law in self.forces:
             law.linearise(motion, drive)
         return Linearisation(self, motion, elastic, viscous, load_factor)
