@@ -84,9 +84,24 @@ class Builder:
     def system(self) -> System:
         """The mechanical system at the model's values."""
         gravity = np.array(self.model.description.material.gravity_m_per_s2)
-        forces = [law for e in self._of(ForceEffect) for law in self._force_laws(e, self._values[e.id])]
-        stresses = [self._stress_law(e, self._values[e.id]) for e in self._of(MaterialEffect) if e.regions]
+        acting = [e for e in self._of(ForceEffect) + self._of(MaterialEffect) if not self._is_null(e)]
+        forces = [
+            law
+            for e in acting
+            if isinstance(e, ForceEffect)
+            for law in self._force_laws(e, self._values[e.id])
+        ]
+        stresses = [
+            self._stress_law(e, self._values[e.id])
+            for e in acting
+            if isinstance(e, MaterialEffect) and e.regions
+        ]
         return System(self.mesh, self.nodes, self._solid(self._values), self.mass, gravity, forces, stresses)
+
+    def _is_null(self, effect: Effect) -> bool:
+        """Whether an effect has no size, so that nothing it does needs to be called."""
+        own = vars(self._values[effect.id])
+        return all(own[p.name] == p.null for p in effect.parameters if not p.scan)
 
     def _of(self, kind: type[Effect]) -> list:
         """Effects of one kind, in an order that the model file has no part in."""

@@ -1,13 +1,15 @@
 """The first trials of effects: over their ranges beside the baseline, beside other sets of the size to be expected."""
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 from hasel_sim.effects.base import Effect
 
-from hasel_sysid.diagnosis.candidates import Start, decade_starts, resized, starts
+from hasel_sysid.diagnosis.candidates import Start, resized, starts
 from hasel_sysid.diagnosis.trial import Trial, Trials, nearer
 from hasel_sysid.projection import orthonormal
+from hasel_sysid.selection.decade_trials import decade_trials
 from hasel_sysid.selection.sets import FittedSet
 
 _BATCH = 8
@@ -16,14 +18,15 @@ _SIZES = (0.1, 2.0)
 
 
 def first_trials(trials: Trials, effects: Sequence[Effect], decades: bool) -> list[Trial]:
-    """Beside the baseline; decades: at sizes over the decades of every range. The first batch is tried in any case."""
+    """Beside the baseline; decades: at sizes over the decades of every range, as far as those tried do not foretell
+    them. The first batch is tried in any case.
+    """
     typical = [start for effect in effects for start in starts(effect)]
     typical.sort(key=lambda start: not start.changes_nothing)
     found = _in_batches(trials, typical, even_late=True)
     found += nearer(trials, typical, found)
     if decades:
-        every = [start for effect in effects for start in decade_starts(effect)]
-        found += _in_batches(trials, [start for start in every if start not in typical])
+        found += decade_trials(trials, effects, found, partial(_in_batches, trials))
     return found
 
 
