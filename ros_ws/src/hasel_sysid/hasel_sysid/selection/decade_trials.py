@@ -1,6 +1,6 @@
 """Trials at sizes over the decades of every range, less those that another trial foretells."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from hasel_sim.effects.base import Effect
@@ -67,11 +67,16 @@ class Decades:
         return is_small(share**2 * error, self._unexplained)
 
 
-def decade_trials(trials: Trials, effects: Sequence[Effect], made: Sequence[Trial], batches) -> list[Trial]:
+def decade_trials(
+    trials: Trials,
+    effects: Sequence[Effect],
+    made: Sequence[Trial],
+    tried: Callable[[Sequence[Start]], list[Trial]],
+) -> list[Trial]:
     """Trials over the decades of the effects' ranges; made: those at typical sizes or without effect.
 
-    batches: makes trials of many starts as long as there is time.
+    tried: makes trials of many starts, as long as there is time.
     """
     every = [Decades(effect, made, trials.fitted.residual) for effect in effects]
-    ends = batches([start for decades in every for start in decades.ends()])
-    return ends + batches([start for decades in every for start in decades.between(ends)])
+    ends = tried([start for decades in every for start in decades.ends()])
+    return ends + tried([start for decades in every for start in decades.between(ends)])
