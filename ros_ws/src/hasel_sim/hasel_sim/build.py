@@ -84,18 +84,12 @@ class Builder:
     def system(self) -> System:
         """The mechanical system at the model's values."""
         gravity = np.array(self.model.description.material.gravity_m_per_s2)
-        acting = [e for e in self._of(ForceEffect) + self._of(MaterialEffect) if not self._is_null(e)]
-        forces = [
-            law
-            for e in acting
-            if isinstance(e, ForceEffect)
-            for law in self._force_laws(e, self._values[e.id])
-        ]
-        stresses = [
-            self._stress_law(e, self._values[e.id])
-            for e in acting
-            if isinstance(e, MaterialEffect) and e.regions
-        ]
+        acting = {
+            kind: [e for e in self._of(kind) if not self._is_null(e)]
+            for kind in (ForceEffect, MaterialEffect)
+        }
+        forces = [law for e in acting[ForceEffect] for law in self._force_laws(e, self._values[e.id])]
+        stresses = [self._stress_law(e, self._values[e.id]) for e in acting[MaterialEffect] if e.regions]
         return System(self.mesh, self.nodes, self._solid(self._values), self.mass, gravity, forces, stresses)
 
     def _is_null(self, effect: Effect) -> bool:

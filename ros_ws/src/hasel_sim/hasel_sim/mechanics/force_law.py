@@ -3,10 +3,9 @@
 import numpy as np
 
 from hasel_sim.mechanics.assembly import scatter_sites
-from hasel_sim.mechanics.copies import Copies
 from hasel_sim.mechanics.laws import by_point
 from hasel_sim.mechanics.motion import DriveState, Motion
-from hasel_sim.mechanics.site_force import DIFFERENCE, SiteForce
+from hasel_sim.mechanics.site_force import SiteForce
 from hasel_sim.simd import lane_tuple
 
 _CONTRACTION_DIFFERENCE = 1e-6
@@ -22,7 +21,6 @@ class ForceLaw(SiteForce):
     def _use_lanes(self, values: list) -> None:
         super()._use_lanes(values)
         self._slopes: dict[str, np.ndarray] = {}
-        self._moved_twice = Copies.central({name: DIFFERENCE[name] for name in self._moved_by}, 2)
         self._by_contraction: np.ndarray | None = None
 
     def linearise(self, motion: Motion, drive: DriveState) -> None:

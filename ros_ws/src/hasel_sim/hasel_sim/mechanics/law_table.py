@@ -15,8 +15,8 @@ class LawTable:
     terms: nodal forces out of balance [nodes, 2, lanes]; the sites of all force effects (their `SiteGroups`,
     derivatives by the value and by the tangent of the end-of-step acceleration [sites, 2, 2, lanes]); the place of
     every element among those with further stress or -1, and their stress [n, points, 4, lanes] and its derivative
-    [n, points, 4, 4, lanes]. Empty where there are no effects; an effect at its null value contributes zeros. by_rate:
-    derivative of the further stress by the rate of the deformation [n, points, 4, 4, lanes] alone, of `linearise`.
+    [n, points, 4, 4, lanes]. Empty where no effect acts; one at its null is not among the laws. by_rate: derivative of
+    the further stress by the rate of the deformation [n, points, 4, 4, lanes] alone, of `linearise`.
     """
 
     def __init__(self, system: System) -> None:

@@ -78,15 +78,12 @@ def by_group(
     out = np.zeros(shape)
     for lanes, values in groups:
         found = ask(lanes, values)
-        if found is not None and len(lanes) == shape[1]:
+        if found is None:
+            out[:, lanes] = by_group(one_by_one([(lanes, values)]), shape, ask)[:, lanes]
+        elif len(lanes) == shape[1]:
             return np.ascontiguousarray(found, dtype=float).reshape(shape)
-        parts = (
-            [(lanes, found)]
-            if found is not None
-            else [(lane[None], ask(lane[None], values)) for lane in lanes]
-        )
-        for some, answer in parts:
-            out[:, some] = np.asarray(answer).reshape(shape[0], len(some), *shape[2:])
+        else:
+            out[:, lanes] = found.reshape(shape[0], len(lanes), *shape[2:])
     return out
 
 

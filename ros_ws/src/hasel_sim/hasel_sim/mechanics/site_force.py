@@ -67,7 +67,8 @@ class SiteForce:
         )
         self._unmoved: dict[int, dict[str, np.ndarray]] = {}
         self._moved_by = tuple(name for name in effect.depends_on if name != "contraction")
-        self._moved_once = Copies.one_sided({name: DIFFERENCE[name] for name in self._moved_by}, 2)
+        steps = {name: DIFFERENCE[name] for name in self._moved_by}
+        self._moved_once, self._moved_twice = Copies.one_sided(steps, 2), Copies.central(steps, 2)
         has_tangent = effect.sites in ("skin", "line")
         self._asked = tuple(
             name for name in _OF_A_LINE if name in effect.depends_on or (name == "tangent" and has_tangent)
@@ -148,7 +149,7 @@ class SiteForce:
 
         def made(name: str) -> np.ndarray | float:
             if name in OF_THE_DRIVE:
-                return getattr(drive, name)[..., lanes[0]]
+                return drive.of_lane(int(lanes[0]))[name]
             return (rows(name) if everyone else rows(name)[:, lanes]).reshape(-1, 2)
 
         return _State({**self._repeated(times), "surroundings": surroundings}, made)

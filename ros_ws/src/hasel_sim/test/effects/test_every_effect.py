@@ -84,6 +84,20 @@ def test_null_is_the_model_without_it(identity, coarse_swimmer, coarse_baseline,
     assert np.array_equal(sin_theta_of(coarse_swimmer.with_effects(identity)), coarse_baseline)
 
 
+@pytest.mark.parametrize("identity", [n for n in ALL if catalogue()[n].place in ("force", "material")])
+def test_hardly_any_of_it_is_hardly_noticed(identity, coarse_swimmer, coarse_baseline, sin_theta_of):
+    """At null an effect is not called; called at a billionth of its size, wherever its scan says, it does as little."""
+    model = coarse_swimmer.with_effects(identity)
+    effect = catalogue()[identity]
+    size = {
+        f"{identity}.{p.name}": p.null + 1e-9 * (p.typical - p.null) for p in effect.parameters if not p.scan
+    }
+    scans = [{f"{identity}.{p.name}": value} for p in effect.parameters for value in p.scan] or [{}]
+    for scanned in scans:
+        series = sin_theta_of(model.with_values({**size, **scanned}))
+        assert np.abs(series - coarse_baseline).max() < 1e-6
+
+
 @pytest.mark.parametrize("identity", ALL)
 def test_typical_values_are_noticed(identity, coarse_swimmer, coarse_baseline, sin_theta_of):
     """At its typical values the angle changes, by more than round-off and less than beyond recognition."""

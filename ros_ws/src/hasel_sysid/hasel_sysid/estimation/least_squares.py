@@ -47,9 +47,9 @@ def fit_least_squares(
     def fitted(start: Model, led: bool) -> FitResult:
         count = 0
         if led:
-            first = _without_onsets(draft(start))
-            found, count, _ = _minimise(problem, first, progress, 1e-2, most_evaluations)
-            start = start.with_values({name: found.model.values[name] for name in first.free})
+            leader = _without_onsets(draft(start))
+            found, count, _ = _minimise(problem, leader, progress, 1e-2, most_evaluations)
+            start = start.with_values({name: found.model.values[name] for name in leader.free})
         evaluation, more, ended = _minimise(problem, start, progress, tolerance, most_evaluations, roughly)
         return replace(fitted_result(evaluation, count + more), converged=ended)
 

@@ -20,9 +20,10 @@ class Decades:
     def __init__(self, effect: Effect, made: Sequence[Trial], unexplained: np.ndarray) -> None:
         """made: trials of any effects; unexplained: residual of the model without the effect [frames]."""
         self.starts = [start for start in decade_starts(effect) if start not in [t.start for t in made]]
-        self.size = next((f"{effect.id}.{p.name}" for p in effect.parameters if not p.scan), "")
+        sizes = [p for p in effect.parameters if not p.scan]
+        self.size = f"{effect.id}.{sizes[0].name}" if sizes else ""
+        self._null, self._alone = (sizes[0].null if sizes else 0.0), len(sizes) == 1
         self._unexplained = unexplained
-        self._null = {f"{effect.id}.{p.name}": p.null for p in effect.parameters if not p.scan}
         self._known = next((t for t in made if self.starts and self._is_at(t, self.starts[0])), None)
 
     def _is_at(self, trial: Trial, start: Start) -> bool:
@@ -32,39 +33,38 @@ class Decades:
             own[name] == value for name, value in start.values.items() if name != self.size
         )
 
-    def _way(self, start: Start) -> float:
-        return start.values[self.size] - self._known.start.values[self.size] if self._known else 0.0
-
     def ends(self) -> list[Start]:
-        """The farthest sizes on either side of the known trial, but not towards the null, whose residual is known."""
+        """The farthest sizes on either side of the known trial, but not towards the null; all where none is known."""
         if self._known is None:
             return self.starts
-        to_null = self._null[self.size] - self._known.start.values[self.size]
-        sides = ([s for s in self.starts if side * self._way(s) > 0] for side in (-1.0, 1.0))
-        farthest = [max(some, key=lambda s: abs(self._way(s))) for some in sides if some]
-        return [s for s in farthest if self._way(s) * to_null <= 0]
+        here = self._known.start.values[self.size]
+        ways = {start.values[self.size] - here: start for start in self.starts}
+        farthest = {min(0.0, *ways), max(0.0, *ways)} - {0.0}
+        return [ways[way] for way in sorted(farthest) if way * (self._null - here) <= 0]
 
     def between(self, ends: Sequence[Trial]) -> Iterator[Start]:
-        """Sizes that are not foretold once the ends were tried; ends: of any effects, less what could not run."""
-        if self._known is None:
-            return
+        """Sizes that are not foretold once the ends were tried; ends: of any effects, less what could not run.
+
+        Without its only size an effect leaves what is unexplained.
+        """
         tried = self.ends()
-        reached = [(self._way(t.start), t.residual) for t in ends if t.start in tried]
-        if len(self._null) == 1:
-            to_null = self._null[self.size] - self._known.start.values[self.size]
-            reached += [(to_null, self._unexplained)] if to_null else []
+        reached = [(t.start.values[self.size], t.residual) for t in ends if t.start in tried]
+        if self._alone:
+            reached.append((self._null, self._unexplained))
         for start in self.starts:
             if start not in tried and not any(self._foretold(start, *end) for end in reached):
                 yield start
 
-    def _foretold(self, start: Start, way: float, residual: np.ndarray) -> bool:
+    def _foretold(self, start: Start, end: float, residual: np.ndarray) -> bool:
+        """Whether the first order of the known trial is true at a start, by its error at an end beyond it [frames]."""
         known = self._known
-        share = self._way(start) / way
-        if known is None or not 0.0 < share <= 1.0:
+        if known is None or end == known.start.values[self.size]:
             return False
+        way = end - known.start.values[self.size]
+        share = (start.values[self.size] - known.start.values[self.size]) / way
         slope = known.jacobian[:, known.names.index(self.size)]
         error = residual - (known.residual - slope * way)
-        return is_small(share**2 * error, self._unexplained)
+        return 0.0 < share <= 1.0 and is_small(share**2 * error, self._unexplained)
 
 
 def decade_trials(
