@@ -29,10 +29,18 @@ class Start:
         return tuple(self.values)
 
     @property
+    def nulls(self) -> dict[str, float]:
+        """Values of the effect's sizes at which it does nothing."""
+        return {f"{self.effect.id}.{p.name}": p.null for p in self.effect.parameters if not p.scan}
+
+    @property
     def changes_nothing(self) -> bool:
-        """Whether the effect starts without effect and may stand beside any other, so one simulation serves all."""
-        nulls = {f"{self.effect.id}.{p.name}": p.null for p in self.effect.parameters}
-        return not self.effect.exclusive and all(nulls[name] == value for name, value in self.values.items())
+        """Whether the effect starts without effect, so that one simulation serves all that go together."""
+        return bool(self.nulls) and all(self.values[name] == null for name, null in self.nulls.items())
+
+    def without_effect(self) -> "Start":
+        """The same with every size at its null; a time or a place stays."""
+        return replace(self, values={**self.values, **self.nulls})
 
 
 def candidate_effects(model: Model, only: tuple[str, ...] | None = None) -> list[Effect]:

@@ -8,6 +8,7 @@ from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis.candidates import Start, resized
+from hasel_sysid.diagnosis.side_by_side import side_by_side
 from hasel_sysid.draft import draft
 from hasel_sysid.estimation.bounded import bounded_change
 from hasel_sysid.estimation.opening import is_small
@@ -75,7 +76,6 @@ class Trials:
         error = fitted.residual - self.base.residual
         if not is_small(error, fitted.simulated()):
             self._model, self.base = fitted.model, fitted
-        self._correction = fitted.residual - self.base.residual
 
     def time_is_over(self) -> bool:
         """Whether what has not been tried yet is to be left out."""
@@ -103,16 +103,23 @@ class Trials:
         return self._model.with_effects(_source(start)).with_values(start.values)
 
     def _at_null(self, starts: Sequence[Start]) -> list[Trial]:
-        """Trials of effects that change nothing where they start: one simulation with all their derivatives."""
-        if not starts:
-            return []
-        own = [name for start in starts for name in start.names]
-        model = self._model.with_effects(*[_source(start) for start in starts])
-        found = self.problem.evaluate(model, (*self.fitted.names, *own))
+        """Trials of effects that change nothing where they start: a simulation with the derivatives of all that go
+        together.
+        """
+        rounds = side_by_side(starts)
+        models = [self._model.with_effects(*map(_source, own)).with_values(_values(own)) for own in rounds]
+        names = [(*self.fitted.names, *self._brought(model)) for model in models]
+        found = self.problem.evaluate_each(models, names)
         trials = []
-        for start in starts:
-            names = (*self.fitted.names, *start.names)
-            trials.append(self._trial(start, self._with(start), start.names, found.by(names)))
+        for own, evaluation in zip(rounds, found, strict=True):
+            if isinstance(evaluation, SimulationError):
+                trials += self._evaluate([(start, self._with(start)) for start in own])
+                continue
+            for start in own:
+                model = self._with(start)
+                brought = self._brought(model)
+                by = evaluation.by((*self.fitted.names, *brought))
+                trials.append(self._trial(start, model, brought, by))
         return trials
 
     def _evaluate(self, models: Sequence[tuple[Start, Model]]) -> list[Trial]:
@@ -133,10 +140,11 @@ class Trials:
 
     def _trial(self, start: Start, model: Model, brought: tuple[str, ...], evaluation: Evaluation) -> Trial:
         names = evaluation.names
-        residual = evaluation.residual + self._correction
+        change = self.base.residual - evaluation.residual
+        residual = self.fitted.residual - change  # the same to the last digit where nothing changes
         step, predicted = _bounded_step(model, names, residual, evaluation.jacobian)
         own = evaluation.by(brought).jacobian
-        looks = np.column_stack([self.fitted.residual - residual, own])
+        looks = np.column_stack([change, own])
         spanned = float(drops(looks, self._imitable, self.fitted.residual))
         promised = max(spanned, self.fitted.sum_of_squares - predicted)
         return Trial(start, model, names, brought, residual, evaluation.jacobian, step, predicted, promised)
@@ -159,6 +167,10 @@ def nearer(trials: Trials, tried: Sequence[Start], found: Sequence[Trial]) -> li
         found = trials.first(tried)
         every += found
     return every
+
+
+def _values(starts: Sequence[Start]) -> dict[str, float]:
+    return {name: value for start in starts for name, value in start.values.items()}
 
 
 def _source(start: Start) -> str:

@@ -8,6 +8,7 @@ from hasel_sim.effects.base import Effect
 
 from hasel_sysid.diagnosis.candidates import Start, resized, starts
 from hasel_sysid.diagnosis.trial import Trial, Trials, nearer
+from hasel_sysid.policy import POLICY
 from hasel_sysid.projection import orthonormal
 from hasel_sysid.selection.decade_trials import decade_trials
 from hasel_sysid.selection.sets import FittedSet
@@ -19,11 +20,11 @@ _SIZES = (0.1, 2.0)
 
 def first_trials(trials: Trials, effects: Sequence[Effect], decades: bool) -> list[Trial]:
     """Beside the baseline; decades: at sizes over the decades of every range, as far as those tried do not foretell
-    them. The first batch is tried in any case.
+    them. What starts without effect, or else the first batch, is tried in any case.
     """
     typical = [start for effect in effects for start in starts(effect)]
-    typical.sort(key=lambda start: not start.changes_nothing)
-    found = _in_batches(trials, typical, even_late=True)
+    found = trials.first([start for start in typical if start.changes_nothing])
+    found += _in_batches(trials, [start for start in typical if not start.changes_nothing], not found)
     found += nearer(trials, typical, found)
     if decades:
         found += decade_trials(trials, effects, found, partial(_in_batches, trials))
@@ -43,6 +44,7 @@ def _in_batches(trials: Trials, begins: Sequence[Start], even_late: bool = False
 def sized_starts(of: FittedSet, first: Sequence[Trial], baseline: np.ndarray) -> list[Start]:
     """The best start of every effect, of the size that its change beside the baseline leads to expect beside a set.
 
+    Where first order holds from no effect to that size, it starts without: one simulation serves all of those.
     first: trials beside the baseline, whose residual is `baseline` [frames].
     """
     basis = orthonormal(of.jacobian)
@@ -55,5 +57,17 @@ def sized_starts(of: FittedSet, first: Sequence[Trial], baseline: np.ndarray) ->
         drop = along * abs(along) / power if power > 0 else 0.0
         if effect not in best or drop > best[effect][0]:
             size = float(np.clip(along / power, *_SIZES)) if power > 0 else 1.0
-            best[effect] = drop, resized(trial.start, size)
+            nonlinear = size * _nonlinear_share(trial, change) > POLICY.effort.hope
+            best[effect] = drop, resized(trial.start, size) if nonlinear else trial.start.without_effect()
     return [start for _, start in best.values()]
+
+
+def _nonlinear_share(trial: Trial, change: np.ndarray) -> float:
+    """Of a trial's change [frames], the share that its derivatives do not lead back from; of a part of the size, that
+    part of the share.
+    """
+    nulls, error = trial.start.nulls, change.copy()
+    for name, null in nulls.items():
+        error -= trial.jacobian[:, trial.names.index(name)] * (trial.start.values[name] - null)
+    size = float(np.linalg.norm(change))
+    return float(np.linalg.norm(error)) / size if size > 0 else 0.0

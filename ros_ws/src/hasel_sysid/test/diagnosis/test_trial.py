@@ -5,7 +5,7 @@ import pytest
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import load_model
-from hasel_sysid.diagnosis.candidates import starts, valued
+from hasel_sysid.diagnosis.candidates import resized, starts, valued
 from hasel_sysid.diagnosis.trial import Trials, _shortened
 from hasel_sysid.problem import Problem
 from hasel_sysid.testing.made_up_runs import made_up_trial
@@ -30,6 +30,19 @@ class WithoutDrafts(Problem):
         return super().evaluate(model, names)
 
 
+class OneAtATime(Problem):
+    """Only models with a single effect can be simulated."""
+
+    def __init__(self, of):
+        super().__init__(of.experiments, of.pool)
+
+    def evaluate_each(self, models, names):
+        """Of several effects an error."""
+        found = super().evaluate_each(models, names)
+        several = [len(model.effects) > 1 for model in models]
+        return [SimulationError("not finite") if s else f for s, f in zip(several, found, strict=True)]
+
+
 def test_a_draft_that_cannot_be_simulated_gives_way_to_the_model(bent_swimmer):
     """Its steps are twice as long; what the model itself can follow is tried all the same."""
     problem, fitted = bent_swimmer
@@ -50,6 +63,28 @@ def test_effects_without_effect_share_a_simulation(trials):
         assert trial.names == alone.names and trial.step == pytest.approx(alone.step, rel=1e-6)
         assert trial.predicted == pytest.approx(alone.predicted)
         assert [effect.id for effect in trial.model.effects] == [start.effect.id]
+
+
+def test_one_sided_effects_share_a_simulation_where_they_do_nothing(trials):
+    """What is left is to the last digit what the model leaves, and a drag's derivative leads to its change."""
+    drag, lag = (starts(catalogue()[name])[0] for name in ("linear_drag", "charging_lag"))
+    before = trials.problem.evaluations
+    at_null = trials.first([drag.without_effect(), lag.without_effect()])
+    assert trials.problem.evaluations == before + 1
+    assert all((trial.residual == trials.fitted.residual).all() for trial in at_null)
+    assert at_null[1].brought == ("charging_lag.charge_time", "charging_lag.discharge_time", "onset")
+    (little,) = trials.first([resized(drag, 0.01)])
+    slope = at_null[0].jacobian[:, at_null[0].is_brought][:, 0]
+    change = trials.fitted.residual - little.residual
+    expected = slope * little.start.values["linear_drag.rate"]
+    assert np.linalg.norm(change - expected) < 0.02 * np.linalg.norm(change)
+
+
+def test_what_cannot_be_simulated_beside_others_is_tried_alone(bent_swimmer):
+    """As where the derivatives by one of them are not finite."""
+    trials = Trials(OneAtATime(*bent_swimmer[:1]), bent_swimmer[1])
+    chosen = [starts(catalogue()[name])[0] for name in ("soft_modulus", "pre_bend")]
+    assert [trial.start for trial in trials.first(chosen)] == chosen
 
 
 def test_one_step_moves_a_relaxation_time_by_half_of_it_at_most(trials):
