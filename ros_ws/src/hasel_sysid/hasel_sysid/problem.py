@@ -1,6 +1,6 @@
 """Residuals of many runs and their derivatives, with the unknown offset of every run taken out."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -47,10 +47,13 @@ class Evaluation:
         """The residual sum of squares (RSS)."""
         return float(self.residual @ self.residual)
 
-    def by(self, names: Sequence[str]) -> "Evaluation":
-        """The same with derivatives by these of its parameters only, in this order."""
-        columns = self.jacobian[:, [self.names.index(name) for name in names]]
-        return replace(self, names=tuple(names), jacobian=columns)
+    def by(self, names: Sequence[str], idle: Collection[str] = ()) -> "Evaluation":
+        """The same with derivatives by these of its parameters only, in this order; by those that are idle zero."""
+        columns = [
+            np.zeros_like(self.residual) if name in idle else self.jacobian[:, self.names.index(name)]
+            for name in names
+        ]
+        return replace(self, names=tuple(names), jacobian=np.reshape(columns, (-1, len(self.residual))).T)
 
     def simulated(self) -> np.ndarray:
         """The simulated series at the frames of `residual`, the mean of every run removed, [frames]."""

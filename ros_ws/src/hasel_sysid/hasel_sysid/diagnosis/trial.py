@@ -104,21 +104,23 @@ class Trials:
 
     def _at_null(self, starts: Sequence[Start]) -> list[Trial]:
         """Trials of effects that change nothing where they start: a simulation with the derivatives of all that go
-        together.
+        together. What they may do by a time or a place is nothing, to the last digit.
         """
         rounds = side_by_side(starts)
         models = [self._model.with_effects(*map(_source, own)).with_values(_values(own)) for own in rounds]
-        names = [(*self.fitted.names, *self._brought(model)) for model in models]
-        found = self.problem.evaluate_each(models, names)
+        names = [
+            (*self.fitted.names, *(name for name in self._brought(model) if name not in _idle(own)))
+            for model, own in zip(models, rounds, strict=True)
+        ]
         trials = []
-        for own, evaluation in zip(rounds, found, strict=True):
-            if isinstance(evaluation, SimulationError):
+        for own, seen in zip(rounds, self.problem.evaluate_each(models, names), strict=True):
+            if isinstance(seen, SimulationError):
                 trials += self._evaluate([(start, self._with(start)) for start in own])
                 continue
             for start in own:
                 model = self._with(start)
                 brought = self._brought(model)
-                by = evaluation.by((*self.fitted.names, *brought))
+                by = seen.by((*self.fitted.names, *brought), _idle([start]))
                 trials.append(self._trial(start, model, brought, by))
         return trials
 
@@ -167,6 +169,11 @@ def nearer(trials: Trials, tried: Sequence[Start], found: Sequence[Trial]) -> li
         found = trials.first(tried)
         every += found
     return every
+
+
+def _idle(starts: Sequence[Start]) -> set[str]:
+    """Names of the times and places of effects that do nothing."""
+    return {name for start in starts for name in start.values.keys() - start.nulls.keys()}
 
 
 def _values(starts: Sequence[Start]) -> dict[str, float]:

@@ -80,6 +80,15 @@ def test_one_sided_effects_share_a_simulation_where_they_do_nothing(trials):
     assert np.linalg.norm(change - expected) < 0.02 * np.linalg.norm(change)
 
 
+def test_a_time_of_what_does_nothing_changes_nothing(trials):
+    """Not even by round-off, which looks like something once it is scaled; the time stays where it was."""
+    for start in starts(catalogue()["slow_creep"]):
+        (trial,) = trials.first([start.without_effect()])
+        time = "slow_creep.relaxation_time"
+        assert not trial.jacobian[:, trial.names.index(time)].any()
+        assert trial.step[time] == start.values[time]
+
+
 def test_what_cannot_be_simulated_beside_others_is_tried_alone(bent_swimmer):
     """As where the derivatives by one of them are not finite."""
     trials = Trials(OneAtATime(*bent_swimmer[:1]), bent_swimmer[1])
