@@ -77,7 +77,10 @@ def improve(
         if on_stage:
             on_stage(stages[-1])
     path = () if opposed or constant else choice.path[1:]
-    for effects_so_far, fitted in zip(path, sets.finished([found.known[s] for s in path]), strict=True):
+    fits = [found.known[effects_so_far] for effects_so_far in path]
+    # what explains too little is not added, and needs no last digits
+    ended = sets.finished(fits) if judges.named(found, choice.chosen) else fits
+    for effects_so_far, fitted in zip(path, ended, strict=True):
         order = in_order(choice, effects_so_far)
         stages.append(_stage(judges.refined(fitted), order, validation, None))
         if on_stage:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from hasel_sysid.selection.promises import Promises
 from hasel_sysid.selection.proposals import Proposal
 from hasel_sysid.selection.searched import plausible
-from hasel_sysid.selection.sets import NOTHING, FittedSet, name_of
+from hasel_sysid.selection.sets import EffectSet, FittedSet, name_of
 
 Progress = Callable[[str, float], None]
 
@@ -81,16 +81,29 @@ class FullFits(Promises):
         Not where it began there.
         """
         effects = proposal.effects
-        below = [part for gone in effects if (part := effects - {gone}) in self.known]
-        if not below:
+        best = self.best_part(effects)
+        if best is None or self.sets.out_of_time():
             return None
-        best = min(below, key=lambda part: self.known[part].squares)
         if effects in self.known and self.known[effects].squares <= _AS_GOOD * self.known[best].squares:
             return None
-        (new,) = effects - best
-        prospect = {**self.prospects[NOTHING], **self.prospects.get(best, {})}.get(new)
-        begun = proposal.of is self.known[best] and not proposal.dropped and prospect in proposal.added
-        return None if prospect is None or begun else self.sets.fit(effects, self.known[best], (prospect,))
+        if proposal.of is self.known[best] and not proposal.dropped:
+            return None
+        again = self.beside(best, effects)
+        return None if again is None else self.sets.fit(effects, again.of, again.added)
+
+    def best_part(self, effects: EffectSet) -> EffectSet | None:
+        """Of the known sets that lack one of these effects, the one that leaves least."""
+        parts = [part for gone in effects if (part := effects - {gone}) in self.known]
+        return min(parts, key=lambda part: self.known[part].squares, default=None)
+
+    def beside(self, part: EffectSet, effects: EffectSet) -> Proposal | None:
+        """The one effect more that these have than a known part of them, looked at there."""
+        (new,) = effects - part
+        seen = self.prospects.get(part, {})
+        if new not in seen:
+            rank, most = self.likelihood.promised, self.policy.effort.trials
+            seen = self.sets.prospects(self.known[part], [new], rank, most)
+        return Proposal(self.known[part], (seen[new],)) if new in seen else None
 
     def _from_other_sizes(self, proposal: Proposal) -> FittedSet | None:
         """A fit of one more effect that did not keep its promise: there is more than one valley."""

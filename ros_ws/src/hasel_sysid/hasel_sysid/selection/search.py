@@ -154,11 +154,23 @@ class _Search(StandIns):
 
     def shrunk(self, found: Searched) -> Searched:
         """With every part of the smallest set fitted that lacks one effect, until no smaller one does."""
-        while self.fit(
-            list(self.possible(smaller(found.known, smallest(found, self.policy)))), self.policy.most_effects
-        ):
+        while self.fit(self.parts(smallest(found, self.policy)), self.policy.most_effects):
             found = self.judged()
         return found
+
+    def parts(self, chosen: EffectSet) -> list[Proposal]:
+        """A set without each of its effects in turn, as far as that was not fitted yet.
+
+        Fitted from the values of the others, or from a known set with one effect less where those would be farther off.
+        """
+        return [self._nearest(without) for without in self.possible(smaller(self.known, chosen))]
+
+    def _nearest(self, without: Proposal) -> Proposal:
+        begin = without.whole.residual
+        part = self.best_part(without.effects)
+        if part is None or self.known[part].squares > float(begin @ begin):
+            return without
+        return self.beside(part, without.effects) or without
 
     def rivals(self, found: Searched, chosen: EffectSet) -> list[Proposal]:
         """Sets of the chosen one's size that come so near to it that they may not be told apart."""

@@ -280,6 +280,31 @@ def test_a_fit_that_was_lost_begins_again_from_the_smaller_set():
         assert squares[effects] <= 1.0001 * min(below, default=np.inf)
 
 
+class _HeldUp(LinearSets):
+    """Without one effect all others are so many times as far off as first order says; begun: where fits began."""
+
+    times = 1.0
+
+    def fit(self, effects, near, added):
+        """As of sets, but for that."""
+        self.begun = [*getattr(self, "begun", []), (effects, near.effects)]
+        fitted = super().fit(effects, near, added)
+        return replace(fitted, without={name: self.times * w for name, w in fitted.without.items()})
+
+
+@pytest.mark.parametrize("times", [1.0, 50.0])
+def test_a_part_is_fitted_from_the_whole_unless_a_smaller_set_is_nearer(times):
+    """Values that an effect has drawn to itself are no start without it."""
+    sets = _HeldUp(made_up(3), {"a": 0.06, "b": 0.05, "c": 0.04}, WHITE, 3)
+    sets.times = times
+    assert chosen(sets)[0] == "abc"
+    whole = [effects for effects, _ in sets.begun].index(frozenset("abc"))
+    parts = [(effects, near) for effects, near in sets.begun[whole:] if effects < frozenset("abc")]
+    assert parts
+    assert all((near == frozenset("abc")) == (times == 1.0) for _, near in parts)
+    assert all(near < effects or near > effects for effects, near in parts)
+
+
 class _OutOfRange(LinearSets):
     """One of b and c without the other is out of range, and c promises nothing but beside b."""
 
