@@ -8,7 +8,7 @@ from hasel_sim.effects.base import Effect
 
 from hasel_sysid.diagnosis.candidates import Start, resized, starts
 from hasel_sysid.diagnosis.trial import Trial, Trials, nearer
-from hasel_sysid.policy import POLICY
+from hasel_sysid.estimation.opening import is_small
 from hasel_sysid.projection import orthonormal
 from hasel_sysid.selection.decade_trials import decade_trials
 from hasel_sysid.selection.sets import FittedSet
@@ -57,17 +57,16 @@ def sized_starts(of: FittedSet, first: Sequence[Trial], baseline: np.ndarray) ->
         drop = along * abs(along) / power if power > 0 else 0.0
         if effect not in best or drop > best[effect][0]:
             size = float(np.clip(along / power, *_SIZES)) if power > 0 else 1.0
-            nonlinear = size * _nonlinear_share(trial, change) > POLICY.effort.hope
-            best[effect] = drop, resized(trial.start, size) if nonlinear else trial.start.without_effect()
+            foretold = is_small(size * _error_of_first_order(trial, change), change)
+            best[effect] = drop, trial.start.without_effect() if foretold else resized(trial.start, size)
     return [start for _, start in best.values()]
 
 
-def _nonlinear_share(trial: Trial, change: np.ndarray) -> float:
-    """Of a trial's change [frames], the share that its derivatives do not lead back from; of a part of the size, that
-    part of the share.
+def _error_of_first_order(trial: Trial, change: np.ndarray) -> np.ndarray:
+    """What a trial's derivatives miss of its change [frames] on the way from no effect; the share of the change that is
+    missed is in proportion to the size.
     """
-    nulls, error = trial.start.nulls, change.copy()
-    for name, null in nulls.items():
+    error = change.copy()
+    for name, null in trial.start.nulls.items():
         error -= trial.jacobian[:, trial.names.index(name)] * (trial.start.values[name] - null)
-    size = float(np.linalg.norm(change))
-    return float(np.linalg.norm(error)) / size if size > 0 else 0.0
+    return error
