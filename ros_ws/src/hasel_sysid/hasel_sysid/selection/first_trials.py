@@ -8,7 +8,7 @@ from hasel_sim.effects.base import Effect
 
 from hasel_sysid.diagnosis.candidates import Start, resized, starts
 from hasel_sysid.diagnosis.trial import Trial, Trials, nearer
-from hasel_sysid.estimation.opening import is_small
+from hasel_sysid.policy import POLICY
 from hasel_sysid.projection import orthonormal
 from hasel_sysid.selection.decade_trials import decade_trials
 from hasel_sysid.selection.sets import FittedSet
@@ -44,7 +44,7 @@ def _in_batches(trials: Trials, begins: Sequence[Start], even_late: bool = False
 def sized_starts(of: FittedSet, first: Sequence[Trial], baseline: np.ndarray) -> list[Start]:
     """The best start of every effect, of the size that its change beside the baseline leads to expect beside a set.
 
-    Where first order holds from no effect to that size, it starts without: one simulation serves all of those.
+    Where first order leads back to no effect, it starts without: one simulation serves all of those.
     first: trials beside the baseline, whose residual is `baseline` [frames].
     """
     basis = orthonormal(of.jacobian)
@@ -57,16 +57,17 @@ def sized_starts(of: FittedSet, first: Sequence[Trial], baseline: np.ndarray) ->
         drop = along * abs(along) / power if power > 0 else 0.0
         if effect not in best or drop > best[effect][0]:
             size = float(np.clip(along / power, *_SIZES)) if power > 0 else 1.0
-            foretold = is_small(size * _error_of_first_order(trial, change), change)
+            foretold = _leads_back(trial, change)
             best[effect] = drop, trial.start.without_effect() if foretold else resized(trial.start, size)
     return [start for _, start in best.values()]
 
 
-def _error_of_first_order(trial: Trial, change: np.ndarray) -> np.ndarray:
-    """What a trial's derivatives miss of its change [frames] on the way from no effect; the share of the change that is
-    missed is in proportion to the size.
+def _leads_back(trial: Trial, change: np.ndarray) -> bool:
+    """Whether a trial's derivatives lead back to no effect: they miss less of its change [frames] than a promise may.
+
+    Not less of it for a smaller size: beside a baseline that is far off, the size to be expected is hardly known.
     """
     error = change.copy()
     for name, null in trial.start.nulls.items():
         error -= trial.jacobian[:, trial.names.index(name)] * (trial.start.values[name] - null)
-    return error
+    return bool(np.linalg.norm(error) <= POLICY.effort.hope * np.linalg.norm(change))
