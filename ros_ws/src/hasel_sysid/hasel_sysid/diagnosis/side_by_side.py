@@ -1,8 +1,16 @@
-"""Which effects can be in one model while none of them does anything."""
+"""Which effects can be in one model."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+
+from hasel_sim.effects.base import Effect
 
 from hasel_sysid.diagnosis.candidates import Start
+
+
+def go_together(effects: Iterable[Effect]) -> bool:
+    """Whether each is there once, and no two of them do the same."""
+    words = [word for effect in effects for word in (effect.id, effect.exclusive) if word]
+    return len(words) == len(set(words))
 
 
 def side_by_side(starts: Sequence[Start]) -> list[list[Start]]:
@@ -10,15 +18,9 @@ def side_by_side(starts: Sequence[Start]) -> list[list[Start]]:
     groups: list[list[Start]] = []
     for start in starts:
         for group in groups:
-            if not any(_exclude_each_other(start, other) for other in group):
+            if go_together(own.effect for own in (*group, start)):
                 group.append(start)
                 break
         else:
             groups.append([start])
     return groups
-
-
-def _exclude_each_other(one: Start, other: Start) -> bool:
-    """Whether two starts are of one effect, or of effects that do the same."""
-    same_kind = one.effect.exclusive == other.effect.exclusive != ""
-    return one.effect.id == other.effect.id or same_kind

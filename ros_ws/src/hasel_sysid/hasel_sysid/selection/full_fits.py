@@ -91,10 +91,13 @@ class FullFits(Promises):
         again = self.beside(best, effects)
         return None if again is None else self.sets.fit(effects, again.of, again.added)
 
+    def known_parts(self, effects: EffectSet) -> list[EffectSet]:
+        """The known sets that lack one of these effects."""
+        return [part for gone in effects if (part := effects - {gone}) in self.known]
+
     def best_part(self, effects: EffectSet) -> EffectSet | None:
-        """Of the known sets that lack one of these effects, the one that leaves least."""
-        parts = [part for gone in effects if (part := effects - {gone}) in self.known]
-        return min(parts, key=lambda part: self.known[part].squares, default=None)
+        """Of these the one that leaves least."""
+        return min(self.known_parts(effects), key=lambda part: self.known[part].squares, default=None)
 
     def beside(self, part: EffectSet, effects: EffectSet) -> Proposal | None:
         """The one effect more that these have than a known part of them, looked at there."""

@@ -175,8 +175,7 @@ class _Search(StandIns):
     def rivals(self, found: Searched, chosen: EffectSet) -> list[Proposal]:
         """Sets of the chosen one's size that come so near to it that they may not be told apart."""
         reach = found.whitened[chosen].logarithm - self.reach
-        parts = [part for gone in chosen if (part := chosen - {gone}) in self.known]
-        return self.ranked(self.additions(parts), reach)
+        return self.ranked(self.additions(self.known_parts(chosen)), reach)
 
     def look_for_a_law(self) -> None:
         """Fit what promises most beside the best law, until something that may stand in the chosen set's place is one.

@@ -8,6 +8,7 @@ from hasel_sim.errors import HaselSimError
 from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis.candidates import Start, starts, valued
+from hasel_sysid.diagnosis.side_by_side import go_together
 from hasel_sysid.diagnosis.trial import Trial, Trials
 from hasel_sysid.estimation import FitResult
 from hasel_sysid.estimation.least_squares import fitted_result
@@ -70,9 +71,7 @@ class SimulatedSets:
 
     def compatible(self, effects: EffectSet) -> bool:
         """Whether no two of them exclude each other."""
-        kinds = [self.effects[effect].exclusive for effect in effects]
-        named = [kind for kind in kinds if kind]
-        return len(named) == len(set(named))
+        return go_together(self.effects[effect] for effect in effects)
 
     def noise(self, known: Collection[FittedSet]) -> NoiseModel:
         """As measured, or as these fits bound it."""
