@@ -8,6 +8,7 @@ from hasel_sim.model import Model
 
 from hasel_sysid.estimation.independent import independent_share
 from hasel_sysid.estimation.opening import is_close
+from hasel_sysid.estimation.pace import Pace
 from hasel_sysid.problem import Evaluation, Problem
 
 Progress = Callable[[str, float], None]
@@ -19,7 +20,7 @@ _LEAST_SHARE = 1 / 30
 """Of independent squares that a rough search reckons with: a step that gives 0.3 % is worth the next."""
 
 
-class NearEnoughError(Exception):
+class EnoughError(Exception):
     """Ends scipy's search, whose callback is not in every version that is in use."""
 
     def __init__(self, evaluation: Evaluation) -> None:
@@ -38,13 +39,15 @@ class AskedModel:
         progress: Progress | None,
         most: int,
         rough: float,
+        against: float = 0.0,
     ) -> None:
         """names: of the parameters that scipy moves; most: evaluations, of which progress tells the share; rough:
-        relative change of independent squares at which the search is near enough, 0 for the end itself.
+        relative change of independent squares at which the search is near enough, 0 for the end itself; against: as of
+        `Pace`.
         """
         self.problem, self.model, self.names = problem, model, names
         self.progress, self.most, self.count = progress, most, 0
-        self.rough = rough
+        self.rough, self._pace = rough, Pace(against, most)
         self._before: tuple[np.ndarray, Evaluation] | None = None
         self._known: dict[bytes, Evaluation] = {}
         self._first: Evaluation | None = None
@@ -72,11 +75,13 @@ class AskedModel:
     def jacobian(self, x: np.ndarray) -> np.ndarray:
         """Derivatives of what is left, [frames, n]; asked for where a step was taken, and there only.
 
-        Raises NearEnoughError where that step was not worth another one.
+        Raises EnoughError where that step was not worth another one, or leads nowhere near another model.
         """
         here = self.at(x)
+        if self._pace.leads_nowhere(here.sum_of_squares, self.count):
+            raise EnoughError(here)
         if self.rough and self._before is not None and self._is_near_enough(*self._before, x, here):
-            raise NearEnoughError(here)
+            raise EnoughError(here)
         self._before = x, here
         return -here.jacobian
 

@@ -8,7 +8,7 @@ from hasel_sim.model import Model
 from scipy.optimize import least_squares
 
 from hasel_sysid.draft import draft
-from hasel_sysid.estimation.asked import AskedModel, NearEnoughError, Progress
+from hasel_sysid.estimation.asked import AskedModel, EnoughError, Progress
 from hasel_sysid.estimation.between_runs import wider_where_runs_disagree
 from hasel_sysid.estimation.bounds import at_bound
 from hasel_sysid.estimation.result import FitResult
@@ -30,6 +30,7 @@ def fit_least_squares(
     most_evaluations: int = 25,
     drafts: bool = True,
     roughly: bool = False,
+    against: float = 0.0,
 ) -> FitResult:
     """Minimise the squared residuals over the model's free parameters within their bounds.
 
@@ -37,7 +38,8 @@ def fit_least_squares(
     model itself goes the rest.
     tolerance: ten times the relative change of the sum of squares at which to stop; drafts: whether to start
     with the draft, which is a waste of time when the start is already good; roughly: stop earlier where neighbouring
-    frames share what is left, for then so many fewer squares tell models apart; `finished` goes on from there.
+    frames share what is left, for then so many fewer squares tell models apart; against: squares that another model leaves, near which the fit must come at
+    its pace, or it is broken off; `finished` goes on from there.
     A fit that ends where no derivative leads on is tried once more (`second_start`).
     Raises SimulationError when even the start cannot be simulated.
     """
@@ -50,7 +52,9 @@ def fit_least_squares(
             leader = _without_onsets(draft(start))
             found, count, _ = _minimise(problem, leader, progress, 1e-2, most_evaluations)
             start = start.with_values({name: found.model.values[name] for name in leader.free})
-        evaluation, more, ended = _minimise(problem, start, progress, tolerance, most_evaluations, roughly)
+        evaluation, more, ended = _minimise(
+            problem, start, progress, tolerance, most_evaluations, roughly, against
+        )
         return replace(fitted_result(evaluation, count + more), converged=ended)
 
     first = fitted(model, drafts)
@@ -72,11 +76,11 @@ def _minimise(
     tolerance: float,
     most_evaluations: int,
     roughly: bool = False,
+    against: float = 0.0,
 ) -> tuple[Evaluation, int, bool]:
     names = model.free
-    search = AskedModel(
-        problem, model, names, progress, most_evaluations, 0.1 * tolerance if roughly else 0.0
-    )
+    rough = 0.1 * tolerance if roughly else 0.0
+    search = AskedModel(problem, model, names, progress, most_evaluations, rough, against)
     lower, upper, start = _bounds_and_start(model, names)
     scale = np.maximum(np.abs(start), [_scale(model, name) for name in names])
     start = _first_that_runs(search, start, names)
@@ -92,7 +96,7 @@ def _minimise(
             gtol=1e-12,
             max_nfev=most_evaluations,
         )
-    except NearEnoughError as reached:
+    except EnoughError as reached:
         return reached.evaluation, search.count, False
     return search.at(np.clip(found.x * scale, lower, upper)), search.count, found.status > 0
 

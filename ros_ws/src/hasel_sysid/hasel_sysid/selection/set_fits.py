@@ -1,6 +1,6 @@
 """Full fits of sets of effects, several at once where there are processes for them."""
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -27,17 +27,33 @@ class SetFits:
         """given: the model to begin again with, where a fit that began far off has not come close."""
         self._effects, self._given = effects, given
         self._ahead: FitsAhead[FittedSet | None] = FitsAhead(problem)
+        self._least = float("inf")
 
     def foresee(self, likely: Sequence[Wanted]) -> None:
         """Begin these fits where processes would wait for work."""
-        self._ahead.foresee({_key(*wanted): partial(self._fit, *wanted) for wanted in likely})
+        self._ahead.foresee({_key(*wanted): self._begun(*wanted) for wanted in likely})
 
     def fit(self, effects: EffectSet, near: FittedSet, added: Sequence[Prospect]) -> FittedSet | None:
-        """Least squares of the model itself, from where the drafts have led."""
-        return self._ahead.done(_key(effects, near, added), partial(self._fit, effects, near, added))
+        """Least squares of the model itself, from where the drafts have led; to the end only where it may come near the
+        least squares that a set was fitted to.
+        """
+        found = self._ahead.done(_key(effects, near, added), self._begun(effects, near, added))
+        self._least = min(self._least, found.squares) if found else self._least
+        return found
+
+    def _begun(
+        self, effects: EffectSet, near: FittedSet, added: Sequence[Prospect]
+    ) -> Callable[[Problem], FittedSet | None]:
+        """The fit of a set against the squares that are the least until now."""
+        return partial(self._fit, effects, near, added, min(self._least, near.squares))
 
     def _fit(
-        self, effects: EffectSet, near: FittedSet, added: Sequence[Prospect], problem: Problem
+        self,
+        effects: EffectSet,
+        near: FittedSet,
+        added: Sequence[Prospect],
+        against: float,
+        problem: Problem,
     ) -> FittedSet | None:
         base: FitResult = near.fit
         values = dict(base.model.values)
@@ -52,9 +68,10 @@ class SetFits:
         try:
             model = self._model(near.fit.model, effects, near.effects).with_values({})
             start = {name: _inside(model, name, values[name]) for name in model.free if name in values}
-            found = _fitted(problem, model.with_values(start))
+            fitted = partial(_fitted, problem, against)
+            found = fitted(model.with_values(start))
             begun_close = is_close(base.evaluation)
-            found = better_from(found, self._as_given(found, begun_close), partial(_fitted, problem))
+            found = better_from(found, self._as_given(found, begun_close), fitted)
         except (HaselSimError, ModelError):
             return None
         return known_set(found, self._effects)
@@ -93,7 +110,7 @@ def _inside(model: Model, name: str, value: float) -> float:
     return float(np.clip(value, p.lower, p.upper))
 
 
-def _fitted(problem: Problem, model: Model) -> FitResult:
+def _fitted(problem: Problem, against: float, model: Model) -> FitResult:
     return fit_least_squares(
         problem,
         model,
@@ -101,6 +118,7 @@ def _fitted(problem: Problem, model: Model) -> FitResult:
         most_evaluations=POLICY.effort.evaluations,
         drafts=False,
         roughly=True,
+        against=against,
     )
 
 

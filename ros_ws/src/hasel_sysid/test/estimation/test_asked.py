@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sim.model import load_model
-from hasel_sysid.estimation.asked import AskedModel, NearEnoughError
+from hasel_sysid.estimation.asked import AskedModel, EnoughError
 from hasel_sysid.testing.made_up_runs import made_up_evaluation
 
 NAME, TIME = "material_damping.retardation_time", np.linspace(0.0, 6.2, 400)
@@ -33,7 +33,7 @@ def _steps(promise: float) -> None:
 
 def test_a_step_that_gives_little_and_keeps_its_promise_is_the_last():
     """The next would give no more."""
-    with pytest.raises(NearEnoughError):
+    with pytest.raises(EnoughError):
         _steps(promise=1.0)
 
 

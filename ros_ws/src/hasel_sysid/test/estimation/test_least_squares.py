@@ -109,6 +109,10 @@ def test_a_value_on_a_bound_where_nothing_shows_it_is_tried_again_from_its_typic
     assert found.model.values[TIME] == pytest.approx(0.01, rel=1e-3)
 
 
+LEAST_BENDING = 282.4
+"""Squares that the best fit of these runs leaves."""
+
+
 class Bending:
     """Runs whose second series grows with the square of a time constant and stays far off: a fit creeps to its end."""
 
@@ -160,3 +164,19 @@ def test_a_rough_fit_goes_to_the_end_where_every_frame_counts():
     exact, rough = fits(Bending(*np.random.default_rng(0).normal(size=(2, 400))))
     assert rough.evaluation.sum_of_squares == pytest.approx(exact.evaluation.sum_of_squares, rel=1e-3)
     assert rough.iterations >= exact.iterations - 1
+
+
+def test_a_fit_that_creeps_far_above_what_another_model_leaves_is_broken_off():
+    """It says that it has not converged, ends the sooner; beside what is near it goes to its end."""
+    angle = np.linspace(0.0, 6.2, 400)
+    problem = Bending(np.cos(angle), np.sin(angle))
+    exact, lost, near = (
+        fit_least_squares(problem, far_start(), tolerance=1e-3, drafts=False, against=share * LEAST_BENDING)
+        for share in (0.0, 1e-6, 0.5)
+    )
+    least = exact.evaluation.sum_of_squares
+    assert least == pytest.approx(LEAST_BENDING, rel=0.01)
+    assert exact.converged and near.converged and not lost.converged
+    assert lost.iterations < 0.7 * exact.iterations and near.iterations == exact.iterations
+    assert least < lost.evaluation.sum_of_squares < 1.2 * least
+    assert finished(problem, lost, tolerance=1e-3).evaluation.sum_of_squares == pytest.approx(least, rel=1e-3)
