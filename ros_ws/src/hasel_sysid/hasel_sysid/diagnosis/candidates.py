@@ -88,12 +88,14 @@ def starts(effect: Effect) -> list[Start]:
     return [_start(effect, {nuisance.name: value}) for value in sorted(chosen)]
 
 
-def decade_starts(effect: Effect) -> list[Start]:
-    """Starts over the decades of the plausible range of the effect's first size; its other values are typical."""
+def decade_starts(effect: Effect, beside: Start | None = None) -> list[Start]:
+    """Starts over the decades of the plausible range of the effect's first size; its other sizes are typical, and a
+    time or a place is that of the start beside, else the middle of its scan.
+    """
     first = next((p for p in effect.parameters if not p.scan), None)
     if first is None:
         return []
-    begin = _start(effect, {})
+    begin = beside or _start(effect, {})
     typical = {f"{effect.id}.{p.name}": p.typical for p in effect.parameters if not p.scan}
     name = f"{effect.id}.{first.name}"
     sizes = over_range(first.null, first.typical, first.lower, first.upper)

@@ -59,14 +59,15 @@ class Trial:
 class Trials:
     """Tries effects on drafts of a fitted model.
 
-    fitted: the model as fitted, evaluated with its free parameters. A draft's own error, the difference between the two
-    at the fitted values, is added to every trial: what matters is what the effect changes. A draft that is far off (a
-    long undamped swing, whose phase drifts), or whose steps are too long to follow the motion, is not used at all.
+    fitted: the model as fitted, evaluated with its free parameters; imitable: a basis of what these imitate [frames, n].
+    A draft's own error, the difference between the two at the fitted values, is added to every trial: what matters is
+    what the effect changes. A draft that is far off (a long undamped swing, whose phase drifts), or whose steps are too
+    long to follow the motion, is not used at all.
     """
 
     def __init__(self, problem: Problem, fitted: Evaluation) -> None:
         self.problem, self.fitted = problem, fitted
-        self._imitable = orthonormal(fitted.jacobian)
+        self.imitable = orthonormal(fitted.jacobian)
         self.tried: set[str] = set()
         self._model, self.base = draft(fitted.model), fitted
         try:
@@ -85,7 +86,7 @@ class Trials:
         """Every effect at its start; those that cannot be simulated there are left out, but count as tried."""
         self.tried |= {start.effect.id for start in starts}
         together = [start for start in starts if start.changes_nothing]
-        alone = [(start, self._with(start)) for start in starts if not start.changes_nothing]
+        alone = [(start, self.model_at(start)) for start in starts if not start.changes_nothing]
         return self._at_null(together) + self._evaluate(alone)
 
     def further(self, trials: Sequence[Trial]) -> list[Trial]:
@@ -99,8 +100,13 @@ class Trials:
             result.append(new if better else _shortened(trial))
         return result
 
-    def _with(self, start: Start) -> Model:
+    def model_at(self, start: Start) -> Model:
+        """The draft with an effect at its start."""
         return self._model.with_effects(_source(start)).with_values(start.values)
+
+    def corrected(self, evaluation: Evaluation) -> np.ndarray:
+        """What a draft leaves [frames], less its own error; the same to the last digit where nothing changes."""
+        return self.fitted.residual - (self.base.residual - evaluation.residual)
 
     def _at_null(self, starts: Sequence[Start]) -> list[Trial]:
         """Trials of effects that change nothing where they start: a simulation with the derivatives of all that go
@@ -115,10 +121,10 @@ class Trials:
         trials = []
         for own, seen in zip(rounds, self.problem.evaluate_each(models, names), strict=True):
             if isinstance(seen, SimulationError):
-                trials += self._evaluate([(start, self._with(start)) for start in own])
+                trials += self._evaluate([(start, self.model_at(start)) for start in own])
                 continue
             for start in own:
-                model = self._with(start)
+                model = self.model_at(start)
                 brought = self._brought(model)
                 by = seen.by((*self.fitted.names, *brought), _idle([start]))
                 trials.append(self._trial(start, model, brought, by))
@@ -142,12 +148,11 @@ class Trials:
 
     def _trial(self, start: Start, model: Model, brought: tuple[str, ...], evaluation: Evaluation) -> Trial:
         names = evaluation.names
-        change = self.base.residual - evaluation.residual
-        residual = self.fitted.residual - change  # the same to the last digit where nothing changes
+        change, residual = self.base.residual - evaluation.residual, self.corrected(evaluation)
         step, predicted = _bounded_step(model, names, residual, evaluation.jacobian)
         own = evaluation.by(brought).jacobian
         looks = np.column_stack([change, own])
-        spanned = float(drops(looks, self._imitable, self.fitted.residual))
+        spanned = float(drops(looks, self.imitable, self.fitted.residual))
         promised = max(spanned, self.fitted.sum_of_squares - predicted)
         return Trial(start, model, names, brought, residual, evaluation.jacobian, step, predicted, promised)
 

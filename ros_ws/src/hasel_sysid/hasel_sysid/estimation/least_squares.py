@@ -38,8 +38,8 @@ def fit_least_squares(
     model itself goes the rest.
     tolerance: ten times the relative change of the sum of squares at which to stop; drafts: whether to start
     with the draft, which is a waste of time when the start is already good; roughly: stop earlier where neighbouring
-    frames share what is left, for then so many fewer squares tell models apart; against: squares that another model leaves, near which the fit must come at
-    its pace, or it is broken off; `finished` goes on from there.
+    frames share what is left, for then so many fewer squares tell models apart; against: squares that another model
+    leaves, near which the fit must come at its pace, or it is broken off; `finished` goes on from there.
     A fit that ends where no derivative leads on is tried once more (`second_start`).
     Raises SimulationError when even the start cannot be simulated.
     """

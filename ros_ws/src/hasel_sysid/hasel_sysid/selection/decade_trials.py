@@ -1,4 +1,4 @@
-"""Trials at sizes over the decades of every range, less those that another trial foretells."""
+"""Sizes over the decades of every range: a glimpse of all that no trial foretells, and trials of what is near."""
 
 from collections.abc import Callable, Iterator, Sequence
 
@@ -6,6 +6,7 @@ import numpy as np
 from hasel_sim.effects.base import Effect
 
 from hasel_sysid.diagnosis.candidates import Start, decade_starts
+from hasel_sysid.diagnosis.glimpse import Glimpse, worth_a_trial
 from hasel_sysid.diagnosis.trial import Trial, Trials
 from hasel_sysid.estimation.opening import is_small
 
@@ -19,7 +20,10 @@ class Decades:
 
     def __init__(self, effect: Effect, made: Sequence[Trial], unexplained: np.ndarray) -> None:
         """made: trials of any effects; unexplained: residual of the model without the effect [frames]."""
-        self.starts = [start for start in decade_starts(effect) if start not in [t.start for t in made]]
+        own = [trial for trial in made if trial.start.effect.id == effect.id]
+        beside = max(own, key=lambda trial: trial.promised).start if own else None
+        known = [trial.start.values for trial in own]
+        self.starts = [start for start in decade_starts(effect, beside) if start.values not in known]
         sizes = [p for p in effect.parameters if not p.scan]
         self.size = f"{effect.id}.{sizes[0].name}" if sizes else ""
         self._null, self._alone = (sizes[0].null if sizes else 0.0), len(sizes) == 1
@@ -42,13 +46,13 @@ class Decades:
         farthest = {min(0.0, *ways), max(0.0, *ways)} - {0.0}
         return [ways[way] for way in sorted(farthest) if way * (self._null - here) <= 0]
 
-    def between(self, ends: Sequence[Trial]) -> Iterator[Start]:
-        """Sizes that are not foretold once the ends were tried; ends: of any effects, less what could not run.
+    def between(self, ends: Sequence[Glimpse]) -> Iterator[Start]:
+        """Sizes that are not foretold once the ends were seen; ends: of any effects, less what could not run.
 
         Without its only size an effect leaves what is unexplained.
         """
         tried = self.ends()
-        reached = [(t.start.values[self.size], t.residual) for t in ends if t.start in tried]
+        reached = [(seen.start.values[self.size], seen.residual) for seen in ends if seen.start in tried]
         if self._alone:
             reached.append((self._null, self._unexplained))
         for start in self.starts:
@@ -71,12 +75,14 @@ def decade_trials(
     trials: Trials,
     effects: Sequence[Effect],
     made: Sequence[Trial],
+    glimpsed: Callable[[Sequence[Start]], list[Glimpse]],
     tried: Callable[[Sequence[Start]], list[Trial]],
 ) -> list[Trial]:
     """Trials over the decades of the effects' ranges; made: those at typical sizes or without effect.
 
-    tried: makes trials of many starts, as long as there is time.
+    glimpsed, tried: see, or make trials of, many starts, as long as there is time.
     """
     every = [Decades(effect, made, trials.fitted.residual) for effect in effects]
-    ends = tried([start for decades in every for start in decades.ends()])
-    return ends + tried([start for decades in every for start in decades.between(ends)])
+    ends = glimpsed([start for decades in every for start in decades.ends()])
+    seen = ends + glimpsed([start for decades in every for start in decades.between(ends)])
+    return tried(worth_a_trial(seen, made, trials))

@@ -1,17 +1,21 @@
 """The first trials of effects: over their ranges beside the baseline, beside other sets of the size to be expected."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
+from typing import TypeVar
 
 import numpy as np
 from hasel_sim.effects.base import Effect
 
 from hasel_sysid.diagnosis.candidates import Start, resized, starts
+from hasel_sysid.diagnosis.glimpse import glimpses
 from hasel_sysid.diagnosis.trial import Trial, Trials, nearer
 from hasel_sysid.policy import POLICY
 from hasel_sysid.projection import orthonormal
 from hasel_sysid.selection.decade_trials import decade_trials
 from hasel_sysid.selection.sets import FittedSet
+
+Seen = TypeVar("Seen")
 
 _BATCH = 8
 _SIZES = (0.1, 2.0)
@@ -19,25 +23,33 @@ _SIZES = (0.1, 2.0)
 
 
 def first_trials(trials: Trials, effects: Sequence[Effect], decades: bool) -> list[Trial]:
-    """Beside the baseline; decades: at sizes over the decades of every range, as far as those tried do not foretell
-    them. What starts without effect, or else the first batch, is tried in any case.
+    """Beside the baseline; decades: also at sizes over the decades of every range.
+
+    What starts without effect, or else the first batch, is tried in any case.
     """
     typical = [start for effect in effects for start in starts(effect)]
     found = trials.first([start for start in typical if start.changes_nothing])
-    found += _in_batches(trials, [start for start in typical if not start.changes_nothing], not found)
+    tried = partial(_in_batches, trials, trials.first)
+    found += tried([start for start in typical if not start.changes_nothing], even_late=not found)
     found += nearer(trials, typical, found)
     if decades:
-        found += decade_trials(trials, effects, found, partial(_in_batches, trials))
+        glimpsed = partial(_in_batches, trials, partial(glimpses, trials))
+        found += decade_trials(trials, effects, found, glimpsed, tried)
     return found
 
 
-def _in_batches(trials: Trials, begins: Sequence[Start], even_late: bool = False) -> list[Trial]:
-    """As long as there is time; even_late: the first batch in any case."""
-    found: list[Trial] = []
+def _in_batches(
+    trials: Trials,
+    see: Callable[[Sequence[Start]], list[Seen]],
+    begins: Sequence[Start],
+    even_late: bool = False,
+) -> list[Seen]:
+    """What is seen of many starts, as long as there is time; even_late: of the first batch in any case."""
+    found: list[Seen] = []
     for begin in range(0, len(begins), _BATCH):
         if trials.time_is_over() and not (even_late and begin == 0):
             break
-        found += trials.first(begins[begin : begin + _BATCH])
+        found += see(begins[begin : begin + _BATCH])
     return found
 
 

@@ -1,12 +1,14 @@
 """Which sizes over the decades of a range are tried, on made-up responses to the size."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import load_model
 from hasel_sysid.diagnosis.candidates import Start, decade_starts, starts
+from hasel_sysid.diagnosis.glimpse import Glimpse
 from hasel_sysid.diagnosis.trial import Trial
 from hasel_sysid.selection.decade_trials import Decades
 
@@ -23,13 +25,18 @@ def made(start: Start, name: str, response: Callable[[float], float]) -> Trial:
     return Trial(start, model, (name,), (name,), residual, (slope * SHAPE)[:, None], {}, 0.0, 0.0)
 
 
+def seen(start: Start, name: str, response: Callable[[float], float]) -> Glimpse:
+    """The same without derivatives."""
+    return Glimpse(start, UNEXPLAINED - response(start.values[name]) * SHAPE)
+
+
 def sizes(effect_id: str, response: Callable[[float], float]) -> tuple[list[float], list[float]]:
     """Sizes that are tried at the ends, and those between them."""
     effect = catalogue()[effect_id]
     name = f"{effect_id}.{effect.parameters[0].name}"
     decades = Decades(effect, [made(starts(effect)[0], name, response)], UNEXPLAINED)
     ends = decades.ends()
-    between = decades.between([made(start, name, response) for start in ends])
+    between = decades.between([seen(start, name, response) for start in ends])
     return [s.values[name] for s in ends], [s.values[name] for s in between]
 
 
@@ -70,14 +77,27 @@ def test_beyond_an_end_that_could_not_be_simulated_all_sizes_are_tried():
     name = f"gain_drift.{effect.parameters[0].name}"
     decades = Decades(effect, [made(starts(effect)[0], name, lambda s: s)], UNEXPLAINED)
     lower, upper = decades.ends()
-    between = decades.between([made(lower, name, lambda s: s)])
+    between = decades.between([seen(lower, name, lambda s: s)])
     left = [s.values[name] for s in between]
     assert left == [s for s in every("gain_drift") if 0.0 < s < upper.values[name]]
 
 
 @pytest.mark.parametrize("effect", ["viscoelastic_creep", "gain_drift"])
 def test_without_a_trial_beside_them_all_are_tried_at_once(effect):
-    """What is known at another relaxation time says nothing of them."""
+    """Nothing foretells any of them."""
     assert len(Decades(catalogue()[effect], [], UNEXPLAINED).ends()) == len(
         decade_starts(catalogue()[effect])
     )
+
+
+def test_sizes_are_those_of_the_relaxation_time_that_promises_most():
+    """There a trial foretells most of them."""
+    effect = catalogue()["viscoelastic_creep"]
+    name = "viscoelastic_creep.modulus_ratio"
+    short, long = (made(start, name, lambda s: s) for start in starts(effect))
+    time = "viscoelastic_creep.relaxation_time"
+    for best, other in ((short, long), (long, short)):
+        trials = [replace(best, promised=2.0), replace(other, promised=1.0)]
+        decades = Decades(effect, trials, UNEXPLAINED)
+        assert {start.values[time] for start in decades.starts} == {best.start.values[time]}
+        assert len(decades.ends()) == 1
