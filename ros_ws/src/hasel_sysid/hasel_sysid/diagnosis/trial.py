@@ -9,14 +9,12 @@ from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis.candidates import Start, resized
 from hasel_sysid.diagnosis.side_by_side import side_by_side
+from hasel_sysid.diagnosis.step import bounded_step
 from hasel_sysid.draft import draft
-from hasel_sysid.estimation.bounded import bounded_change
 from hasel_sysid.estimation.opening import is_small
 from hasel_sysid.problem import Evaluation, Problem
 from hasel_sysid.projection import drops, orthonormal
 
-MOST_CHANGE = 0.5
-"""A single step changes no parameter but an effect's size by more than this share: beyond, derivatives say nothing."""
 _FAR = 2.0
 """A start that makes the sum of squares this many times worse is too far off for its promise to be believed, or not."""
 _HALVINGS = 2
@@ -59,10 +57,10 @@ class Trial:
 class Trials:
     """Tries effects on drafts of a fitted model.
 
-    fitted: the model as fitted, evaluated with its free parameters; imitable: a basis of what these imitate [frames, n].
-    A draft's own error, the difference between the two at the fitted values, is added to every trial: what matters is
-    what the effect changes. A draft that is far off (a long undamped swing, whose phase drifts), or whose steps are too
-    long to follow the motion, is not used at all.
+    fitted: the model as fitted, evaluated with its free parameters; imitable: a basis of what these imitate, [frames,
+    n]. A draft's own error, the difference between the two at the fitted values, is added to every trial: what matters
+    is what the effect changes. A draft that is far off (a long undamped swing, whose phase drifts), or whose steps are
+    too long to follow the motion, is not used at all.
     """
 
     def __init__(self, problem: Problem, fitted: Evaluation) -> None:
@@ -149,7 +147,7 @@ class Trials:
     def _trial(self, start: Start, model: Model, brought: tuple[str, ...], evaluation: Evaluation) -> Trial:
         names = evaluation.names
         change, residual = self.base.residual - evaluation.residual, self.corrected(evaluation)
-        step, predicted = _bounded_step(model, names, residual, evaluation.jacobian)
+        step, predicted = bounded_step(model, names, residual, evaluation.jacobian)
         own = evaluation.by(brought).jacobian
         looks = np.column_stack([change, own])
         spanned = float(drops(looks, self.imitable, self.fitted.residual))
@@ -187,28 +185,6 @@ def _values(starts: Sequence[Start]) -> dict[str, float]:
 
 def _source(start: Start) -> str:
     return start.effect.source or start.effect.id
-
-
-def _bounded_step(
-    model: Model, names: tuple[str, ...], residual: np.ndarray, jacobian: np.ndarray
-) -> tuple[dict[str, float], float]:
-    """Least squares of the linearised problem within the bounds: the values reached and the sum of squares there."""
-    value = np.array([model.parameters[name].value for name in names])
-    change, squares = bounded_change(residual, jacobian, *room(model, names))
-    return dict(zip(names, value + change, strict=True)), squares
-
-
-def room(model: Model, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-    """By how much a single step may change parameters [names], down and up: within their ranges, and by a share of
-    their value what is of no effect, and of an effect what is no size: how fast it is, or where.
-    """
-    parameters = [model.parameters[name] for name in names]
-    value = np.array([p.value for p in parameters])
-    lower, upper = (np.array([getattr(p, side) for p in parameters]) for side in ("lower", "upper"))
-    sizes = {f"{effect.id}.{p.name}" for effect in model.effects for p in effect.parameters if not p.scan}
-    magnitude = np.array([np.inf if p.name in sizes else p.magnitude for p in parameters])
-    reach = MOST_CHANGE * magnitude
-    return np.maximum(lower - value, -reach), np.minimum(upper - value, reach)
 
 
 def _shortened(trial: Trial) -> Trial:

@@ -8,7 +8,7 @@ from hasel_sim.errors import ModelError, SimulationError
 from hasel_sim.model import Model
 from hasel_sim.model.constants import constants, shared_constants
 
-from hasel_sysid.diagnosis.trial import room
+from hasel_sysid.diagnosis.step import room
 from hasel_sysid.draft import draft
 from hasel_sysid.estimation.bounded import bounded_change
 from hasel_sysid.policy import Policy

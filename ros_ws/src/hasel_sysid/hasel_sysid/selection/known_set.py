@@ -6,7 +6,7 @@ import numpy as np
 from hasel_sim.effects.base import Effect
 
 from hasel_sysid.diagnosis.context import on_edge, out_of_range
-from hasel_sysid.diagnosis.trial import room
+from hasel_sysid.diagnosis.step import room
 from hasel_sysid.estimation import FitResult
 from hasel_sysid.selection.sets import FittedSet
 

@@ -7,7 +7,7 @@ from hasel_sim.errors import HaselSimError, SimulationError
 from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis.candidates import is_place
-from hasel_sysid.diagnosis.trial import room
+from hasel_sysid.diagnosis.step import room
 from hasel_sysid.draft import draft
 from hasel_sysid.estimation import FitResult, fit_least_squares
 from hasel_sysid.estimation.bounded import bounded_change

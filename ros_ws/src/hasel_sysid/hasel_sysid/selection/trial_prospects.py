@@ -5,7 +5,8 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from hasel_sysid.diagnosis.candidates import resized
-from hasel_sysid.diagnosis.trial import Trial, Trials, room
+from hasel_sysid.diagnosis.step import room
+from hasel_sysid.diagnosis.trial import Trial, Trials
 from hasel_sysid.selection.sets import EffectSet, Prospect
 
 _OTHER_SIZES = (0.25, 0.5, 2.0, 4.0)
