@@ -9,7 +9,7 @@ from hasel_sim.errors import SimulationError
 from hasel_sysid.diagnosis.candidates import Start
 from hasel_sysid.diagnosis.trial import Trial, Trials
 from hasel_sysid.policy import POLICY
-from hasel_sysid.projection import drops
+from hasel_sysid.projection import orthonormal
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,23 +32,29 @@ def glimpses(trials: Trials, starts: Sequence[Start]) -> list[Glimpse]:
 
 
 def worth_a_trial(seen: Sequence[Glimpse], made: Sequence[Trial], trials: Trials) -> list[Start]:
-    """Of every effect the start nearest to what was measured, where no trial of it is as near, and its change could
-    lower the squares by a good part of what the most promising of all could. made: trials of any effects.
+    """Of every effect the start that comes nearest to what was measured, where no trial of it comes as near, and it
+    comes nearer by a good part of what the nearest of all does. made: trials of any effects.
     """
-    basis, unexplained = trials.imitable, trials.fitted.residual
-
-    def left(one: Glimpse | Trial) -> float:
-        beyond = one.residual - basis @ (basis.T @ one.residual)
-        return float(beyond @ beyond)
-
-    def promise(one: Glimpse) -> float:
-        return float(drops((unexplained - one.residual)[:, None], basis, unexplained))
-
-    most = max([*(trial.promised for trial in made), *map(promise, seen)], default=0.0)
+    every: list[Glimpse | Trial] = [*seen, *made]
+    left = {one: _left(one.residual, trials) for one in every}
+    without = _left(trials.fitted.residual, trials)
+    most = without - min(left.values(), default=without)
     found = []
     for effect in dict.fromkeys(one.start.effect.id for one in seen):
-        nearest = min((one for one in seen if one.start.effect.id == effect), key=left)
-        known = [left(trial) for trial in made if trial.start.effect.id == effect]
-        if left(nearest) < min(known, default=np.inf) and promise(nearest) >= POLICY.effort.hope * most:
+        nearest = min((one for one in seen if one.start.effect.id == effect), key=left.__getitem__)
+        known = [left[trial] for trial in made if trial.start.effect.id == effect]
+        hoped = without - left[nearest] >= POLICY.effort.hope * most
+        if hoped and left[nearest] < min(known, default=np.inf):
             found.append(nearest.start)
     return found
+
+
+def _left(residual: np.ndarray, trials: Trials) -> float:
+    """Squares that are left beyond what the model imitates, and what a larger or smaller motion in any run makes of it:
+    beside a model that is far off, the muscles are as wrong as what is missing.
+    """
+    simulated, runs = trials.fitted.measured() - residual, trials.fitted.runs
+    scaled = [np.where(runs == run, simulated, 0.0) for run in np.unique(runs)]
+    basis = orthonormal(np.column_stack([trials.imitable, *scaled]))
+    beyond = residual - basis @ (basis.T @ residual)
+    return float(beyond @ beyond)

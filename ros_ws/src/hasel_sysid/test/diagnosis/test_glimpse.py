@@ -1,7 +1,5 @@
 """What effects leave at some value, and which values are worth derivatives."""
 
-from dataclasses import dataclass, replace
-
 import numpy as np
 import pytest
 from hasel_sim.effects.registry import catalogue
@@ -11,25 +9,20 @@ from hasel_sysid.diagnosis.candidates import Start, starts, valued
 from hasel_sysid.diagnosis.glimpse import Glimpse, glimpses, worth_a_trial
 from hasel_sysid.diagnosis.trial import Trials
 from hasel_sysid.problem import Problem
-from hasel_sysid.testing.made_up_runs import made_up_trial
+from hasel_sysid.testing.made_up_runs import made_up_evaluation, made_up_trial
 
 TIME = np.linspace(0.0, 9.0, 200)
 DRAG, MASS = np.sin(TIME), np.cos(TIME)
 IMITATED = np.sin(3 * TIME) / np.linalg.norm(np.sin(3 * TIME))
 UNEXPLAINED = 2.0 * DRAG + 0.3 * MASS
-
-
-@dataclass
-class Left:
-    """A fitted model that leaves this."""
-
-    residual: np.ndarray
+MOTION = 5.0 * np.cos(5 * TIME)
 
 
 class MadeUp:
-    """Trials beside a model that imitates one shape."""
+    """Trials beside a model that imitates one shape and moves, in one run, otherwise than everything else here."""
 
-    imitable, fitted = IMITATED[:, None], Left(UNEXPLAINED)
+    imitable = IMITATED[:, None]
+    fitted = made_up_evaluation(UNEXPLAINED[None], TIME, simulated=MOTION)
 
 
 class NoPayload(Problem):
@@ -88,12 +81,19 @@ def test_no_size_is_tried_where_a_trial_was_as_near(known, tried):
     assert worth_a_trial([seen(drag(1.0), 1.8 * DRAG)], [made], MadeUp()) == tried
 
 
-def test_what_could_do_far_less_than_the_best_is_not_tried():
+def test_what_comes_nearer_by_far_less_than_the_nearest_is_not_tried():
     """Whether that was seen only or tried."""
     mass = valued(catalogue()["added_mass"], {"added_mass.added_mass": 1.0})
     little, much = seen(mass, 0.3 * MASS), seen(drag(1.0), 1.5 * DRAG)
     assert worth_a_trial([little, much], [], MadeUp()) == [drag(1.0)]
     assert worth_a_trial([little], [], MadeUp()) == [mass]
-    nothing = made_up_trial(load_model("swimmer"), drag(0.0), {}, UNEXPLAINED, DRAG[:, None], predicted=0.0)
-    promising = replace(nothing, promised=float(UNEXPLAINED @ UNEXPLAINED))
-    assert worth_a_trial([little], [promising], MadeUp()) == []
+    tried = made_up_trial(load_model("swimmer"), drag(1.0), {}, much.residual, DRAG[:, None], predicted=0.0)
+    assert worth_a_trial([little], [tried], MadeUp()) == []
+
+
+def test_a_motion_that_is_only_too_large_or_too_small_is_near():
+    """Beside a model that is far off the muscles are as wrong: a drag that halves every motion may be right."""
+    halved = Glimpse(drag(1.0), MadeUp.fitted.measured() - 0.5 * MadeUp.fitted.measured())
+    nearer = seen(drag(10.0), 0.9 * DRAG)
+    assert np.linalg.norm(halved.residual) > np.linalg.norm(nearer.residual)
+    assert worth_a_trial([halved, nearer], [], MadeUp()) == [drag(1.0)]
