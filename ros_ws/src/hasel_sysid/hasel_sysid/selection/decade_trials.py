@@ -15,11 +15,16 @@ class Decades:
     """Sizes of one effect around a trial that was made.
 
     From it the first order leads to any other size. How far it errs at an end, where the residual is known, tells how
-    far between: with the square of the way. Where that is little beside what is left, a size promises nothing new.
+    far between: with the square of the way, unless it errs by much of the motion, for then it has stopped growing.
+    Where that is little beside what is left, a size promises nothing new.
     """
 
-    def __init__(self, effect: Effect, made: Sequence[Trial], unexplained: np.ndarray) -> None:
-        """made: trials of any effects; unexplained: residual of the model without the effect [frames]."""
+    def __init__(
+        self, effect: Effect, made: Sequence[Trial], unexplained: np.ndarray, motion: np.ndarray
+    ) -> None:
+        """made: trials of any effects; unexplained: residual of the model without the effect, motion: what was
+        measured [frames].
+        """
         own = [trial for trial in made if trial.start.effect.id == effect.id]
         beside = max(own, key=lambda trial: trial.promised).start if own else None
         known = [trial.start.values for trial in own]
@@ -27,7 +32,7 @@ class Decades:
         sizes = [p for p in effect.parameters if not p.scan]
         self.size = f"{effect.id}.{sizes[0].name}" if sizes else ""
         self._null, self._alone = (sizes[0].null if sizes else 0.0), len(sizes) == 1
-        self._unexplained = unexplained
+        self._unexplained, self._motion = unexplained, motion
         self._known = next((t for t in made if self.starts and self._is_at(t, self.starts[0])), None)
 
     def _is_at(self, trial: Trial, start: Start) -> bool:
@@ -68,7 +73,8 @@ class Decades:
         share = (start.values[self.size] - known.start.values[self.size]) / way
         slope = known.jacobian[:, known.names.index(self.size)]
         error = residual - (known.residual - slope * way)
-        return 0.0 < share <= 1.0 and is_small(share**2 * error, self._unexplained)
+        between = 0.0 < share <= 1.0
+        return between and is_small(error, self._motion) and is_small(share**2 * error, self._unexplained)
 
 
 def decade_trials(
@@ -82,7 +88,8 @@ def decade_trials(
 
     glimpsed, tried: see, or make trials of, many starts, as long as there is time.
     """
-    every = [Decades(effect, made, trials.fitted.residual) for effect in effects]
+    left, motion = trials.fitted.residual, trials.fitted.measured()
+    every = [Decades(effect, made, left, motion) for effect in effects]
     ends = glimpsed([start for decades in every for start in decades.ends()])
     seen = ends + glimpsed([start for decades in every for start in decades.between(ends)])
     return tried(worth_a_trial(seen, made, trials))

@@ -14,6 +14,7 @@ from hasel_sysid.selection.decade_trials import Decades
 
 SHAPE = np.sin(np.linspace(0.0, 9.0, 200))
 UNEXPLAINED = 2.0 * SHAPE
+MOTION = 20.0 * SHAPE
 
 
 def made(start: Start, name: str, response: Callable[[float], float]) -> Trial:
@@ -34,7 +35,7 @@ def sizes(effect_id: str, response: Callable[[float], float]) -> tuple[list[floa
     """Sizes that are tried at the ends, and those between them."""
     effect = catalogue()[effect_id]
     name = f"{effect_id}.{effect.parameters[0].name}"
-    decades = Decades(effect, [made(starts(effect)[0], name, response)], UNEXPLAINED)
+    decades = Decades(effect, [made(starts(effect)[0], name, response)], UNEXPLAINED, MOTION)
     ends = decades.ends()
     between = decades.between([seen(start, name, response) for start in ends])
     return [s.values[name] for s in ends], [s.values[name] for s in between]
@@ -71,11 +72,19 @@ def test_a_one_sided_effect_that_saturates_is_tried_below_too():
     assert set(below) <= set(between)
 
 
+def test_what_errs_by_much_of_the_motion_at_its_end_is_seen_everywhere():
+    """A load that stops the body errs at a hundred times the size as at five times: its square says nothing between."""
+    heavier = [mass for mass in every("payload") if mass > 0.01]
+    ends, between = sizes("payload", lambda s: 8.0 * np.tanh(s / 0.05))
+    assert ends == heavier[-1:]
+    assert set(heavier[:-1]) <= set(between)
+
+
 def test_beyond_an_end_that_could_not_be_simulated_all_sizes_are_tried():
     """Nothing is known there."""
     effect = catalogue()["gain_drift"]
     name = f"gain_drift.{effect.parameters[0].name}"
-    decades = Decades(effect, [made(starts(effect)[0], name, lambda s: s)], UNEXPLAINED)
+    decades = Decades(effect, [made(starts(effect)[0], name, lambda s: s)], UNEXPLAINED, MOTION)
     lower, upper = decades.ends()
     between = decades.between([seen(lower, name, lambda s: s)])
     left = [s.values[name] for s in between]
@@ -85,7 +94,7 @@ def test_beyond_an_end_that_could_not_be_simulated_all_sizes_are_tried():
 @pytest.mark.parametrize("effect", ["viscoelastic_creep", "gain_drift"])
 def test_without_a_trial_beside_them_all_are_tried_at_once(effect):
     """Nothing foretells any of them."""
-    assert len(Decades(catalogue()[effect], [], UNEXPLAINED).ends()) == len(
+    assert len(Decades(catalogue()[effect], [], UNEXPLAINED, MOTION).ends()) == len(
         decade_starts(catalogue()[effect])
     )
 
@@ -98,6 +107,6 @@ def test_sizes_are_those_of_the_relaxation_time_that_promises_most():
     time = "viscoelastic_creep.relaxation_time"
     for best, other in ((short, long), (long, short)):
         trials = [replace(best, promised=2.0), replace(other, promised=1.0)]
-        decades = Decades(effect, trials, UNEXPLAINED)
+        decades = Decades(effect, trials, UNEXPLAINED, MOTION)
         assert {start.values[time] for start in decades.starts} == {best.start.values[time]}
         assert len(decades.ends()) == 1
