@@ -16,6 +16,7 @@ from hasel_sysid.estimation.second_start import better_from
 from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.fits_ahead import FitsAhead
+from hasel_sysid.selection.held_against import HeldAgainst
 from hasel_sysid.selection.known_set import known_set
 from hasel_sysid.selection.sets import EffectSet, FittedSet, Prospect, Wanted
 
@@ -27,10 +28,11 @@ class SetFits:
         """given: the model to begin again with, where a fit that began far off has not come close."""
         self._effects, self._given = effects, given
         self._ahead: FitsAhead[FittedSet | None] = FitsAhead(problem)
-        self._least = float("inf")
+        self._against = HeldAgainst()
 
     def foresee(self, likely: Sequence[Wanted]) -> None:
         """Begin these fits where processes would wait for work."""
+        self._against.foresee(_key(*wanted) for wanted in likely)
         self._ahead.foresee({_key(*wanted): self._begun(*wanted) for wanted in likely})
 
     def fit(self, effects: EffectSet, near: FittedSet, added: Sequence[Prospect]) -> FittedSet | None:
@@ -38,14 +40,16 @@ class SetFits:
         least squares that a set was fitted to.
         """
         found = self._ahead.done(_key(effects, near, added), self._begun(effects, near, added))
-        self._least = min(self._least, found.squares) if found else self._least
+        if found:
+            self._against.learn(found.squares)
         return found
 
     def _begun(
         self, effects: EffectSet, near: FittedSet, added: Sequence[Prospect]
     ) -> Callable[[Problem], FittedSet | None]:
-        """The fit of a set against the squares that are the least until now."""
-        return partial(self._fit, effects, near, added, min(self._least, near.squares))
+        """The fit of a set, held against what is known of others and of the one that it begins with."""
+        against = min(self._against.of(_key(effects, near, added)), near.squares)
+        return partial(self._fit, effects, near, added, against)
 
     def _fit(
         self,
