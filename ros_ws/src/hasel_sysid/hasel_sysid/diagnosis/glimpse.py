@@ -9,7 +9,7 @@ from hasel_sim.errors import SimulationError
 from hasel_sysid.diagnosis.candidates import Start
 from hasel_sysid.diagnosis.trial import Trial, Trials
 from hasel_sysid.policy import POLICY
-from hasel_sysid.projection import orthonormal
+from hasel_sysid.projection import drops
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +55,5 @@ def _left(residual: np.ndarray, trials: Trials) -> float:
     """
     simulated, runs = trials.fitted.measured() - residual, trials.fitted.runs
     scaled = [np.where(runs == run, simulated, 0.0) for run in np.unique(runs)]
-    basis = orthonormal(np.column_stack([trials.imitable, *scaled]))
-    beyond = residual - basis @ (basis.T @ residual)
-    return float(beyond @ beyond)
+    beyond = residual - trials.imitable @ (trials.imitable.T @ residual)
+    return float(beyond @ beyond - drops(np.column_stack(scaled), trials.imitable, residual))

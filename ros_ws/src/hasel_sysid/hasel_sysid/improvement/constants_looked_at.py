@@ -8,9 +8,8 @@ from hasel_sim.errors import ModelError, SimulationError
 from hasel_sim.model import Model
 from hasel_sim.model.constants import constants, shared_constants
 
-from hasel_sysid.diagnosis.step import room
+from hasel_sysid.diagnosis.step import bounded_step
 from hasel_sysid.draft import draft
-from hasel_sysid.estimation.bounded import bounded_change
 from hasel_sysid.policy import Policy
 from hasel_sysid.problem import Evaluation, Problem
 
@@ -93,8 +92,7 @@ def _apart(model: Model) -> list[list[str]]:
 def _look(
     name: str, model: Model, names: tuple[str, ...], residual: np.ndarray, jacobian: np.ndarray
 ) -> _Look:
-    change, squares = bounded_change(residual, jacobian, *room(model, names))
-    return _Look(name, {n: model.values[n] + by for n, by in zip(names, change, strict=True)}, squares)
+    return _Look(name, *bounded_step(model, names, residual, jacobian))
 
 
 def freed(model: Model, name: str) -> Model:

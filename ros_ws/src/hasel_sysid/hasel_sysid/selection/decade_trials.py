@@ -33,7 +33,7 @@ class Decades:
         self.size = f"{effect.id}.{sizes[0].name}" if sizes else ""
         self._null, self._alone = (sizes[0].null if sizes else 0.0), len(sizes) == 1
         self._unexplained, self._motion = unexplained, motion
-        self._known = next((t for t in made if self.starts and self._is_at(t, self.starts[0])), None)
+        self._known = next((t for t in own if self.starts and self._is_at(t, self.starts[0])), None)
 
     def _is_at(self, trial: Trial, start: Start) -> bool:
         """Whether all values but the size are those of a start."""

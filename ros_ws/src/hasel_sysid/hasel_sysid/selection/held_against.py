@@ -1,10 +1,10 @@
 """The squares that a fit is held against: it is made to its end only if it may come near them."""
 
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable
 
 
 class HeldAgainst:
-    """The least squares known when a fit was first asked for or foreseen: so the answer does not depend on how many
+    """The least squares known when a fit was first asked for, or foreseen: so the answer does not depend on how many
     fits are made at once.
     """
 
@@ -12,15 +12,9 @@ class HeldAgainst:
         self._least = float("inf")
         self._known: dict[Hashable, float] = {}
 
-    def foresee(self, fits: Iterable[Hashable]) -> None:
-        """Note what is known now, for those of these fits that were not foreseen before."""
-        for fit in fits:
-            self._known.setdefault(fit, self._least)
-
     def of(self, fit: Hashable) -> float:
-        """The squares for a fit; infinite where none was made before."""
-        self.foresee([fit])
-        return self._known[fit]
+        """The squares for a fit; infinite where none was made before it was first asked for."""
+        return self._known.setdefault(fit, self._least)
 
     def learn(self, squares: float) -> None:
         """What a fit has left."""

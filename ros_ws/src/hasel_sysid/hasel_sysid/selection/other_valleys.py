@@ -7,10 +7,9 @@ from hasel_sim.errors import HaselSimError, SimulationError
 from hasel_sim.model import Model
 
 from hasel_sysid.diagnosis.candidates import is_place
-from hasel_sysid.diagnosis.step import room
+from hasel_sysid.diagnosis.step import bounded_step
 from hasel_sysid.draft import draft
 from hasel_sysid.estimation import FitResult, fit_least_squares
-from hasel_sysid.estimation.bounded import bounded_change
 from hasel_sysid.problem import Evaluation, Problem
 
 _SHORT = 8
@@ -71,7 +70,7 @@ def _promised(drafts: Drafts, begins: Sequence[Model]) -> list[tuple[float, Mode
     """Sum of squares one bounded step on from every model that can be simulated."""
     found = drafts.evaluate_each(begins, [model.free for model in begins])
     return [
-        (bounded_change(one.residual, one.jacobian, *room(one.model, one.names))[1], one.model)
+        (bounded_step(one.model, one.names, one.residual, one.jacobian)[1], one.model)
         for one in found
         if not isinstance(one, SimulationError)
     ]

@@ -32,7 +32,6 @@ class SetFits:
 
     def foresee(self, likely: Sequence[Wanted]) -> None:
         """Begin these fits where processes would wait for work."""
-        self._against.foresee(_key(*wanted) for wanted in likely)
         self._ahead.foresee({_key(*wanted): self._begun(*wanted) for wanted in likely})
 
     def fit(self, effects: EffectSet, near: FittedSet, added: Sequence[Prospect]) -> FittedSet | None:

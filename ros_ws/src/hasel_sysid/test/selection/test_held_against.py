@@ -18,7 +18,6 @@ def test_what_was_foreseen_is_held_against_what_was_known_then():
     """Where there are processes for it, it was begun then: with one process it must end likewise."""
     against = HeldAgainst()
     against.learn(5.0)
-    against.foresee(["next", "after"])
+    assert [against.of(fit) for fit in ("next", "after")] == [5.0, 5.0]
     against.learn(1.0)
-    against.foresee(["after", "last"])
     assert [against.of(fit) for fit in ("next", "after", "last")] == [5.0, 5.0, 1.0]

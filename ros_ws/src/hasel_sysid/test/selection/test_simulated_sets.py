@@ -132,6 +132,27 @@ def test_an_amplitude_that_no_muscle_has_the_time_to_reach_is_given_again(heavy_
     assert again.evaluation.sum_of_squares < 0.5 * lost.evaluation.sum_of_squares
 
 
+def test_a_fit_is_held_against_the_best_set_that_was_fitted(heavy_in_water):
+    """What would never come near it is broken off; alone, the same goes on to its end."""
+    far_off = _known(
+        heavy_in_water, _swimmer().with_values({"amplitude_3500": 0.036, "amplitude_5500": 0.009})
+    )
+    lag, heavy = frozenset({"charging_lag"}), frozenset({"added_mass"})
+
+    def fitted_after(*before: frozenset[str]) -> FitResult:
+        effects = [catalogue()[name] for name in ("charging_lag", "added_mass")]
+        sets = SimulatedSets(heavy_in_water, far_off, effects, given=_swimmer())
+        seen = sets.prospects(sets.baseline(), None, lambda p: -float(p.residual @ p.residual), 4)
+        for one in (*before, lag):
+            (effect,) = one
+            found = sets.fit(one, sets.baseline(), [seen[effect]])
+        return found.fit
+
+    alone, after = fitted_after(), fitted_after(heavy)
+    assert not after.converged
+    assert after.iterations < alone.iterations
+
+
 def test_two_effects_of_the_drive_that_both_bring_the_onset_are_fitted_together(heavy_in_water):
     """Each looks better with an onset of the muscles, which the model without them does not have."""
     effects = [catalogue()[name] for name in ("charging_lag", "current_limit")]
