@@ -22,7 +22,7 @@ class Lane:
     """One run with everything that stepping needs of it, and what is seen of its motion."""
 
     def __init__(self, prepared: PreparedRun, moves: list[int], contraction_slopes: np.ndarray) -> None:
-        self.prepared, self.plan = prepared, prepared.plan
+        self.prepared, self.plan, self.moves = prepared, prepared.plan, moves
         self.system = prepared.stepper.system
         self.parameters = [prepared.residual_slopes[column] for column in moves]
         self.contraction_slopes = contraction_slopes[:, moves]
@@ -59,13 +59,25 @@ class Lane:
         marcher.jerk[..., lane], marcher.stress[..., lane] = alone.jerk[..., 0], alone.stress[..., 0]
 
 
-def moving_columns(prepared: PreparedRun, contraction_slopes: np.ndarray) -> list[int]:
-    """Numbers of the parameters that move anything in this run; the others cost nothing."""
-    return [
-        column
-        for column, slope in enumerate(prepared.residual_slopes)
-        if not isinstance(slope, NoSlope) or np.any(contraction_slopes[:, column])
-    ]
+def columns_of_lanes(prepared: Sequence[PreparedRun], slopes: Sequence[np.ndarray]) -> list[list[int]]:
+    """For the run of every lane the numbers of the parameters whose derivatives are followed, equally many.
+
+    What the mechanics sees of any run is followed in all lanes. What acts through the contraction alone is followed
+    where it does: amplitudes of voltages that a run has not cost nothing.
+    slopes: derivatives of the contraction [steps, parameters, muscles] of every run.
+    """
+    seen, driven, every = set(), [], set()
+    for run, by_contraction in zip(prepared, slopes, strict=True):
+        moving = set(np.flatnonzero(by_contraction.any(axis=(0, 2))).tolist())
+        seen |= {n for n, slope in enumerate(run.residual_slopes) if not isinstance(slope, NoSlope)}
+        driven.append(moving)
+        every |= moving
+    count = max(len(own - seen) for own in driven)
+    columns = []
+    for own in driven:
+        others = sorted(every - own - seen)
+        columns.append(sorted(seen) + sorted([*(own - seen), *others[: count - len(own - seen)]]))
+    return columns
 
 
 def step_together(

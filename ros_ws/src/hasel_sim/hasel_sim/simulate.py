@@ -7,7 +7,7 @@ import numpy as np
 
 from hasel_sim.build import difference_points
 from hasel_sim.errors import HaselSimError
-from hasel_sim.lanes import Lane, moving_columns, step_together
+from hasel_sim.lanes import Lane, columns_of_lanes, step_together
 from hasel_sim.mechanics.seen import Seen
 from hasel_sim.model import Model
 from hasel_sim.model.constants import shape_constants
@@ -72,10 +72,10 @@ def _kind(model: Model) -> tuple:
 
 def _simulate_beside(prepared: Sequence[PreparedRun], keep_shapes: bool) -> list[Simulation | HaselSimError]:
     slopes = [p.contraction_slopes(p.plan.balance_times) for p in prepared]
-    moves = sorted(set().union(*(moving_columns(p, s) for p, s in zip(prepared, slopes, strict=True))))
+    columns = columns_of_lanes(prepared, slopes)
     results: list[Simulation | HaselSimError | None] = [None] * len(prepared)
     lanes: dict[int, Lane] = {}
-    for index, (p, s) in enumerate(zip(prepared, slopes, strict=True)):
+    for index, (p, moves, s) in enumerate(zip(prepared, columns, slopes, strict=True)):
         try:
             lanes[index] = Lane(p, moves, s)
         except HaselSimError as error:
@@ -84,15 +84,15 @@ def _simulate_beside(prepared: Sequence[PreparedRun], keep_shapes: bool) -> list
         count = next(count for count in LANES if count >= len(lanes))
         seen, errors = step_together(list(lanes.values()), count, keep_shapes)
         for place, ((index, lane), error) in enumerate(zip(lanes.items(), errors, strict=True)):
-            results[index] = error or _observed(lane, seen, place, moves)
+            results[index] = error or _observed(lane, seen, place)
     return results
 
 
-def _observed(lane: Lane, seen: Seen, place: int, moves: list[int]) -> Simulation:
+def _observed(lane: Lane, seen: Seen, place: int) -> Simulation:
     prepared, plan, until = lane.prepared, lane.plan, len(lane) + 1
     markers, lines = prepared.rows.interpolated(seen.local[:until, ..., place])
     d_markers, d_lines = prepared.rows.interpolated_slopes(seen.slopes[:until, ..., place])
-    derivatives = _observed_slopes(prepared, markers, lines, d_markers, d_lines, moves)
+    derivatives = _observed_slopes(prepared, markers, lines, d_markers, d_lines, lane.moves)
     values = prepared.model.effect_values()
     return Simulation(
         prepared.run,

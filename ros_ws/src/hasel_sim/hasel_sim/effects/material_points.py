@@ -1,6 +1,7 @@
 """What a material effect changes, and where it adds stress: constants per element, strain and drive at points."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -42,7 +43,7 @@ class MaterialPoints:
     time: float
     shear: np.ndarray | float = 0.0
 
-    @property
+    @cached_property
     def volume_ratio(self) -> np.ndarray:
         """Determinant J of the deformation gradient [1], [n]."""
         F = self.deformation
@@ -57,7 +58,7 @@ class MaterialPoints:
         cofactor[:, 1, 0], cofactor[:, 1, 1] = -F[:, 0, 1], F[:, 0, 0]
         return F - cofactor / self.volume_ratio[:, None, None]
 
-    @property
+    @cached_property
     def stretch(self) -> np.ndarray:
         """Stretch of the fibres [1], [n]."""
         return np.hypot(self.deformation[:, 0, 0], self.deformation[:, 1, 0])

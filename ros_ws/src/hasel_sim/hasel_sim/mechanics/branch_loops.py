@@ -50,3 +50,23 @@ def advance(left, gain, stresses, green, new_green, out, lane):
                 place = (c * branches + b) * size + at
                 old = load(left, b * lanes, lane) * load(stresses, place, lane)
                 store(out, place, old + load(gain, b * lanes, lane) * more)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def add_parameter(left, gain, stresses, green, own, factor, more, more_green, lane):
+    """Add to the derivatives `more` and `more_green` of one column a factor [lanes] times what the branches and C : E
+    of one body are at the end of a step: stresses and green at its beginning, own C : E at its end.
+    """
+    lanes, branches, size = len(lane), stresses.shape[0], green.size
+    times = load(factor, 0, lane)
+    for at in range(0, size, lanes):
+        new = load(own, at, lane)
+        change = new - load(green, at, lane)
+        store(more_green, at, load(more_green, at, lane) + times * new)
+        for b in range(branches):
+            place = b * size + at
+            end = (
+                load(left, b * lanes, lane) * load(stresses, place, lane)
+                + load(gain, b * lanes, lane) * change
+            )
+            store(more, place, load(more, place, lane) + times * end)

@@ -131,7 +131,8 @@ class StepSlopes:
 def _add_branch_parameter(
     parameter: SolidSlope, before: State, after: State, step, branch: np.ndarray, green: np.ndarray
 ) -> None:
+    lane = lane_tuple(green.shape[-1])
     for solid, sign in parameter.solids:
-        own = solid.green_stress(solid.gradient(after.position))
-        green += sign / parameter.width * own
-        branch += sign / parameter.width * solid.branches.advance(before.branch, before.green, own, step)
+        own, factors = solid.green_stress(solid.gradient(after.position)), solid.branches.factors(step)
+        known = before.branch, before.green, own
+        branch_loops.add_parameter(*factors, *known, sign / parameter.width, branch, green, lane)

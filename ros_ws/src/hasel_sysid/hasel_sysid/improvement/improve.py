@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import chain
 
 from hasel_sim.model import Model
 
@@ -78,8 +79,10 @@ def improve(
             on_stage(stages[-1])
     path = () if opposed or constant else choice.path[1:]
     fits = [found.known[effects_so_far] for effects_so_far in path]
-    # what explains too little is not added, and needs no last digits
-    ended = sets.finished(fits) if judges.named(found, choice.chosen) else fits
+    # what explains too little or is no law is not added, and needs no last digits
+    named, lawless = judges.named(found, choice.chosen), judges.lawless(found, choice.chosen)
+    added = [fitted for fitted in fits if named and not lawless & fitted.effects]
+    ended = chain(sets.finished(added), fits[len(added) :])
     for effects_so_far, fitted in zip(path, ended, strict=True):
         order = in_order(choice, effects_so_far)
         stages.append(_stage(judges.refined(fitted), order, validation, None))

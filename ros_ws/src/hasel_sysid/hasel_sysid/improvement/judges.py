@@ -7,11 +7,11 @@ from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.diagnosis.explained import Status, status_with
 from hasel_sysid.estimation import FitResult
 from hasel_sysid.estimation.refinement import refined
-from hasel_sysid.improvement.lawful import against_law
+from hasel_sysid.improvement.lawful import against_law, effects_of
 from hasel_sysid.improvement.wrong_constant import WrongConstant, wrong_constant
 from hasel_sysid.policy import Policy
 from hasel_sysid.selection.searched import Searched
-from hasel_sysid.selection.sets import EffectSet, FittedSet
+from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet
 from hasel_sysid.selection.simulated_sets import SimulatedSets
 from hasel_sysid.selection.verdicts import noise_allowed, share_left_by
 
@@ -32,9 +32,15 @@ class Judges:
 
     def lawful(self, found: Searched, effects: EffectSet) -> bool:
         """Whether what a known set adds is a law."""
+        return not self.lawless(found, effects)
+
+    def lawless(self, found: Searched, effects: EffectSet) -> EffectSet:
+        """The effects of a known set that are no laws."""
         known, noise, names = found.known[effects], noise_allowed(self._sets, found), sorted(effects)
         # what finer numerics change makes errors wider: what speaks for a law without it does so with it
-        return not (against_law(known.fit, noise, names) and against_law(self.refined(known), noise, names))
+        if not against_law(known.fit, noise, names):
+            return NOTHING
+        return frozenset(effects_of(against_law(self.refined(known), noise, names)))
 
     def described(self, found: Searched, effects: EffectSet) -> bool:
         """Whether a known set describes its runs everywhere."""

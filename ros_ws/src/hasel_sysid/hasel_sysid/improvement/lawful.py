@@ -14,6 +14,11 @@ def against_law(fit: FitResult, noise: NoiseModel, effects: Sequence[str]) -> li
     return [trend for trend in trends(fit, noise, effects) if trend.contradicts]
 
 
+def effects_of(against: Sequence[Trend]) -> tuple[str, ...]:
+    """The effects that these trends are of."""
+    return tuple(dict.fromkeys(trend.parameter.partition(".")[0] for trend in against))
+
+
 def without_contradictions(stages: Sequence[Stage]) -> tuple[list[Stage], tuple[str, ...], list[str]]:
     """The stages before the first that added what no one law can give, the effects not kept, what speaks against them.
 
@@ -21,6 +26,6 @@ def without_contradictions(stages: Sequence[Stage]) -> tuple[list[Stage], tuple[
     """
     last = stages[-1]
     against = against_law(last.fit, last_diagnosis(stages).noise, last.effects)
-    refused = tuple(dict.fromkeys(trend.parameter.partition(".")[0] for trend in against))
+    refused = effects_of(against)
     kept = [stage for stage in stages if not set(refused) & set(stage.effects)]
     return kept, refused, [str(trend) for trend in against]

@@ -1,6 +1,8 @@
 """A constant of the model file that does by itself what several effects do together, or what none does."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from hasel_sim.errors import HaselSimError
 from hasel_sim.model import Model, Parameter
@@ -13,6 +15,7 @@ from hasel_sysid.improvement.constants_looked_at import freed, is_possible, look
 from hasel_sysid.policy import Policy
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.choice import does_as_much
+from hasel_sysid.selection.fits_ahead import FitsAhead
 from hasel_sysid.selection.searched import Searched
 from hasel_sysid.selection.sets import NOTHING, EffectSet, name_of
 from hasel_sysid.selection.simulated_sets import SimulatedSets
@@ -76,7 +79,8 @@ def wrong_constant(
     base = found.known[NOTHING]
     least = found.known[chosen].squares if chosen else 0.0
     names = looked_at(sets.problem, base.fit.evaluation, least, policy)
-    fits = [(name, _fitted(sets.problem, base.fit.model, name, policy)) for name in names]
+    allowed = len(base.residual) * noise_allowed(sets, found).standard_deviation ** 2
+    fits = _fits(sets.problem, base.fit.model, names, policy, allowed)
     good = [(name, fit) for name, fit in fits if fit and _is_good(sets, found, name, fit, chosen, policy)]
     if not good:
         return None
@@ -94,8 +98,24 @@ def _is_good(
     return name not in fit.at_bound and describes and as_much
 
 
-def _fitted(problem: Problem, model: Model, name: str, policy: Policy) -> FitResult | None:
-    """None where it cannot be simulated, ends at what no model file may say, or there is no time."""
+def _fits(
+    problem: Problem, model: Model, names: Sequence[str], policy: Policy, allowed: float
+) -> list[tuple[str, FitResult | None]]:
+    """With each of these constants free in turn, as many at once as there are processes."""
+    ahead: FitsAhead[FitResult | None] = FitsAhead(problem)
+    fits = {name: partial(_fitted, model, name, policy, allowed) for name in names}
+    found = []
+    for number, name in enumerate(names):
+        ahead.foresee({later: fits[later] for later in names[number:]})
+        found.append((name, ahead.done(name, fits[name])))
+    return found
+
+
+def _fitted(model: Model, name: str, policy: Policy, allowed: float, problem: Problem) -> FitResult | None:
+    """None where it cannot be simulated, ends at what no model file may say, or there is no time.
+
+    Made to its end only where it may come near the squares that a model is allowed which describes its runs.
+    """
     if problem.time_limit.is_over():
         return None
     try:
@@ -105,6 +125,7 @@ def _fitted(problem: Problem, model: Model, name: str, policy: Policy) -> FitRes
             tolerance=1e-3,
             most_evaluations=policy.effort.evaluations,
             drafts=False,
+            against=allowed,
         )
     except HaselSimError:
         return None

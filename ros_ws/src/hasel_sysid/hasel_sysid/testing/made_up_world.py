@@ -105,10 +105,19 @@ class MadeUpWorld:
 
         most_evaluations: after which the time of a search is over.
         """
-        generator = np.random.default_rng(self._seed)
-        series = [angle + noise * generator.standard_normal(len(angle)) for angle in self.sin_theta(model)]
+        series = self._with_noise(self.sin_theta(model), noise)
         self._add(series, "stranger", stranger)
         return MadeUpProblem(self, series, most_evaluations)
+
+    def measured_of_each(self, truths: Mapping[float, Model]) -> "MadeUpProblem":
+        """Runs as they would be measured if at every voltage another model were the truth."""
+        each = {voltage: self.sin_theta(model) for voltage, model in truths.items()}
+        angles = [each[float(run.name.partition("V")[0])][number] for number, run in enumerate(self.runs)]
+        return MadeUpProblem(self, self._with_noise(angles, NOISE))
+
+    def _with_noise(self, angles: Sequence[np.ndarray], noise: float) -> list[np.ndarray]:
+        generator = np.random.default_rng(self._seed)
+        return [angle + noise * generator.standard_normal(len(angle)) for angle in angles]
 
     def _add(self, total: list[np.ndarray], name: str, size: float, voltage: float | None = None) -> None:
         for run, series, own in zip(self.runs, total, self._series(name), strict=True):

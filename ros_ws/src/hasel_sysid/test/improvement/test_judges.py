@@ -42,6 +42,19 @@ def test_what_takes_away_too_little_is_not_named():
     assert not judges.named(found, chosen)
 
 
+def test_an_effect_that_grows_with_the_voltage_is_no_law():
+    """Of the two that are hidden the other is one, alone and beside it."""
+    world = MadeUpWorld(1)
+    truth = world.with_typical(*TOGETHER)
+    masses = {3500.0: 0.004, 4500.0: 0.01, 5500.0: 0.016}
+    truths = {voltage: truth.with_values({"payload.mass": mass}) for voltage, mass in masses.items()}
+    measured = world.measured_of_each(truths)
+    found, judges = searched(world, measured)
+    assert judges.lawless(found, TOGETHER) == PAYLOAD
+    assert not judges.lawful(found, TOGETHER)
+    assert judges.lawful(found, frozenset({"pre_bend"}))
+
+
 def test_a_fault_of_the_set_up_leaves_nothing_to_name():
     """Whatever would explain runs that move against the model."""
     world = MadeUpWorld(1, shared=16)
