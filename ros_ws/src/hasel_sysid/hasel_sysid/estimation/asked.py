@@ -86,8 +86,7 @@ class AskedModel:
         return -here.jacobian
 
     def _is_near_enough(self, x0: np.ndarray, before: Evaluation, x1: np.ndarray, here: Evaluation) -> bool:
-        """As scipy ends: by a step that gave little, and not because it was held back by a model that fits badly; or by
-        two that gave as little an evaluation, whatever held them back.
+        """As scipy ends: by a step that gave little, and not because it was held back by a model that fits badly.
 
         Of a model that is far off, small steps do not tell how far they will lead.
         """
@@ -95,5 +94,4 @@ class AskedModel:
         foretold = before.residual - before.jacobian @ (x1 - x0)
         kept = gain > _KEPT * (before.sum_of_squares - float(foretold @ foretold))
         share = max(independent_share(here.residual, here.runs), _LEAST_SHARE)
-        given = gain / before.sum_of_squares if kept else self._pace.share
-        return given * share < self.rough and is_close(here)
+        return kept and is_close(here) and gain * share < self.rough * before.sum_of_squares

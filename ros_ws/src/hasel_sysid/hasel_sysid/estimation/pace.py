@@ -18,21 +18,16 @@ class Pace:
         self._paces: list[float] = []
 
     def leads_nowhere(self, squares: float, count: int) -> bool:
-        """After a step that was taken, to this sum of squares and after so many evaluations: whether at its pace the
-        search would not come near the other model with the evaluations left.
-        """
-        before, self._before = self._before, (squares, count)
-        if before is None or squares <= 0:
-            return False
-        self._paces.append(math.log(before[0] / squares) / max(count - before[1], 1))
-        if self.against <= 0:
-            return False
-        return math.log(squares / (_NEAR * self.against)) > self.share * (self.most - count)
-
-    @property
-    def share(self) -> float:
-        """Of the squares, the larger one that its last two steps gave, an evaluation; infinite before there were two.
+        """After a step that was taken, to this sum of squares and after so many evaluations: whether the larger share
+        that each of its last two steps gave, an evaluation, would not bring it near the other model with those left.
 
         One short step tells nothing: the next may be free of what held it back.
         """
-        return max(self._paces[-2:]) if len(self._paces) > 1 else math.inf
+        before, self._before = self._before, (squares, count)
+        if before is None or squares <= 0 or self.against <= 0:
+            return False
+        self._paces.append(math.log(before[0] / squares) / max(count - before[1], 1))
+        if len(self._paces) < 2:
+            return False
+        still = math.log(squares / (_NEAR * self.against))
+        return still > max(self._paces[-2:]) * (self.most - count)

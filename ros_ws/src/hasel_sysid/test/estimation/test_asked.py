@@ -24,11 +24,11 @@ class Stepped:
         return made_up_evaluation(residual[None], TIME, None, motion, slope * LEFT[:, None], names, model)
 
 
-def _steps(promise: float, count: int = 1) -> None:
+def _steps(promise: float) -> None:
     model = load_model("beam").with_effects("material_damping")
     asked = AskedModel(Stepped(promise), model, (NAME,), None, 25, rough=1e-4)
-    for step in range(count + 1):
-        asked.jacobian(np.array([0.1 * step]))
+    asked.jacobian(np.array([0.0]))
+    asked.jacobian(np.array([0.1]))
 
 
 def test_a_step_that_gives_little_and_keeps_its_promise_is_the_last():
@@ -40,9 +40,3 @@ def test_a_step_that_gives_little_and_keeps_its_promise_is_the_last():
 def test_a_step_that_gives_little_of_what_it_promised_is_not_the_last():
     """It was held back, and a shorter one may give more."""
     _steps(promise=10.0)
-
-
-def test_two_steps_that_give_little_are_the_last_whatever_they_promised():
-    """What held back the first holds back the second: the valley is flat."""
-    with pytest.raises(EnoughError):
-        _steps(promise=10.0, count=2)

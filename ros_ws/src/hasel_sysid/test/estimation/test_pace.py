@@ -1,7 +1,5 @@
 """Whether a search goes on to be compared with another model."""
 
-import math
-
 import pytest
 from hasel_sysid.estimation.pace import Pace
 
@@ -45,14 +43,3 @@ def test_a_refused_step_counts_for_the_pace_of_the_next():
     assert not pace.leads_nowhere(16.0, 1)
     assert not pace.leads_nowhere(12.0, 3)
     assert pace.leads_nowhere(9.0, 5)
-
-
-def test_the_share_that_it_gives_is_the_larger_one_of_two_steps():
-    """An evaluation; there must have been two, and what was given before them is forgotten."""
-    pace = Pace(against=0.0, most=25)
-    shares = []
-    for squares, count in ((8.0, 1), (4.0, 2), (2.0, 4), (1.9, 5), (1.9, 9)):
-        pace.leads_nowhere(squares, count)
-        shares.append(pace.share)
-    expected = [math.inf, math.inf, math.log(2), math.log(2) / 2, math.log(2 / 1.9)]
-    assert shares == pytest.approx(expected)
