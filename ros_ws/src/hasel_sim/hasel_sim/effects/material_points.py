@@ -61,7 +61,8 @@ class MaterialPoints:
     @cached_property
     def stretch(self) -> np.ndarray:
         """Stretch of the fibres [1], [n]."""
-        return np.hypot(self.deformation[:, 0, 0], self.deformation[:, 1, 0])
+        along, across = self.deformation[:, 0, 0], self.deformation[:, 1, 0]
+        return np.sqrt(along * along + across * across)  # hypot guards against overflow, at twice the time
 
     def along_fibre(self, tension: np.ndarray) -> np.ndarray:
         """First Piola stress [Pa] [n, 2, 2] of a tension [Pa] [n] along the fibres."""

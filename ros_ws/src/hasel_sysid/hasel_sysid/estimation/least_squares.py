@@ -31,6 +31,7 @@ def fit_least_squares(
     drafts: bool = True,
     roughly: bool = False,
     against: float = 0.0,
+    begun: Evaluation | None = None,
 ) -> FitResult:
     """Minimise the squared residuals over the model's free parameters within their bounds.
 
@@ -39,7 +40,8 @@ def fit_least_squares(
     tolerance: ten times the relative change of the sum of squares at which to stop; drafts: whether to start
     with the draft, which is a waste of time when the start is already good; roughly: stop earlier where neighbouring
     frames share what is left, for then so many fewer squares tell models apart; against: squares that another model
-    leaves, near which the fit must come at its pace, or it is broken off; `finished` goes on from there.
+    leaves, near which the fit must come at its pace, or it is broken off; `finished` goes on from there; begun: the
+    model by its free parameters, if it was evaluated.
     A fit that ends where no derivative leads on is tried once more (`second_start`).
     Raises SimulationError when even the start cannot be simulated.
     """
@@ -52,8 +54,9 @@ def fit_least_squares(
             leader = _without_onsets(draft(start))
             found, count, _ = _minimise(problem, leader, progress, 1e-2, most_evaluations)
             start = start.with_values({name: found.model.values[name] for name in leader.free})
+        known = begun if begun and start is model and begun.names == model.free else None
         evaluation, more, ended = _minimise(
-            problem, start, progress, tolerance, most_evaluations, roughly, against
+            problem, start, progress, tolerance, most_evaluations, roughly, against, known
         )
         return replace(fitted_result(evaluation, count + more), converged=ended)
 
@@ -66,7 +69,7 @@ def finished(problem: Problem, fit: FitResult, progress: Progress | None = None,
     """The fit, gone on with where it was broken off by its number of evaluations; options: as of a fit."""
     if fit.converged:
         return fit
-    return fit_least_squares(problem, fit.model, progress, drafts=False, **options)
+    return fit_least_squares(problem, fit.model, progress, drafts=False, begun=fit.evaluation, **options)
 
 
 def _minimise(
@@ -77,19 +80,19 @@ def _minimise(
     most_evaluations: int,
     roughly: bool = False,
     against: float = 0.0,
+    begun: Evaluation | None = None,
 ) -> tuple[Evaluation, int, bool]:
     names = model.free
-    rough = 0.1 * tolerance if roughly else 0.0
-    search = AskedModel(problem, model, names, progress, most_evaluations, rough, against)
     lower, upper, start = _bounds_and_start(model, names)
-    scale = np.maximum(np.abs(start), [_scale(model, name) for name in names])
-    start = _first_that_runs(search, start, names)
     # in units of their scales, for a step that is short beside all values ends the search: beside a value in Pa, any is
+    scale = np.maximum(np.abs(start), [_scale(model, name) for name in names])
+    rough = 0.1 * tolerance if roughly else 0.0
+    search = AskedModel(problem, model, names, scale, progress, most_evaluations, rough, against)
     try:
         found = least_squares(
-            lambda z: search.residual(z * scale),
-            start / scale,
-            jac=lambda z: search.jacobian(z * scale) * scale,
+            search.residual,
+            _first_that_runs(search, start / scale, begun),
+            jac=search.jacobian,
             bounds=(lower / scale, upper / scale),
             xtol=0.01 * tolerance,
             ftol=0.1 * tolerance,
@@ -98,7 +101,7 @@ def _minimise(
         )
     except EnoughError as reached:
         return reached.evaluation, search.count, False
-    return search.at(np.clip(found.x * scale, lower, upper)), search.count, found.status > 0
+    return search.at(found.x), search.count, found.status > 0
 
 
 def _without_onsets(model: Model) -> Model:
@@ -106,12 +109,12 @@ def _without_onsets(model: Model) -> Model:
     return model.with_held(*(name for name in model.free if model.is_onset(name) and not model.values[name]))
 
 
-def _first_that_runs(search: AskedModel, start: np.ndarray, names: tuple[str, ...]) -> np.ndarray:
+def _first_that_runs(search: AskedModel, start: np.ndarray, begun: Evaluation | None) -> np.ndarray:
     """The start, its amplitudes halved until the motion is gentle enough to be simulated."""
-    amplitudes = np.array([name.startswith("amplitude_") for name in names])
+    amplitudes = np.array([name.startswith("amplitude_") for name in search.names])
     for attempt in range(_GENTLER):
         try:
-            search.at(start)
+            search.begin(start, begun)
             return start
         except SimulationError:
             if attempt == _GENTLER - 1 or not amplitudes.any():

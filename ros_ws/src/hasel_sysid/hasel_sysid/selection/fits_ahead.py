@@ -35,22 +35,24 @@ class Interruptible(Problem):
 
 
 class FitsAhead(Generic[Found]):
-    """Fits of a problem: the steps of one wait for the longest of its runs; several fill all processes."""
+    """Fits of a problem: the steps of one wait for the longest of its runs; several fill all processes.
+
+    As many are made at once as there are processes; what is foreseen beyond those waits for its turn.
+    """
 
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
-        self._most = getattr(problem.pool, "workers", 1)
-        self._threads = ThreadPoolExecutor(self._most) if self._most > 1 else None
+        most = getattr(problem.pool, "workers", 1)
+        self._threads = ThreadPoolExecutor(most) if most > 1 else None
         self._begun: dict[Hashable, tuple[Future[Found], Event]] = {}
 
     def foresee(self, likely: Mapping[Hashable, Fit[Found]]) -> None:
-        """Begin the first of these, as many as there are processes, if more than one; give up what else was begun."""
+        """Begin these, the first ones first, where there are several processes; give up what else was begun."""
         if self._threads is None:
             return
-        wanted = list(likely)[: self._most]
-        for gone in self._begun.keys() - set(wanted):
+        for gone in self._begun.keys() - likely.keys():
             self._begun.pop(gone)[1].set()
-        for key in wanted:
+        for key in likely:
             if key not in self._begun:
                 unwanted = Event()
                 problem = Interruptible(self._problem, unwanted)

@@ -28,6 +28,7 @@ class StandIns(FullFits):
                 )
                 if not same and self.kept(proposal):
                     break
+            self.foresee([])
 
     def kept(self, proposal: Proposal) -> bool:
         """Whether a fit ended, for better or worse, as likely as it promised to."""

@@ -26,7 +26,8 @@ class Stepped:
 
 def _steps(promise: float) -> None:
     model = load_model("beam").with_effects("material_damping")
-    asked = AskedModel(Stepped(promise), model, (NAME,), None, 25, rough=1e-4)
+    asked = AskedModel(Stepped(promise), model, (NAME,), np.ones(1), None, 25, rough=1e-4)
+    asked.begin(np.array([0.0]))
     asked.jacobian(np.array([0.0]))
     asked.jacobian(np.array([0.1]))
 

@@ -129,6 +129,38 @@ class Bending:
         return made_up_evaluation(residual[None], self.time, None, self.simulated, jacobian, names, model)
 
 
+class Noted(Bending):
+    """The same runs, and the time constants that were asked for."""
+
+    def __init__(self):
+        angle = np.linspace(0.0, 6.2, 400)
+        super().__init__(np.cos(angle), np.sin(angle))
+        self.asked: list[float] = []
+
+    def evaluate(self, model, names):
+        """As of a problem's, at the model's values."""
+        self.asked.append(model.values[TIME])
+        return super().evaluate(model, names)
+
+
+@pytest.mark.parametrize("start", [0.0, 0.0013, 0.0065])
+def test_no_point_is_simulated_twice(start):
+    """On a bound, from where scipy moves a little away, and where a start over its scale times it is not the start."""
+    problem = Noted()
+    fit_least_squares(problem, far_start().with_values({TIME: start}), drafts=False)
+    assert np.diff(np.sort(problem.asked)).min(initial=np.inf) > 1e-11
+
+
+def test_what_was_broken_off_goes_on_from_where_it_is_known():
+    """The end of the first fit is not simulated again."""
+    problem = Noted()
+    rough = fit_least_squares(problem, far_start(), tolerance=1e-3, drafts=False, roughly=True)
+    before = len(problem.asked)
+    finished(problem, rough, tolerance=1e-3)
+    assert rough.model.values[TIME] not in problem.asked[before:]
+    assert len(problem.asked) > before
+
+
 def fits(problem):
     """To the end, and roughly."""
     return [

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from functools import partial
 from threading import Event
 
 import pytest
@@ -54,13 +55,24 @@ def test_with_one_process_nothing_is_begun(problem_with):
     assert ahead.done("asked", lambda problem: "made") == "made"
 
 
-def test_as_many_are_begun_as_there_are_processes(problem_with):
-    """The likeliest first."""
-    ahead, begun = FitsAhead(problem_with(2)), []
-    ahead.foresee({name: lambda problem, name=name: begun.append(name) for name in "abc"})
-    for name in "ab":
-        ahead.done(name, lambda problem: pytest.fail("made again"))
-    assert sorted(begun) == ["a", "b"]
+def test_as_many_are_made_at_once_as_there_are_processes(problem_with):
+    """The likeliest first; the next begins as soon as one of them has ended, though the other goes on."""
+    ahead = FitsAhead(problem_with(2))
+    started, may_end = ({name: Event() for name in "abc"} for _ in range(2))
+
+    def fit(name: str, problem: Problem) -> str:
+        started[name].set()
+        assert may_end[name].wait(PATIENCE_S)
+        return name
+
+    ahead.foresee({name: partial(fit, name) for name in "abc"})
+    assert all(started[name].wait(PATIENCE_S) for name in "ab")
+    assert not started["c"].is_set()
+    may_end["b"].set()
+    assert started["c"].wait(PATIENCE_S)
+    may_end["a"].set()
+    may_end["c"].set()
+    assert [ahead.done(name, lambda problem: pytest.fail("made again")) for name in "abc"] == list("abc")
 
 
 def test_what_is_no_longer_likely_is_given_up(problem_with, bent_swimmer):
