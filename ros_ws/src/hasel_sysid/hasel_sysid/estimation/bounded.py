@@ -3,6 +3,9 @@
 import numpy as np
 from scipy.optimize import lsq_linear
 
+_ROUNDS = 10
+"""How often every parameter may come off a bound, at most."""
+
 
 def bounded_change(
     residual: np.ndarray, jacobian: np.ndarray, lower: np.ndarray, upper: np.ndarray
@@ -16,9 +19,11 @@ def bounded_change(
     seen = (scale > 1e-12) & (upper - lower > 1e-15)
     change = np.zeros(jacobian.shape[1])
     if seen.any():
-        solution = lsq_linear(
-            jacobian[:, seen] / scale[seen], residual, (lower[seen] * scale[seen], upper[seen] * scale[seen])
-        )
+        # the frames enter by their share in the columns only: few rows, of which the exact active set is quickly found
+        basis, columns = np.linalg.qr(jacobian[:, seen] / scale[seen])
+        bounds = lower[seen] * scale[seen], upper[seen] * scale[seen]
+        most = _ROUNDS * columns.shape[1]
+        solution = lsq_linear(columns, basis.T @ residual, bounds, method="bvls", max_iter=most)
         change[seen] = np.clip(solution.x / scale[seen], lower[seen], upper[seen])
     left = residual - jacobian @ change
     return change, float(left @ left)

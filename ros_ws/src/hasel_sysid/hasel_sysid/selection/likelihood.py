@@ -3,6 +3,7 @@
 from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numba import njit
@@ -46,6 +47,7 @@ class Likelihood:
         """
         self.noise, self.runs, self.discrepancy, self.misfit = noise, runs, discrepancy, misfit
         self._slack = np.zeros((len(runs), 0)) if slack is None else slack
+        self._promised: WeakKeyDictionary[Prospect, float] = WeakKeyDictionary()
 
     def whiten(self, columns: np.ndarray) -> np.ndarray:
         """Columns [frames] or [frames, n] in units of independent noise of variance one, offsets taken out."""
@@ -80,7 +82,8 @@ class Likelihood:
 
     def whitened(self, fitted: FittedSet) -> Whitened:
         """A fitted set."""
-        residual, basis = self.whiten(fitted.residual), orthonormal(self.whiten(fitted.jacobian))
+        white = self.whiten(np.column_stack([fitted.residual, fitted.jacobian]))
+        residual, basis = white[:, 0], orthonormal(white[:, 1:])
         return Whitened(residual - basis @ (basis.T @ residual), basis, self.runs)
 
     def squares_beyond_slack(self, residual: np.ndarray, most: float) -> float:
@@ -97,10 +100,11 @@ class Likelihood:
 
     def promised(self, prospect: Prospect) -> float:
         """Logarithm of the likelihood, up to the same constant, one bounded step on from where a prospect is."""
-        _, squares = bounded_change(
-            self.whiten(prospect.residual), self.whiten(prospect.jacobian), prospect.lower, prospect.upper
-        )
-        return -0.5 * squares
+        if prospect not in self._promised:
+            white = self.whiten(np.column_stack([prospect.residual, prospect.jacobian]))
+            _, squares = bounded_change(white[:, 0], white[:, 1:], prospect.lower, prospect.upper)
+            self._promised[prospect] = -0.5 * squares
+        return self._promised[prospect]
 
     def likeness(self, one: np.ndarray, other: np.ndarray) -> float:
         """Cosine of the angle between what two effects can look like [frames, n], 0 to 1."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -32,8 +33,14 @@ def missing(
     gains = {effect: look.gain for effect, look in zip(looks, found, strict=True)}
     if not gains:
         return Missing(1.0, gains, 0.0)
-    draws = np.random.default_rng(seed).standard_normal((len(fitted.residual), _DRAWS))
-    draws -= fitted.basis @ (fitted.basis.T @ draws)
+    draws = _white(len(fitted.residual), seed)
+    draws = draws - fitted.basis @ (fitted.basis.T @ draws)
     largest = np.max([look.by(draws) for look in found], axis=0)
     chance = float((1 + np.sum(largest >= max(gains.values()))) / (1 + _DRAWS))
     return Missing(chance, gains, float(np.quantile(largest, 1 - level)))
+
+
+@lru_cache(maxsize=1)
+def _white(frames: int, seed: int) -> np.ndarray:
+    """Noise of variance one, [frames, draws]; the same for every set that is tested."""
+    return np.random.default_rng(seed).standard_normal((frames, _DRAWS))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sysid.estimation.bounded import bounded_change
+from scipy.optimize import lsq_linear
 
 JACOBIAN = np.random.default_rng(0).standard_normal((50, 3)) * [1.0, 1e-4, 1e3]
 TRUE = np.array([0.5, 200.0, -1e-3])
@@ -29,3 +30,14 @@ def test_what_nothing_shows_stays():
         np.ones(4), np.column_stack([np.ones(4), np.zeros(4)]), np.full(2, -9.0), np.full(2, 9.0)
     )
     assert change[1] == 0.0
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_many_bounds_are_met_as_an_interior_search_meets_them(seed):
+    """Of eight columns that look alike, within bounds that most of them would leave; scipy's reflective search."""
+    generator = np.random.default_rng(seed)
+    columns = generator.standard_normal((60, 8)) + 3 * generator.standard_normal((60, 1))
+    residual, reach = generator.standard_normal(60), 0.03 * generator.random(8)
+    _, squares = bounded_change(residual, columns, -reach, reach)
+    searched = lsq_linear(columns, residual, (-reach, reach), method="trf", tol=1e-12, max_iter=1000)
+    assert squares <= 2 * searched.cost * (1 + 1e-9)
