@@ -66,18 +66,12 @@ def columns_of_lanes(prepared: Sequence[PreparedRun], slopes: Sequence[np.ndarra
     where it does: amplitudes of voltages that a run has not cost nothing.
     slopes: derivatives of the contraction [steps, parameters, muscles] of every run.
     """
-    seen, driven, every = set(), [], set()
-    for run, by_contraction in zip(prepared, slopes, strict=True):
-        moving = set(np.flatnonzero(by_contraction.any(axis=(0, 2))).tolist())
-        seen |= {n for n, slope in enumerate(run.residual_slopes) if not isinstance(slope, NoSlope)}
-        driven.append(moving)
-        every |= moving
-    count = max(len(own - seen) for own in driven)
-    columns = []
-    for own in driven:
-        others = sorted(every - own - seen)
-        columns.append(sorted(seen) + sorted([*(own - seen), *others[: count - len(own - seen)]]))
-    return columns
+    seen = {
+        n for run in prepared for n, slope in enumerate(run.residual_slopes) if not isinstance(slope, NoSlope)
+    }
+    driven = [set(np.flatnonzero(by_drive.any(axis=(0, 2))).tolist()) - seen for by_drive in slopes]
+    every, count = set().union(*driven), max(map(len, driven))
+    return [sorted(seen) + sorted([*own, *sorted(every - own)[: count - len(own)]]) for own in driven]
 
 
 def step_together(
