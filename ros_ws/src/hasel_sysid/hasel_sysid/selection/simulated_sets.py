@@ -15,12 +15,13 @@ from hasel_sysid.estimation.least_squares import fitted_result
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Problem
-from hasel_sysid.selection.first_trials import first_trials, sized_starts
+from hasel_sysid.selection.first_trials import first_trials
 from hasel_sysid.selection.known_set import known_set
 from hasel_sysid.selection.noise_bound import bounded_noise
 from hasel_sysid.selection.other_valleys import deepest
 from hasel_sysid.selection.set_fits import SetFits
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect, Wanted
+from hasel_sysid.selection.sized_starts import Expected, expected_beside, overlooked
 from hasel_sysid.selection.trial_prospects import (
     Rank,
     best_of_each,
@@ -102,7 +103,9 @@ class SimulatedSets:
             rounds = (most, most // 2)
             self.trials, self.first, self.tried = trials, first, set(trials.tried)
         else:
-            first, rounds = trials.first(self._begin(of, names, sized or {})), (most // 2, most // 4)
+            hoped, rounds = self._expected(of, names, sized or {}), (most // 2, most // 4)
+            first = trials.first(self._begin(hoped, names, sized or {}))
+            first = [*trials.first(overlooked(hoped, first)), *first]
         looks = {t.start.effect.id: looks_of(t, trials) for t in reversed(first)}
         best = best_of_each([prospect_of(t, looks, of.effects) for t in first], rank)
         for keep in rounds:
@@ -118,14 +121,21 @@ class SimulatedSets:
         """The same effect from a quarter to four times the size that it was tried at."""
         return from_other_sizes(Trials(self.problem, of.fit.evaluation), prospect)
 
-    def _begin(self, of: FittedSet, names: Collection[str], sized: Mapping[str, FittedSet]) -> list[Start]:
+    def _expected(
+        self, of: FittedSet, names: Collection[str], sized: Mapping[str, FittedSet]
+    ) -> list[Expected]:
         others = set(names) - set(sized)
         first = [trial for trial in self.first if trial.start.effect.id in others]
+        return expected_beside(of, first, self.fitted.evaluation.residual)
+
+    def _begin(
+        self, hoped: Sequence[Expected], names: Collection[str], sized: Mapping[str, FittedSet]
+    ) -> list[Start]:
         known = [valued(self.effects[name], sized[name].fit.model.values) for name in names if name in sized]
-        resized = sized_starts(of, first, self.fitted.evaluation.residual)
-        there = [start.values for start in (*known, *resized)]
+        first = [*known, *(one.begin for one in hoped)]
+        there = [start.values for start in first]
         at_null = [self.null_starts[name] for name in names if name in self.null_starts]
-        return [*known, *resized, *(start for start in at_null if start.values not in there)]
+        return [*first, *(start for start in at_null if start.values not in there)]
 
     def foresee(self, likely: Sequence[Wanted]) -> None:
         """Begin these fits where processes would wait for work."""
