@@ -5,6 +5,7 @@ import math
 import pytest
 from hasel_sysid.diagnosis import Verdict
 from hasel_sysid.improvement import Status, improve
+from hasel_sysid.selection.simulated_sets import SimulatedSets
 from hasel_sysid.testing.made_up_world import MadeUpWorld
 
 
@@ -98,3 +99,22 @@ def test_unseen_runs_are_only_compared_with():
     found = improve(world.measured(truth), world.model, world.measured(truth))
     assert found.missing == ("payload",)
     assert found.stages[-1].mae_validation < 0.5 * found.stages[0].mae_validation
+
+
+def test_what_is_no_law_is_not_fitted_to_its_last_digit(monkeypatch):
+    """It is refused as it was found; what is a law beside it is gone on with."""
+    finished = []
+    original = SimulatedSets.finished
+
+    def noted(sets, every):
+        finished.extend(fitted.effects for fitted in every)
+        return original(sets, every)
+
+    monkeypatch.setattr(SimulatedSets, "finished", noted)
+    world = MadeUpWorld(1)
+    truth = world.with_typical("payload", "pre_bend")
+    masses = {3500.0: 0.004, 4500.0: 0.01, 5500.0: 0.016}
+    truths = {voltage: truth.with_values({"payload.mass": mass}) for voltage, mass in masses.items()}
+    found = improve(world.measured_of_each(truths), world.model, only=("payload", "pre_bend"))
+    assert found.refused == ("payload",)
+    assert not [effects for effects in finished if "payload" in effects]

@@ -9,11 +9,11 @@ from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 from hasel_sysid.dataset import Experiment
-from hasel_sysid.estimation import FitResult
+from hasel_sysid.estimation import FitResult, fit_least_squares
 from hasel_sysid.estimation.least_squares import fitted_result
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.simulated_sets import SimulatedSets
-from hasel_sysid.testing.made_up_world import box_drive
+from hasel_sysid.testing.made_up_world import MadeUpWorld, box_drive
 
 IMPOSSIBLE = '''
 """A muscle that cannot be simulated."""
@@ -184,3 +184,27 @@ def test_beside_a_set_what_starts_without_effect_is_looked_at_there(heavy_in_wat
     beside = sets.known_as(_known(heavy_in_water, softer))
     seen = sets.prospects(beside, ["soft_modulus"], nearest_to_null, 0)
     assert nearest_to_null(seen["soft_modulus"]) == 0.0
+
+
+class Hiding(MadeUpWorld):
+    """A world in which a drag does nothing up to a third of its typical size beside another effect."""
+
+    def sin_theta_at(self, effects, values):
+        """The angle of every run."""
+        if {"linear_drag", "pre_bend"} <= {effect.id for effect in effects}:
+            typical = catalogue()["linear_drag"].parameters[0].typical
+            size = max(0.0, values["linear_drag.rate"] / typical - 0.3) / 0.7
+            values = {**values, "linear_drag.rate": typical * size}
+        return super().sin_theta_at(effects, values)
+
+
+def test_what_is_hidden_where_it_does_nothing_is_looked_at_at_its_expected_size_beside_a_set():
+    """Beside the baseline its derivative shows there; beside the other effect it takes most of what is left away."""
+    world = Hiding(1)
+    problem = world.measured(world.with_typical("pre_bend", "linear_drag"))
+    fit = fit_least_squares(problem, world.model)
+    sets = SimulatedSets(problem, fit, [catalogue()[name] for name in ("pre_bend", "linear_drag")])
+    seen = sets.prospects(sets.baseline(), None, lambda p: -float(p.residual @ p.residual), 4)
+    bent = sets.fit(frozenset({"pre_bend"}), sets.baseline(), [seen["pre_bend"]])
+    drag = sets.prospects(bent, ["linear_drag"], lambda p: -float(p.residual @ p.residual), 0)["linear_drag"]
+    assert float(drag.least_residual @ drag.least_residual) < 0.5 * bent.squares
