@@ -1,11 +1,13 @@
 """What scipy's least squares asks of a model, and where it is near enough to the end."""
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
+from hasel_sysid.estimation.bounded import bounded_change
 from hasel_sysid.estimation.independent import independent_share
 from hasel_sysid.estimation.opening import is_close
 from hasel_sysid.estimation.pace import Pace
@@ -46,15 +48,15 @@ class AskedModel:
         progress: Progress | None,
         most: int,
         rough: float,
-        against: float = 0.0,
+        goal: float = 0.0,
     ) -> None:
         """names: of the parameters that scipy moves; scale: of each, [names]; most: evaluations, of which progress
         tells the share; rough: relative change of independent squares at which the search is near enough, 0 for the end
-        itself; against: as of `Pace`.
+        itself; goal: as of `Pace`.
         """
         self.problem, self.model, self.names, self.scale = problem, model, names, scale
         self.progress, self.most, self.count = progress, most, 0
-        self.rough, self._pace = rough, Pace(against, most)
+        self.rough, self._pace = rough, Pace(goal, most)
         ranges = [(model.parameters[name].lower, model.parameters[name].upper) for name in names]
         self._bounds = np.reshape(ranges, (-1, 2)).T
         self._before: tuple[np.ndarray, Evaluation] | None = None
@@ -94,15 +96,22 @@ class AskedModel:
     def jacobian(self, z: np.ndarray) -> np.ndarray:
         """Derivatives of what is left, [frames, n]; asked for where a step was taken, and there only.
 
-        Raises EnoughError where that step was not worth another one, or leads nowhere near another model.
+        Raises EnoughError where that step was not worth another one, or does not lead to the goal.
         """
         here = self.at(z)
-        if self._pace.leads_nowhere(here.sum_of_squares, self.count):
+        if self._pace.leads_nowhere(here.sum_of_squares, self.count, partial(self._foretold, here)):
             raise EnoughError(here)
         if self.rough and self._before is not None and self._is_near_enough(*self._before, z, here):
             raise EnoughError(here)
         self._before = z, here
         return -here.jacobian * self.scale
+
+    def _foretold(self, here: Evaluation) -> float:
+        """Squares after the whole next step, to first order, which tells nothing of a model that is far off."""
+        if not is_close(here):
+            return 0.0
+        values = np.array([here.model.values[name] for name in self.names])
+        return bounded_change(here.residual, here.jacobian, *(self._bounds - values))[1]
 
     def _is_near_enough(self, z0: np.ndarray, before: Evaluation, z1: np.ndarray, here: Evaluation) -> bool:
         """As scipy ends: by a step that gave little, and not because it was held back by a model that fits badly.

@@ -30,7 +30,7 @@ def fit_least_squares(
     most_evaluations: int = 25,
     drafts: bool = True,
     roughly: bool = False,
-    against: float = 0.0,
+    goal: float = 0.0,
     begun: Evaluation | None = None,
 ) -> FitResult:
     """Minimise the squared residuals over the model's free parameters within their bounds.
@@ -39,9 +39,9 @@ def fit_least_squares(
     model itself goes the rest.
     tolerance: ten times the relative change of the sum of squares at which to stop; drafts: whether to start
     with the draft, which is a waste of time when the start is already good; roughly: stop earlier where neighbouring
-    frames share what is left, for then so many fewer squares tell models apart; against: squares that another model
-    leaves, near which the fit must come at its pace, or it is broken off; `finished` goes on from there; begun: the
-    model by its free parameters, if it was evaluated.
+    frames share what is left, for then so many fewer squares tell models apart; goal: squares that
+    the fit must come below at its pace, or it is broken off; `finished` goes on from there; begun: the model by its
+    free parameters, if it was evaluated.
     A fit that ends where no derivative leads on is tried once more (`second_start`).
     Raises SimulationError when even the start cannot be simulated.
     """
@@ -56,7 +56,7 @@ def fit_least_squares(
             start = start.with_values({name: found.model.values[name] for name in leader.free})
         known = begun if begun and start is model and begun.names == model.free else None
         evaluation, more, ended = _minimise(
-            problem, start, progress, tolerance, most_evaluations, roughly, against, known
+            problem, start, progress, tolerance, most_evaluations, roughly, goal, known
         )
         return replace(fitted_result(evaluation, count + more), converged=ended)
 
@@ -79,7 +79,7 @@ def _minimise(
     tolerance: float,
     most_evaluations: int,
     roughly: bool = False,
-    against: float = 0.0,
+    goal: float = 0.0,
     begun: Evaluation | None = None,
 ) -> tuple[Evaluation, int, bool]:
     names = model.free
@@ -87,7 +87,7 @@ def _minimise(
     # in units of their scales, for a step that is short beside all values ends the search: beside a value in Pa, any is
     scale = np.maximum(np.abs(start), [_scale(model, name) for name in names])
     rough = 0.1 * tolerance if roughly else 0.0
-    search = AskedModel(problem, model, names, scale, progress, most_evaluations, rough, against)
+    search = AskedModel(problem, model, names, scale, progress, most_evaluations, rough, goal)
     try:
         found = least_squares(
             search.residual,

@@ -1,33 +1,31 @@
-"""Whether a search would come near what another model leaves, at the pace at which it goes."""
+"""Whether a search would come to where it is worth anything, at the pace at which it goes."""
 
 import math
-
-_NEAR = 4.0
-"""Squares so many times another model's, twice its rms, may still be as likely where slow deviations count for less."""
+from collections.abc import Callable
 
 
 class Pace:
     """The steps that a search has taken.
 
-    against: squares that another model leaves, 0 for none; most: evaluations that the search is given.
+    goal: squares that it must come below to be worth anything, 0 for none; most: evaluations that it is given.
     """
 
-    def __init__(self, against: float, most: int) -> None:
-        self.against, self.most = against, most
+    def __init__(self, goal: float, most: int) -> None:
+        self.goal, self.most = goal, most
         self._before: tuple[float, int] | None = None
         self._paces: list[float] = []
 
-    def leads_nowhere(self, squares: float, count: int) -> bool:
-        """After a step that was taken, to this sum of squares and after so many evaluations: whether the larger share
-        that each of its last two steps gave, an evaluation, would not bring it near the other model with those left.
+    def leads_nowhere(self, squares: float, count: int, foretold: Callable[[], float]) -> bool:
+        """After a step that was taken, to this sum of squares and after so many evaluations: whether the share that it
+        gave, an evaluation, would not bring the search to its goal with those left.
 
-        One short step tells nothing: the next may be free of what held it back.
+        One short step tells nothing: the next may be free of what held it back. So neither would the step before, or
+        the squares foretold of the next one, whole and to first order, are not below the goal either.
         """
         before, self._before = self._before, (squares, count)
-        if before is None or squares <= 0 or self.against <= 0:
+        if before is None or squares <= 0 or self.goal <= 0:
             return False
         self._paces.append(math.log(before[0] / squares) / max(count - before[1], 1))
-        if len(self._paces) < 2:
-            return False
-        still = math.log(squares / (_NEAR * self.against))
-        return still > max(self._paces[-2:]) * (self.most - count)
+        still = math.log(squares / self.goal)
+        slow = [still > pace * (self.most - count) for pace in self._paces[-2:]]
+        return slow[-1] and (slow == [True, True] or foretold() >= self.goal)

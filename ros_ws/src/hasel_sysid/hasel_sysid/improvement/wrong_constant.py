@@ -16,6 +16,7 @@ from hasel_sysid.policy import Policy
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.choice import does_as_much
 from hasel_sysid.selection.fits_ahead import FitsAhead
+from hasel_sysid.selection.held_against import NEAR
 from hasel_sysid.selection.searched import Searched
 from hasel_sysid.selection.sets import NOTHING, EffectSet, name_of
 from hasel_sysid.selection.simulated_sets import SimulatedSets
@@ -125,7 +126,7 @@ def _fitted(model: Model, name: str, policy: Policy, allowed: float, problem: Pr
             tolerance=1e-3,
             most_evaluations=policy.effort.evaluations,
             drafts=False,
-            against=allowed,
+            goal=NEAR * allowed,
         )
     except HaselSimError:
         return None

@@ -109,9 +109,11 @@ class FullFits(Promises):
         return Proposal(self.known[part], (seen[new],)) if new in seen else None
 
     def _from_other_sizes(self, proposal: Proposal) -> FittedSet | None:
-        """A fit of one more effect that did not keep its promise: there is more than one valley."""
+        """A fit of one more effect that did not keep its promise, where another size of it promises another valley."""
         alone = len(proposal.added) == 1 and not proposal.dropped
         if not alone or self.sets.out_of_time() or not self.broken(proposal):
             return None
         other = self.sets.from_other_sizes(proposal.of, proposal.added[0])
-        return None if other is None else self.sets.fit(proposal.effects, proposal.of, (other,))
+        if other is None or not self.matters(Proposal(proposal.of, (other,)), proposal.of.effects):
+            return None
+        return self.sets.fit(proposal.effects, proposal.of, (other,))

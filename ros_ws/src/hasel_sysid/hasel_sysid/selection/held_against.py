@@ -1,6 +1,9 @@
-"""The squares that a fit is held against: it is made to its end only if it may come near them."""
+"""The squares that a fit must come below: it is made to its end only if it may."""
 
 from collections.abc import Hashable
+
+NEAR = 4.0
+"""Squares so many times another model's, twice its rms, may still be as likely where slow deviations count for less."""
 
 
 class HeldAgainst:
@@ -12,9 +15,10 @@ class HeldAgainst:
         self._least = float("inf")
         self._known: dict[Hashable, float] = {}
 
-    def of(self, fit: Hashable) -> float:
-        """The squares for a fit; infinite where none was made before it was first asked for."""
-        return self._known.setdefault(fit, self._least)
+    def goal(self, fit: Hashable, begun: float, worth: float) -> float:
+        """Near the least that is known and what the set it begins with leaves, and below what is worth anything."""
+        least = self._known.setdefault(fit, self._least)
+        return min(NEAR * min(least, begun), worth)
 
     def learn(self, squares: float) -> None:
         """What a fit has left."""

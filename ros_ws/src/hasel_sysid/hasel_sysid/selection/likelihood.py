@@ -12,6 +12,7 @@ from hasel_sysid.estimation.bounded import bounded_change
 from hasel_sysid.noise import LONGEST_CORRELATION, NoiseModel
 from hasel_sysid.projection import orthonormal
 from hasel_sysid.selection.sets import FittedSet, Prospect
+from hasel_sysid.selection.squares import squares_beyond_slack
 
 
 @dataclass(frozen=True)
@@ -91,12 +92,7 @@ class Likelihood:
 
         most: standard deviations of their amount in a run.
         """
-        total = 0.0
-        for run in np.unique(self.runs):
-            here = self.runs == run
-            reach = np.full(self._slack.shape[1], most)
-            total += bounded_change(residual[here], self._slack[here], -reach, reach)[1]
-        return total
+        return squares_beyond_slack(residual, self.runs, self._slack, most)
 
     def promised(self, prospect: Prospect) -> float:
         """Logarithm of the likelihood, up to the same constant, one bounded step on from where a prospect is."""

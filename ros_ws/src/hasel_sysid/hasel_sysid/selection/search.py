@@ -161,15 +161,18 @@ class _Search(StandIns):
     def parts(self, chosen: EffectSet) -> list[Proposal]:
         """A set without each of its effects in turn, as far as that was not fitted yet.
 
-        Fitted from the values of the others, or from a known set with one effect less where those would be farther off.
+        Fitted from the values of the others, or from a known set with one effect less where those are farther off.
         """
-        return [self._nearest(without) for without in self.possible(smaller(self.known, chosen))]
+        return [self._nearest(without, chosen) for without in self.possible(smaller(self.known, chosen))]
 
-    def _nearest(self, without: Proposal) -> Proposal:
-        begin = without.whole.residual
+    def _nearest(self, without: Proposal, chosen: EffectSet) -> Proposal:
         part = self.best_part(without.effects)
-        if part is None or self.known[part].squares > float(begin @ begin):
+        if part is None or self.sets.out_of_time():
             return without
+        (gone,) = without.dropped
+        left = self.sets.without(self.known[chosen], gone)
+        if left is not None and left.squares < self.known[part].squares:
+            return Proposal(left, ())
         return self.beside(part, without.effects) or without
 
     def rivals(self, found: Searched, chosen: EffectSet) -> list[Proposal]:

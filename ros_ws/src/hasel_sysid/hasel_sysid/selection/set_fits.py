@@ -1,5 +1,6 @@
 """Full fits of sets of effects, several at once where there are processes for them."""
 
+import math
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -14,19 +15,24 @@ from hasel_sysid.estimation import FitResult, fit_least_squares, is_close
 from hasel_sysid.estimation.least_squares import finished
 from hasel_sysid.estimation.second_start import better_from
 from hasel_sysid.policy import POLICY
-from hasel_sysid.problem import Problem
+from hasel_sysid.problem import Evaluation, Problem
 from hasel_sysid.selection.fits_ahead import FitsAhead
 from hasel_sysid.selection.held_against import HeldAgainst
 from hasel_sysid.selection.known_set import known_set
 from hasel_sysid.selection.sets import EffectSet, FittedSet, Prospect, Wanted
+from hasel_sysid.selection.squares import squares_beyond_slack
 
 
 class SetFits:
     """Fits of models with sets of these effects, from where drafts have led."""
 
-    def __init__(self, problem: Problem, effects: Mapping[str, Effect], given: Model | None) -> None:
-        """given: the model to begin again with, where a fit that began far off has not come close."""
-        self._effects, self._given = effects, given
+    def __init__(
+        self, problem: Problem, effects: Mapping[str, Effect], slack: np.ndarray, given: Model | None
+    ) -> None:
+        """slack [frames, n]: errors that every set makes; given: the model to begin again with, where a fit that began
+        far off has not come close.
+        """
+        self._effects, self._slack, self._given = effects, slack, given
         self._ahead: FitsAhead[FittedSet | None] = FitsAhead(problem)
         self._against = HeldAgainst()
 
@@ -36,7 +42,7 @@ class SetFits:
 
     def fit(self, effects: EffectSet, near: FittedSet, added: Sequence[Prospect]) -> FittedSet | None:
         """Least squares of the model itself, from where the drafts have led; to the end only where it may come near the
-        least squares that a set was fitted to.
+        least squares that a set was fitted to, and where effects are added, so far below those without them as matters.
         """
         found = self._ahead.done(_key(effects, near, added), self._begun(effects, near, added))
         if found:
@@ -47,15 +53,21 @@ class SetFits:
         self, effects: EffectSet, near: FittedSet, added: Sequence[Prospect]
     ) -> Callable[[Problem], FittedSet | None]:
         """The fit of a set, held against what is known of others and of the one that it begins with."""
-        against = min(self._against.of(_key(effects, near, added)), near.squares)
-        return partial(self._fit, effects, near, added, against)
+        worth = self._less_than(near) if effects > near.effects else math.inf
+        goal = self._against.goal(_key(effects, near, added), near.squares, worth)
+        return partial(self._fit, effects, near, added, goal)
+
+    def _less_than(self, near: FittedSet) -> float:
+        """The squares below which a larger set is worth anything; what every set misses is to no effect's credit."""
+        beyond = squares_beyond_slack(near.residual, near.fit.evaluation.runs, self._slack, POLICY.doubt)
+        return near.squares - POLICY.matters * beyond
 
     def _fit(
         self,
         effects: EffectSet,
         near: FittedSet,
         added: Sequence[Prospect],
-        against: float,
+        goal: float,
         problem: Problem,
     ) -> FittedSet | None:
         base: FitResult = near.fit
@@ -71,8 +83,8 @@ class SetFits:
         try:
             model = self._model(near.fit.model, effects, near.effects).with_values({})
             start = {name: _inside(model, name, values[name]) for name in model.free if name in values}
-            fitted = partial(_fitted, problem, against)
-            found = fitted(model.with_values(start))
+            fitted = partial(_fitted, problem, goal)
+            found = fitted(model.with_values(start), base.evaluation if effects == near.effects else None)
             begun_close = is_close(base.evaluation)
             found = better_from(found, self._as_given(found, begun_close), fitted)
         except (HaselSimError, ModelError):
@@ -113,7 +125,7 @@ def _inside(model: Model, name: str, value: float) -> float:
     return float(np.clip(value, p.lower, p.upper))
 
 
-def _fitted(problem: Problem, against: float, model: Model) -> FitResult:
+def _fitted(problem: Problem, goal: float, model: Model, begun: Evaluation | None = None) -> FitResult:
     return fit_least_squares(
         problem,
         model,
@@ -121,7 +133,8 @@ def _fitted(problem: Problem, against: float, model: Model) -> FitResult:
         most_evaluations=POLICY.effort.evaluations,
         drafts=False,
         roughly=True,
-        against=against,
+        goal=goal,
+        begun=begun,
     )
 
 

@@ -55,7 +55,7 @@ class SimulatedSets:
         self.tried: set[str] = set()
         self.first: list[Trial] = []
         self.trials: Trials | None = None
-        self._fits = SetFits(problem, self.effects, given)
+        self._fits = SetFits(problem, self.effects, self.slack, given)
 
     def baseline(self) -> FittedSet:
         """The model as it was fitted."""
