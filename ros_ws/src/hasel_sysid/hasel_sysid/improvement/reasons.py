@@ -27,7 +27,7 @@ def why_the_last(
 ) -> tuple[str, bool]:
     """The sentence, and whether nothing else is missing; what comes before any effect comes first."""
     if opposed:
-        reason, done = f"A fault of the set-up comes before any effect: {'; '.join(map(str, opposed))}", False
+        reason, done = f"A fault of the set-up comes before any effect: {' '.join(map(str, opposed))}", False
     elif constant:
         reason, done = str(constant), False
     else:
