@@ -36,8 +36,8 @@ def worth_a_trial(seen: Sequence[Glimpse], made: Sequence[Trial], trials: Trials
     comes nearer by a good part of what the nearest of all does. made: trials of any effects.
     """
     every: list[Glimpse | Trial] = [*seen, *made]
-    left = {one: _left(one.residual, trials) for one in every}
-    without = _left(trials.fitted.residual, trials)
+    left = {one: left_beyond(one.residual, trials) for one in every}
+    without = left_beyond(trials.fitted.residual, trials)
     most = without - min(left.values(), default=without)
     found = []
     for effect in dict.fromkeys(one.start.effect.id for one in seen):
@@ -49,7 +49,7 @@ def worth_a_trial(seen: Sequence[Glimpse], made: Sequence[Trial], trials: Trials
     return found
 
 
-def _left(residual: np.ndarray, trials: Trials) -> float:
+def left_beyond(residual: np.ndarray, trials: Trials) -> float:
     """Squares that are left beyond what the model imitates, and what a larger or smaller motion in any run makes of it:
     beside a model that is far off, the muscles are as wrong as what is missing.
     """

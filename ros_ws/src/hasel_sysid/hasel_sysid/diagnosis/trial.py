@@ -58,23 +58,23 @@ class Trials:
     """Tries effects on drafts of a fitted model.
 
     fitted: the model as fitted, evaluated with its free parameters; imitable: a basis of what these imitate, [frames,
-    n]. A draft's own error, the difference between the two at the fitted values, is added to every trial: what matters
-    is what the effect changes. A draft that is far off (a long undamped swing, whose phase drifts), or whose steps are
-    too long to follow the motion, is not used at all.
+    n]; model: the draft. Its own error, the difference between the two at the fitted values, is added to every trial:
+    what matters is what the effect changes. A draft that is far off (a long undamped swing, whose phase drifts), or
+    whose steps are too long to follow the motion, is not used at all.
     """
 
     def __init__(self, problem: Problem, fitted: Evaluation) -> None:
         self.problem, self.fitted = problem, fitted
         self.imitable = orthonormal(fitted.jacobian)
         self.tried: set[str] = set()
-        self._model, self.base = draft(fitted.model), fitted
+        self.model, self.base = draft(fitted.model), fitted
         try:
-            self.base = problem.evaluate(self._model, fitted.names)
+            self.base = problem.evaluate(self.model, fitted.names)
         except SimulationError:
-            self._model = fitted.model
+            self.model = fitted.model
         error = fitted.residual - self.base.residual
         if not is_small(error, fitted.simulated()):
-            self._model, self.base = fitted.model, fitted
+            self.model, self.base = fitted.model, fitted
 
     def time_is_over(self) -> bool:
         """Whether what has not been tried yet is to be left out."""
@@ -100,7 +100,7 @@ class Trials:
 
     def model_at(self, start: Start) -> Model:
         """The draft with an effect at its start."""
-        return self._model.with_effects(_source(start)).with_values(start.values)
+        return self.model.with_effects(_source(start)).with_values(start.values)
 
     def corrected(self, evaluation: Evaluation) -> np.ndarray:
         """What a draft leaves [frames], less its own error; the same to the last digit where nothing changes."""
@@ -111,7 +111,7 @@ class Trials:
         together. What they may do by a time or a place is nothing, to the last digit.
         """
         rounds = side_by_side(starts)
-        models = [self._model.with_effects(*map(_source, own)).with_values(_values(own)) for own in rounds]
+        models = [self.model.with_effects(*map(_source, own)).with_values(_values(own)) for own in rounds]
         names = [
             (*self.fitted.names, *(name for name in self._brought(model) if name not in _idle(own)))
             for model, own in zip(models, rounds, strict=True)
@@ -142,7 +142,7 @@ class Trials:
 
     def _brought(self, model: Model) -> tuple[str, ...]:
         """What may be fitted in a model, and could not be before."""
-        return tuple(name for name in model.free if name not in self._model.parameters)
+        return tuple(name for name in model.free if name not in self.model.parameters)
 
     def _trial(self, start: Start, model: Model, brought: tuple[str, ...], evaluation: Evaluation) -> Trial:
         names = evaluation.names

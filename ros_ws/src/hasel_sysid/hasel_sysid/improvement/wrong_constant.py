@@ -1,8 +1,9 @@
 """A constant of the model file that does by itself what several effects do together, or what none does."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
+from itertools import islice
 
 from hasel_sim.errors import HaselSimError
 from hasel_sim.model import Model, Parameter
@@ -11,7 +12,8 @@ from hasel_sim.model.value_text import value_with_error
 
 from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.estimation import FitResult, fit_least_squares
-from hasel_sysid.improvement.constants_looked_at import freed, is_possible, looked_at
+from hasel_sysid.improvement.constants_looked_at import looked_at
+from hasel_sysid.improvement.freed_constant import is_possible
 from hasel_sysid.policy import Policy
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.choice import does_as_much
@@ -79,9 +81,9 @@ def wrong_constant(
         return None
     base = found.known[NOTHING]
     least = found.known[chosen].squares if chosen else 0.0
-    names = looked_at(sets.problem, base.fit.evaluation, least, policy)
+    begin = looked_at(sets.problem, base.fit.evaluation, least, policy)
     allowed = len(base.residual) * noise_allowed(sets, found).standard_deviation ** 2
-    fits = _fits(sets.problem, base.fit.model, names, policy, allowed)
+    fits = _fits(sets.problem, begin, policy, allowed)
     good = [(name, fit) for name, fit in fits if fit and _is_good(sets, found, name, fit, chosen, policy)]
     if not good:
         return None
@@ -100,14 +102,14 @@ def _is_good(
 
 
 def _fits(
-    problem: Problem, model: Model, names: Sequence[str], policy: Policy, allowed: float
+    problem: Problem, begin: Mapping[str, Model], policy: Policy, allowed: float
 ) -> list[tuple[str, FitResult | None]]:
-    """With each of these constants free in turn, as many at once as there are processes."""
+    """From each of these models with a constant free, as many at once as there are processes."""
     ahead: FitsAhead[FitResult | None] = FitsAhead(problem)
-    fits = {name: partial(_fitted, model, name, policy, allowed) for name in names}
+    fits = {name: partial(_fitted, model, name, policy, allowed) for name, model in begin.items()}
     found = []
-    for number, name in enumerate(names):
-        ahead.foresee({later: fits[later] for later in names[number:]})
+    for number, name in enumerate(fits):
+        ahead.foresee(dict(islice(fits.items(), number, None)))
         found.append((name, ahead.done(name, fits[name])))
     return found
 
@@ -122,7 +124,7 @@ def _fitted(model: Model, name: str, policy: Policy, allowed: float, problem: Pr
     try:
         fit = fit_least_squares(
             problem,
-            freed(model, name),
+            model,
             tolerance=1e-3,
             most_evaluations=policy.effort.evaluations,
             drafts=False,

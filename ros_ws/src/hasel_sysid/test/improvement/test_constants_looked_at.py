@@ -1,0 +1,47 @@
+"""Which constants of a model file are worth a fit, on the simulator."""
+
+import numpy as np
+import pytest
+from hasel_recording import Recording
+from hasel_sim.model import load_model
+from hasel_sim.parallel import SerialExecutor
+from hasel_sim.run import Run
+from hasel_sim.simulate import simulate
+from hasel_sysid.dataset import Experiment
+from hasel_sysid.estimation import fit_from_afar, fit_least_squares, is_close
+from hasel_sysid.improvement.constants_looked_at import looked_at
+from hasel_sysid.policy import POLICY
+from hasel_sysid.problem import Problem
+from hasel_sysid.testing.made_up_world import box_drive
+
+DENSITY = "material.density_kg_per_m3"
+
+
+def _body():
+    model = load_model("swimmer").with_levels([3500.0, 5500.0])
+    return model.with_numerics(mesh_density=0.7, quadrature_order=2, steps_per_second=240.0)
+
+
+def _measured(share: float) -> Problem:
+    """Runs of a body that is so many times as dense."""
+    truth = _body().with_values({"amplitude_3500": 0.03, "amplitude_5500": 0.05}).with_freed(DENSITY)
+    truth = truth.with_values({DENSITY: 900.0 * share})
+    time, experiments = np.arange(0.0, 2.0, 1 / 60), []
+    for voltage, frequency in ((3500.0, 0.5), (3500.0, 2.0), (5500.0, 1.0), (5500.0, 3.5)):
+        schedule = box_drive(voltage, frequency)
+        run = Run(f"{voltage:.0f} V, {frequency} Hz", time, schedule)
+        angle = simulate(truth, run).sin_theta
+        experiments.append(Experiment(Recording(run.name, time, angle, drive_signal=schedule.at(time)), run))
+    return Problem(experiments, SerialExecutor())
+
+
+def test_a_wrong_density_is_found_from_afar():
+    """No first order leads there from the file's value; over its range it comes near, and a fit goes the rest."""
+    problem = _measured(0.5)
+    fitted = fit_from_afar(problem, _body()).evaluation
+    assert not is_close(fitted)
+    begin = looked_at(problem, fitted, 0.0, POLICY)
+    assert DENSITY in begin
+    found = fit_least_squares(problem, begin[DENSITY], drafts=False)
+    assert found.model.values[DENSITY] == pytest.approx(450.0, rel=0.01)
+    assert found.evaluation.sum_of_squares < 1e-3 * fitted.sum_of_squares
