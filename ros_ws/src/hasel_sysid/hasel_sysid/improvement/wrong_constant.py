@@ -72,8 +72,8 @@ class WrongConstant:
 def wrong_constant(
     sets: SimulatedSets, found: Searched, chosen: EffectSet, policy: Policy
 ) -> WrongConstant | None:
-    """The constant with which the model describes its runs, and foretells runs left out as well as with the chosen
-    effects, to within the same standard error.
+    """The constant with which the model describes its runs, if the chosen effects do, and foretells runs left out as
+    well as with them, to within the same standard error.
 
     None where no constant does, where nothing is missing, and where one effect is chosen, which is as simple.
     """
@@ -96,9 +96,10 @@ def _is_good(
 ) -> bool:
     whitened = found.likelihood.whitened(sets.known_as(fit))
     its = worth(whitened, sets.measured, policy.prior_runs)
-    describes = adequacy(fit.evaluation, noise_allowed(sets, found)).adequate
+    noise, theirs = noise_allowed(sets, found), found.known[chosen].fit.evaluation
+    describes = adequacy(fit.evaluation, noise).adequate or (chosen and not adequacy(theirs, noise).adequate)
     as_much = does_as_much(found, its, fit.evaluation.residual, chosen, policy)
-    return name not in fit.at_bound and describes and as_much
+    return name not in fit.at_bound and bool(describes) and as_much
 
 
 def _fits(

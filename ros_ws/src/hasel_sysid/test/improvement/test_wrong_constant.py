@@ -63,6 +63,17 @@ def test_a_number_that_does_only_a_part_is_not_named():
     assert improve(world.measured(truth, stranger=0.01), world.model).constant is None
 
 
+def test_a_number_comes_before_effects_that_do_not_describe_the_runs_either():
+    """A stranger's motion is there besides: what one number does as well, two effects do not do in part."""
+    world = MadeUpWorld(1, shared=16, constants={DENSITY: TOGETHER})
+    truth = world.with_typical().with_freed(DENSITY).with_values({DENSITY: 1080.0})
+    found = improve(world.measured(truth, stranger=0.01), world.model, only=TOGETHER)
+    assert not found.adequacy.adequate
+    assert found.constant.name == DENSITY
+    assert found.constant.instead_of == frozenset(TOGETHER)
+    assert found.status is Status.UNEXPLAINED
+
+
 def test_a_single_effect_is_as_simple_as_a_number():
     """What one effect does is called by its name, though a number of the file does the same."""
     world = MadeUpWorld(1, shared=16, constants={DENSITY: TOGETHER[:1]})
