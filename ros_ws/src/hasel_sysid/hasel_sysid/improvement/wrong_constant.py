@@ -97,9 +97,10 @@ def _is_good(
     whitened = found.likelihood.whitened(sets.known_as(fit))
     its = worth(whitened, sets.measured, policy.prior_runs)
     noise, theirs = noise_allowed(sets, found), found.known[chosen].fit.evaluation
-    describes = adequacy(fit.evaluation, noise).adequate or (chosen and not adequacy(theirs, noise).adequate)
+    describes = adequacy(fit.evaluation, noise).adequate
+    describes = describes or (len(chosen) > 0 and not adequacy(theirs, noise).adequate)
     as_much = does_as_much(found, its, fit.evaluation.residual, chosen, policy)
-    return name not in fit.at_bound and bool(describes) and as_much
+    return name not in fit.at_bound and describes and as_much
 
 
 def _fits(

@@ -163,14 +163,14 @@ class _Search(StandIns):
 
         Fitted from the values of the others, or from a known set with one effect less where those are farther off.
         """
-        return [self._nearest(without, chosen) for without in self.possible(smaller(self.known, chosen))]
+        return [self._nearest(without) for without in self.possible(smaller(self.known, chosen))]
 
-    def _nearest(self, without: Proposal, chosen: EffectSet) -> Proposal:
+    def _nearest(self, without: Proposal) -> Proposal:
         part = self.best_part(without.effects)
         if part is None or self.sets.out_of_time():
             return without
         (gone,) = without.dropped
-        left = self.sets.without(self.known[chosen], gone)
+        left = self.sets.without(without.of, gone)
         if left is not None and left.squares < self.known[part].squares:
             return Proposal(left, ())
         return self.beside(part, without.effects) or without
