@@ -2,17 +2,12 @@
 
 import numpy as np
 import pytest
-from hasel_recording import Recording
 from hasel_sim.model import load_model
-from hasel_sim.parallel import SerialExecutor
-from hasel_sim.run import Run
-from hasel_sim.simulate import simulate
-from hasel_sysid.dataset import Experiment
 from hasel_sysid.estimation import fit_from_afar, fit_least_squares, is_close
 from hasel_sysid.improvement.constants_looked_at import looked_at
 from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Problem
-from hasel_sysid.testing.made_up_world import box_drive
+from hasel_sysid.testing.simulated_runs import simulated_runs
 
 DENSITY = "material.density_kg_per_m3"
 
@@ -26,13 +21,8 @@ def _measured(share: float) -> Problem:
     """Runs of a body that is so many times as dense."""
     truth = _body().with_values({"amplitude_3500": 0.03, "amplitude_5500": 0.05}).with_freed(DENSITY)
     truth = truth.with_values({DENSITY: 900.0 * share})
-    time, experiments = np.arange(0.0, 2.0, 1 / 60), []
-    for voltage, frequency in ((3500.0, 0.5), (3500.0, 2.0), (5500.0, 1.0), (5500.0, 3.5)):
-        schedule = box_drive(voltage, frequency)
-        run = Run(f"{voltage:.0f} V, {frequency} Hz", time, schedule)
-        angle = simulate(truth, run).sin_theta
-        experiments.append(Experiment(Recording(run.name, time, angle, drive_signal=schedule.at(time)), run))
-    return Problem(experiments, SerialExecutor())
+    drives = (3500.0, 0.5), (3500.0, 2.0), (5500.0, 1.0), (5500.0, 3.5)
+    return simulated_runs(truth, drives, np.arange(0.0, 2.0, 1 / 60))
 
 
 def test_a_wrong_density_is_found_from_afar():

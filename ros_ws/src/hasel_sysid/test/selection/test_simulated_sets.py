@@ -2,18 +2,14 @@
 
 import numpy as np
 import pytest
-from hasel_recording import Recording
 from hasel_sim.effects.registry import catalogue, find_effects
 from hasel_sim.model import Model, load_model
-from hasel_sim.parallel import SerialExecutor
-from hasel_sim.run import Run
-from hasel_sim.simulate import simulate
-from hasel_sysid.dataset import Experiment
 from hasel_sysid.estimation import FitResult, fit_least_squares
 from hasel_sysid.estimation.least_squares import fitted_result
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.simulated_sets import SimulatedSets
-from hasel_sysid.testing.made_up_world import MadeUpWorld, box_drive
+from hasel_sysid.testing.made_up_world import MadeUpWorld
+from hasel_sysid.testing.simulated_runs import simulated_runs
 
 IMPOSSIBLE = '''
 """A muscle that cannot be simulated."""
@@ -81,13 +77,8 @@ def _swimmer(*effects: str) -> Model:
 def heavy_in_water() -> Problem:
     """Two runs of a swimmer that drags six times the usual added mass along."""
     values = {"amplitude_3500": 0.03, "amplitude_5500": 0.05, "added_mass.added_mass": 3.0}
-    truth, time, experiments = _swimmer("added_mass").with_values(values), np.arange(0.0, 1.5, 1 / 60), []
-    for voltage, frequency in ((3500.0, 1.0), (5500.0, 2.0)):
-        schedule = box_drive(voltage, frequency)
-        run = Run(f"{voltage:.0f} V", time, schedule)
-        angle = simulate(truth, run).sin_theta
-        experiments.append(Experiment(Recording(run.name, time, angle, drive_signal=schedule.at(time)), run))
-    return Problem(experiments, SerialExecutor())
+    drives = (3500.0, 1.0), (5500.0, 2.0)
+    return simulated_runs(_swimmer("added_mass").with_values(values), drives, np.arange(0.0, 1.5, 1 / 60))
 
 
 def _known(problem: Problem, model: Model) -> FitResult:
