@@ -2,7 +2,12 @@
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
+from typing import TypeVar
+
+Work = TypeVar("Work")
+
+_BATCH = 8
 
 
 class TimeLimit:
@@ -19,6 +24,15 @@ class TimeLimit:
         over = self._clock() - self._began > self.seconds
         self.left_something_out |= over
         return over
+
+    def in_batches(self, pieces: Sequence[Work], even_late: bool = False) -> Iterator[Sequence[Work]]:
+        """Eight pieces of work at a time, to be done side by side, until time is over; even_late: the first eight in
+        any case.
+        """
+        for begin in range(0, len(pieces), _BATCH):
+            if not (even_late and begin == 0) and self.is_over():
+                return
+            yield pieces[begin : begin + _BATCH]
 
     def __str__(self) -> str:
         return f"the limit of {self.seconds:g} s"

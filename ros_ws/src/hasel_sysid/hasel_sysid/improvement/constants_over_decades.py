@@ -13,8 +13,6 @@ from hasel_sysid.improvement.freed_constant import freed, held_constants, is_pos
 from hasel_sysid.policy import Policy
 from hasel_sysid.problem import Evaluation, Problem
 
-_BATCH = 8
-
 
 def over_decades(problem: Problem, fitted: Evaluation, policy: Policy) -> list[Look]:
     """Looks at the constants that promise to take away a good part of what a model leaves, two steps on from where each
@@ -43,10 +41,7 @@ def _nearest(trials: Trials) -> list[Look]:
 def _seen(trials: Trials) -> Iterator[tuple[str, float, float]]:
     """Every constant's values that can be simulated, as long as there is time, with the squares left there."""
     places = [(name, there) for name in held_constants(trials.model) for there in _places(trials.model, name)]
-    for begin in range(0, len(places), _BATCH):
-        if trials.time_is_over():
-            return
-        batch = places[begin : begin + _BATCH]
+    for batch in trials.problem.time_limit.in_batches(places):
         found = trials.problem.evaluate_each([there for _, there in batch], [()] * len(batch))
         for (name, there), seen in zip(batch, found, strict=True):
             if not isinstance(seen, SimulationError):

@@ -83,8 +83,10 @@ def wrong_constant(
     least = found.known[chosen].squares if chosen else 0.0
     begin = looked_at(sets.problem, base.fit.evaluation, least, policy)
     allowed = len(base.residual) * noise_allowed(sets, found).standard_deviation ** 2
-    fits = _fits(sets.problem, begin, policy, allowed)
-    good = [(name, fit) for name, fit in fits if fit and _is_good(sets, found, name, fit, chosen, policy)]
+    fits = [(name, fit) for name, fit in _fits(sets.problem, begin, policy, allowed) if fit]
+    if not chosen or _describes(sets, found, found.known[chosen].fit):
+        fits = [(name, fit) for name, fit in fits if _describes(sets, found, fit)]
+    good = [(name, fit) for name, fit in fits if _is_good(sets, found, name, fit, chosen, policy)]
     if not good:
         return None
     name, fit = min(good, key=lambda one: one[1].evaluation.sum_of_squares)
@@ -96,11 +98,12 @@ def _is_good(
 ) -> bool:
     whitened = found.likelihood.whitened(sets.known_as(fit))
     its = worth(whitened, sets.measured, policy.prior_runs)
-    noise, theirs = noise_allowed(sets, found), found.known[chosen].fit.evaluation
-    describes = adequacy(fit.evaluation, noise).adequate
-    describes = describes or (len(chosen) > 0 and not adequacy(theirs, noise).adequate)
     as_much = does_as_much(found, its, fit.evaluation.residual, chosen, policy)
-    return name not in fit.at_bound and describes and as_much
+    return name not in fit.at_bound and as_much
+
+
+def _describes(sets: SimulatedSets, found: Searched, fit: FitResult) -> bool:
+    return adequacy(fit.evaluation, noise_allowed(sets, found)).adequate
 
 
 def _fits(

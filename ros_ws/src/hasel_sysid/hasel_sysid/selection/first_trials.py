@@ -13,8 +13,6 @@ from hasel_sysid.selection.decade_trials import decade_trials
 
 Seen = TypeVar("Seen")
 
-_BATCH = 8
-
 
 def first_trials(trials: Trials, effects: Sequence[Effect], decades: bool) -> list[Trial]:
     """Beside the baseline; decades: also at sizes over the decades of every range.
@@ -38,10 +36,4 @@ def _in_batches(
     begins: Sequence[Start],
     even_late: bool = False,
 ) -> list[Seen]:
-    """What is seen of many starts, as long as there is time; even_late: of the first batch in any case."""
-    found: list[Seen] = []
-    for begin in range(0, len(begins), _BATCH):
-        if trials.time_is_over() and not (even_late and begin == 0):
-            break
-        found += see(begins[begin : begin + _BATCH])
-    return found
+    return [seen for batch in trials.problem.time_limit.in_batches(begins, even_late) for seen in see(batch)]
