@@ -6,7 +6,7 @@ import pytest
 from hasel_sysid.diagnosis import Verdict
 from hasel_sysid.improvement import Status, improve
 from hasel_sysid.selection.simulated_sets import SimulatedSets
-from hasel_sysid.testing.made_up_world import MadeUpWorld
+from hasel_sysid.testing.made_up_world import MadeUpProblem, MadeUpWorld
 
 
 def improved(hidden, stranger=0.0, most_effects=3, seed=1, most_evaluations=math.inf, on_stage=None):
@@ -32,6 +32,23 @@ def test_what_is_hidden_is_named(hidden):
     assert found.diagnosis.findings[0].effect in hidden
     assert [stage.effects for stage in written] == [stage.effects for stage in found.stages]
     assert [len(stage.effects) for stage in found.stages] == sorted({len(s.effects) for s in found.stages})
+
+
+def test_beside_a_fault_of_the_set_up_no_pair_is_searched_for():
+    """Runs that move against the model: nothing is named, in no more time than single effects take."""
+    world = MadeUpWorld(1, shared=16)
+    truth = world.with_typical("slow_creep", "pre_bend")
+    flipped = [-experiment.recording.sin_theta for experiment in world.measured(truth).experiments]
+    spent = []
+    for most_effects in (1, 3):
+        mirrored = MadeUpProblem(world, flipped)
+        found = improve(mirrored, world.model, most_effects=most_effects)
+        assert found.opposed
+        assert found.status is Status.UNEXPLAINED
+        assert found.missing == ()
+        assert found.diagnosis.findings
+        spent.append(mirrored.evaluations)
+    assert spent[0] == spent[1]
 
 
 def test_nothing_hidden_is_nothing_missing():
