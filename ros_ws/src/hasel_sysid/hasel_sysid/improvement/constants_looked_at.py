@@ -1,12 +1,13 @@
 """Which constants of a model file are worth a fit, and where it begins."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 from hasel_sim.model.constants import shared_constants
 
 from hasel_sysid.draft import draft
-from hasel_sysid.estimation import is_close
 from hasel_sysid.improvement.constant_look import Look, look_of, most_promising, one_step_on
 from hasel_sysid.improvement.constants_over_decades import over_decades
 from hasel_sysid.improvement.freed_constant import freed, held_constants, is_possible
@@ -14,20 +15,37 @@ from hasel_sysid.policy import Policy
 from hasel_sysid.problem import Evaluation, Problem
 
 
-def looked_at(problem: Problem, fitted: Evaluation, least: float, policy: Policy) -> dict[str, Model]:
+def beside_what_is_close(
+    problem: Problem, fitted: Evaluation, least: float, policy: Policy
+) -> dict[str, Model]:
     """The fitted model with a constant free, by name, where a fit of it begins; most promising first.
 
-    least: squares that other models leave. Of a model that is far off, what its constants promise over their ranges.
+    least: squares that other models leave.
     """
-    if is_close(fitted):
-        begin = {look.name: freed(fitted.model, look.name) for look in _close(problem, fitted, least, policy)}
-    else:
-        begin = {
-            look.name: freed(fitted.model, look.name).with_values(look.step)
-            for look in over_decades(problem, fitted, policy)
-        }
-    possible = [(name, model) for name, model in begin.items() if is_possible(model, name)]
+    looks = _close(problem, fitted, least, policy)
+    return _begin({look.name: freed(fitted.model, look.name) for look in looks}, policy)
+
+
+def beside_what_is_far_off(
+    problem: Problem, fitted: Evaluation, policy: Policy, given: Model | None = None
+) -> dict[str, Model]:
+    """The same for what constants promise over their ranges, beside what was fitted and beside what was given."""
+    wider = policy.wider()
+    begun = [fitted, *_as_given(problem, fitted, given)]
+    looks = over_decades(problem, begun, wider)
+    return _begin({look.name: freed(fitted.model, look.name).with_values(look.step) for look in looks}, wider)
+
+
+def _begin(models: Mapping[str, Model], policy: Policy) -> dict[str, Model]:
+    possible = [(name, model) for name, model in models.items() if is_possible(model, name)]
     return dict(possible[: policy.effort.fits])
+
+
+def _as_given(problem: Problem, fitted: Evaluation, given: Model | None) -> list[Evaluation]:
+    try:
+        return [] if given is None else [problem.evaluate(given, fitted.names)]
+    except SimulationError:
+        return []
 
 
 def _close(problem: Problem, fitted: Evaluation, least: float, policy: Policy) -> list[Look]:

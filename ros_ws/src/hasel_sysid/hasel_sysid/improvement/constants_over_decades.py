@@ -1,6 +1,6 @@
 """Constants of a model file over their ranges: beside a model that is far off, first order leads to none of them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
@@ -14,18 +14,28 @@ from hasel_sysid.policy import Policy
 from hasel_sysid.problem import Evaluation, Problem
 
 
-def over_decades(problem: Problem, fitted: Evaluation, policy: Policy) -> list[Look]:
+def over_decades(problem: Problem, begun: Sequence[Evaluation], policy: Policy) -> list[Look]:
     """Looks at the constants that promise to take away a good part of what a model leaves, two steps on from where each
     comes nearest to what was measured; most promising first.
+
+    begun: the model as fitted, and with other values of the same parameters: where it is far off, its fit may have
+    taken them further away from the truth than they were.
     """
-    trials, effort = Trials(problem, fitted), policy.effort
-    correction = fitted.residual - trials.base.residual
-    looks = one_step_on(problem, trials.model, _nearest(trials), correction)
-    best = sorted(looks, key=lambda look: look.squares)[: effort.trials]
-    if trials.time_is_over():
+    looks = [look for evaluation in begun for look in _two_steps_on(problem, evaluation, policy)]
+    if problem.time_limit.is_over():
         return []
-    further = one_step_on(problem, trials.model, best, correction)
-    return most_promising(further, (1 - effort.hope) * fitted.sum_of_squares)
+    best: dict[str, Look] = {}
+    for look in most_promising(looks, (1 - policy.effort.hope) * begun[0].sum_of_squares):
+        best.setdefault(look.name, look)
+    return list(best.values())
+
+
+def _two_steps_on(problem: Problem, begun: Evaluation, policy: Policy) -> list[Look]:
+    trials = Trials(problem, begun)
+    correction = begun.residual - trials.base.residual
+    looks = one_step_on(problem, trials.model, _nearest(trials), correction)
+    best = sorted(looks, key=lambda look: look.squares)[: policy.effort.trials]
+    return one_step_on(problem, trials.model, best, correction)
 
 
 def _nearest(trials: Trials) -> list[Look]:

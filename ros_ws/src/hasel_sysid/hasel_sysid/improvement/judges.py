@@ -7,6 +7,7 @@ from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.diagnosis.explained import Status, status_with
 from hasel_sysid.estimation import FitResult
 from hasel_sysid.estimation.refinement import refined
+from hasel_sysid.improvement.constant_fits import ConstantFits
 from hasel_sysid.improvement.lawful import against_law, effects_of
 from hasel_sysid.improvement.wrong_constant import WrongConstant, wrong_constant
 from hasel_sysid.policy import Policy
@@ -23,6 +24,7 @@ class Judges:
         self._sets, self._policy, self._opposed = sets, policy, opposed
         self._refined: dict[FittedSet, FitResult] = {}
         self._constants: dict[EffectSet, WrongConstant | None] = {}
+        self._constant_fits = ConstantFits(sets.problem, sets.fitted.evaluation, policy, sets.given)
 
     def refined(self, known: FittedSet) -> FitResult:
         """The fit of a set with what finer numerics would change."""
@@ -61,5 +63,7 @@ class Judges:
         if self._opposed:
             return None
         if chosen not in self._constants:
-            self._constants[chosen] = wrong_constant(self._sets, found, chosen, self._policy)
+            self._constants[chosen] = wrong_constant(
+                self._sets, found, chosen, self._policy, self._constant_fits
+            )
         return self._constants[chosen]

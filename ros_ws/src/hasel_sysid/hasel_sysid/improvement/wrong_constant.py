@@ -1,26 +1,18 @@
 """A constant of the model file that does by itself what several effects do together, or what none does."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
-from itertools import islice
 
-from hasel_sim.errors import HaselSimError
-from hasel_sim.model import Model, Parameter
+from hasel_sim.model import Parameter
 from hasel_sim.model.constants import constants
 from hasel_sim.model.value_text import value_with_error
 
 from hasel_sysid.diagnosis.adequacy import adequacy
-from hasel_sysid.estimation import FitResult, fit_least_squares
-from hasel_sysid.improvement.constants_looked_at import looked_at
-from hasel_sysid.improvement.freed_constant import is_possible
+from hasel_sysid.estimation import FitResult
+from hasel_sysid.improvement.constant_fits import ConstantFits
 from hasel_sysid.policy import Policy
-from hasel_sysid.problem import Problem
 from hasel_sysid.selection.choice import does_as_much
-from hasel_sysid.selection.fits_ahead import FitsAhead
-from hasel_sysid.selection.held_against import NEAR
 from hasel_sysid.selection.searched import Searched
-from hasel_sysid.selection.sets import NOTHING, EffectSet, name_of
+from hasel_sysid.selection.sets import EffectSet, name_of
 from hasel_sysid.selection.simulated_sets import SimulatedSets
 from hasel_sysid.selection.verdicts import noise_allowed
 from hasel_sysid.selection.worth import worth
@@ -70,7 +62,7 @@ class WrongConstant:
 
 
 def wrong_constant(
-    sets: SimulatedSets, found: Searched, chosen: EffectSet, policy: Policy
+    sets: SimulatedSets, found: Searched, chosen: EffectSet, policy: Policy, constant_fits: ConstantFits
 ) -> WrongConstant | None:
     """The constant with which the model describes its runs, if the chosen effects do, and foretells runs left out as
     well as with them, to within the same standard error.
@@ -79,18 +71,16 @@ def wrong_constant(
     """
     if len(chosen) == 1 or found.first.chance >= policy.level:
         return None
-    base = found.known[NOTHING]
     least = found.known[chosen].squares if chosen else 0.0
-    begin = looked_at(sets.problem, base.fit.evaluation, least, policy)
-    allowed = len(base.residual) * noise_allowed(sets, found).standard_deviation ** 2
-    fits = [(name, fit) for name, fit in _fits(sets.problem, begin, policy, allowed) if fit]
+    allowed = len(sets.measured) * noise_allowed(sets, found).standard_deviation ** 2
+    fits = constant_fits.promising(least, allowed)
     if not chosen or _describes(sets, found, found.known[chosen].fit):
-        fits = [(name, fit) for name, fit in fits if _describes(sets, found, fit)]
-    good = [(name, fit) for name, fit in fits if _is_good(sets, found, name, fit, chosen, policy)]
+        fits = {name: fit for name, fit in fits.items() if _describes(sets, found, fit)}
+    good = {name: fit for name, fit in fits.items() if _is_good(sets, found, name, fit, chosen, policy)}
     if not good:
         return None
-    name, fit = min(good, key=lambda one: one[1].evaluation.sum_of_squares)
-    return WrongConstant(name, constants(fit.model.description)[name], fit, chosen)
+    name = min(good, key=lambda one: good[one].evaluation.sum_of_squares)
+    return WrongConstant(name, constants(sets.fitted.model.description)[name], good[name], chosen)
 
 
 def _is_good(
@@ -104,37 +94,3 @@ def _is_good(
 
 def _describes(sets: SimulatedSets, found: Searched, fit: FitResult) -> bool:
     return adequacy(fit.evaluation, noise_allowed(sets, found)).adequate
-
-
-def _fits(
-    problem: Problem, begin: Mapping[str, Model], policy: Policy, allowed: float
-) -> list[tuple[str, FitResult | None]]:
-    """From each of these models with a constant free, as many at once as there are processes."""
-    ahead: FitsAhead[FitResult | None] = FitsAhead(problem)
-    fits = {name: partial(_fitted, model, name, policy, allowed) for name, model in begin.items()}
-    found = []
-    for number, name in enumerate(fits):
-        ahead.foresee(dict(islice(fits.items(), number, None)))
-        found.append((name, ahead.done(name, fits[name])))
-    return found
-
-
-def _fitted(model: Model, name: str, policy: Policy, allowed: float, problem: Problem) -> FitResult | None:
-    """None where it cannot be simulated, ends at what no model file may say, or there is no time.
-
-    Made to its end only where it may come near the squares that a model is allowed which describes its runs.
-    """
-    if problem.time_limit.is_over():
-        return None
-    try:
-        fit = fit_least_squares(
-            problem,
-            model,
-            tolerance=1e-3,
-            most_evaluations=policy.effort.evaluations,
-            drafts=False,
-            goal=NEAR * allowed,
-        )
-    except HaselSimError:
-        return None
-    return fit if is_possible(fit.model, name) else None
