@@ -31,7 +31,8 @@ class ConstantFits:
     def promising(self, least: float, allowed: float) -> dict[str, FitResult]:
         """Of the constants that may leave as little as `least`, as many at once as there are processes.
 
-        Made to its end is only what may come near the squares allowed for a model that describes its runs. Left out is
+        Made to its end is only what may come near the squares that are allowed, when it is made, for a model that
+        describes its runs. Left out is
         what cannot be simulated, ends at what no model file may say, or there was no time for.
         """
         if is_close(self._fitted):

@@ -22,8 +22,6 @@ def over_decades(problem: Problem, begun: Sequence[Evaluation], policy: Policy) 
     taken them further away from the truth than they were.
     """
     looks = [look for evaluation in begun for look in _two_steps_on(problem, evaluation, policy)]
-    if problem.time_limit.is_over():
-        return []
     best: dict[str, Look] = {}
     for look in most_promising(looks, (1 - policy.effort.hope) * begun[0].sum_of_squares):
         best.setdefault(look.name, look)
@@ -35,6 +33,8 @@ def _two_steps_on(problem: Problem, begun: Evaluation, policy: Policy) -> list[L
     correction = begun.residual - trials.base.residual
     looks = one_step_on(problem, trials.model, _nearest(trials), correction)
     best = sorted(looks, key=lambda look: look.squares)[: policy.effort.trials]
+    if trials.time_is_over():
+        return []
     return one_step_on(problem, trials.model, best, correction)
 
 

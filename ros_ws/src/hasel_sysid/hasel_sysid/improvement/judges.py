@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 from hasel_sysid.data_gate import Finding
-from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.diagnosis.explained import Status, status_with
 from hasel_sysid.estimation import FitResult
 from hasel_sysid.estimation.refinement import refined
@@ -14,7 +13,7 @@ from hasel_sysid.policy import Policy
 from hasel_sysid.selection.searched import Searched
 from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet
 from hasel_sysid.selection.simulated_sets import SimulatedSets
-from hasel_sysid.selection.verdicts import noise_allowed, share_left_by
+from hasel_sysid.selection.verdicts import describes, noise_allowed, share_left_by
 
 
 class Judges:
@@ -46,7 +45,7 @@ class Judges:
 
     def described(self, found: Searched, effects: EffectSet) -> bool:
         """Whether a known set describes its runs everywhere."""
-        return adequacy(found.known[effects].fit.evaluation, noise_allowed(self._sets, found)).adequate
+        return describes(self._sets, found, found.known[effects].fit)
 
     def named(self, found: Searched, effects: EffectSet) -> bool:
         """Whether its effects would be said to be missing, were this set chosen: they explain enough, and no number of

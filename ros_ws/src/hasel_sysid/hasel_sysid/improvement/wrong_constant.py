@@ -6,7 +6,6 @@ from hasel_sim.model import Parameter
 from hasel_sim.model.constants import constants
 from hasel_sim.model.value_text import value_with_error
 
-from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.estimation import FitResult
 from hasel_sysid.improvement.constant_fits import ConstantFits
 from hasel_sysid.policy import Policy
@@ -14,7 +13,7 @@ from hasel_sysid.selection.choice import does_as_much
 from hasel_sysid.selection.searched import Searched
 from hasel_sysid.selection.sets import EffectSet, name_of
 from hasel_sysid.selection.simulated_sets import SimulatedSets
-from hasel_sysid.selection.verdicts import noise_allowed
+from hasel_sysid.selection.verdicts import describes, noise_allowed
 from hasel_sysid.selection.worth import worth
 
 
@@ -74,8 +73,8 @@ def wrong_constant(
     least = found.known[chosen].squares if chosen else 0.0
     allowed = len(sets.measured) * noise_allowed(sets, found).standard_deviation ** 2
     fits = constant_fits.promising(least, allowed)
-    if not chosen or _describes(sets, found, found.known[chosen].fit):
-        fits = {name: fit for name, fit in fits.items() if _describes(sets, found, fit)}
+    if not chosen or describes(sets, found, found.known[chosen].fit):
+        fits = {name: fit for name, fit in fits.items() if describes(sets, found, fit)}
     good = {name: fit for name, fit in fits.items() if _is_good(sets, found, name, fit, chosen, policy)}
     if not good:
         return None
@@ -90,7 +89,3 @@ def _is_good(
     its = worth(whitened, sets.measured, policy.prior_runs)
     as_much = does_as_much(found, its, fit.evaluation.residual, chosen, policy)
     return name not in fit.at_bound and as_much
-
-
-def _describes(sets: SimulatedSets, found: Searched, fit: FitResult) -> bool:
-    return adequacy(fit.evaluation, noise_allowed(sets, found)).adequate

@@ -6,11 +6,13 @@ from dataclasses import replace
 import numpy as np
 
 from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict
+from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.diagnosis.context import Context, expected_squares
 from hasel_sysid.diagnosis.explained import share_left
 from hasel_sysid.diagnosis.judgement import RULED_OUT, as_diagnosis, finding
 from hasel_sysid.diagnosis.reached import squares_reached
 from hasel_sysid.diagnosis.signature import signature
+from hasel_sysid.estimation import FitResult
 from hasel_sysid.noise import NoiseModel, allowed_noise
 from hasel_sysid.policy import POLICY
 from hasel_sysid.selection.choice import Choice
@@ -70,6 +72,11 @@ def _context(
 def noise_allowed(sets: SimulatedSets, found: Searched) -> NoiseModel:
     """By which a model is judged: what was measured, and what no model has."""
     return allowed_noise(found.likelihood.noise, POLICY.discrepancy * sets.swing)
+
+
+def describes(sets: SimulatedSets, found: Searched, fit: FitResult) -> bool:
+    """Whether a fit describes its runs everywhere, by that noise."""
+    return adequacy(fit.evaluation, noise_allowed(sets, found)).adequate
 
 
 def share_left_by(found: Searched, effects: EffectSet, noise: NoiseModel) -> float:

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from hasel_sysid.estimation import fit_least_squares
 from hasel_sysid.improvement import Status, improve
 from hasel_sysid.improvement.ledger import Ledger
 from hasel_sysid.testing.made_up_world import MadeUpWorld
@@ -93,3 +94,18 @@ def test_it_is_written_down(tmp_path):
     lines = [json.loads(line) for line in ledger.path.read_text().splitlines()]
     assert [line["constant"] for line in lines] == [None, DENSITY]
     assert DENSITY in (tmp_path / lines[-1]["model"]).read_text()
+
+
+def test_a_number_that_comes_near_no_description_is_not_fitted_to_its_end(monkeypatch):
+    """It is held against what a model may leave that describes its runs, and that is near the noise."""
+    held = []
+
+    def fitted(*arguments, goal, **options):
+        held.append(goal)
+        return fit_least_squares(*arguments, goal=goal, **options)
+
+    monkeypatch.setattr("hasel_sysid.improvement.constant_fits.fit_least_squares", fitted)
+    found = heavier(1.2)
+    fit = found.constant.fit.evaluation
+    assert held
+    assert all(2 * fit.sum_of_squares < goal < 16 * fit.sum_of_squares for goal in held)
