@@ -4,6 +4,7 @@ from enum import Enum
 
 import numpy as np
 
+from hasel_sysid.noise import NoiseModel
 from hasel_sysid.policy import POLICY
 
 
@@ -14,6 +15,11 @@ def share_left(before: float, after: float, noise: float) -> float:
     """
     floor = (1 + POLICY.noise_known) * noise
     return float(np.clip((after - floor) / max(before - floor, 1e-12), 0.0, 1.0))
+
+
+def near_noise(error: float, noise: NoiseModel) -> bool:
+    """Whether a mean |Δ sin θ| is as small as the noise, as far as that is known."""
+    return error <= POLICY.near_noise * noise.mean_absolute
 
 
 class Status(str, Enum):

@@ -4,8 +4,7 @@ from collections.abc import Sequence
 
 from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.diagnosis.adequacy import Misfit
-from hasel_sysid.diagnosis.explained import Status, share_left, status_with
-from hasel_sysid.estimation import FitResult
+from hasel_sysid.diagnosis.explained import Status, near_noise, share_left, status_with
 from hasel_sysid.improvement.result import Improvement, Stage
 from hasel_sysid.policy import POLICY
 
@@ -20,11 +19,6 @@ def left_over(stages: Sequence[Stage]) -> float:
     by_effects = [stage for stage in stages if not stage.constant]
     before, after = by_effects[0].fit.mean_absolute_error, by_effects[-1].fit.mean_absolute_error
     return share_left(before, after, last_diagnosis(stages).noise.mean_absolute)
-
-
-def near_noise(fit: FitResult, found: Diagnosis) -> bool:
-    """Whether what a fit leaves is as small as the noise, as far as that is known."""
-    return fit.mean_absolute_error <= POLICY.near_noise * found.noise.mean_absolute
 
 
 def conclude(
@@ -44,7 +38,7 @@ def conclude(
     first, last, rest = stages[0].diagnosis, last_diagnosis(stages), stages[-1].diagnosis
     unexplained = left_over(stages)
     added = stages[-1].effects
-    describes = near_noise(stages[-1].fit, last) and not misfits
+    describes = near_noise(stages[-1].mae_fit, last.noise) and not misfits
     nothing_left = negligible or (rest is not None and rest.p_value >= POLICY.level)
     if not added:
         missing_nothing = describes and (negligible or first.p_value >= POLICY.level)

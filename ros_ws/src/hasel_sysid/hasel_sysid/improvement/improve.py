@@ -121,6 +121,9 @@ def _concluded(
         concluded = _judged(kept[:1], reason, False, contradictions)
     if opposed:
         concluded = replace(concluded, status=Status.UNEXPLAINED)
+    if concluded.status is Status.UNEXPLAINED:
+        of_none = replace(concluded.stages[0], diagnosis=concluded.diagnosis.of_no_effect())
+        concluded = replace(concluded, stages=[of_none, *concluded.stages[1:]])
     return replace(concluded, refused=refused, opposed=opposed, constant=constant)
 
 

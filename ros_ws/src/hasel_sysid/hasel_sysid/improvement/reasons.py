@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from hasel_sysid.data_gate import Finding
 from hasel_sysid.diagnosis import Diagnosis
-from hasel_sysid.improvement.conclusion import near_noise
+from hasel_sysid.diagnosis.explained import near_noise
 from hasel_sysid.improvement.result import Stage
 from hasel_sysid.improvement.wrong_constant import WrongConstant
 from hasel_sysid.policy import Policy
@@ -63,11 +63,11 @@ def _why_here(found: Searched, choice: Choice, policy: Policy, first: Stage) -> 
     chance = found.tested(choice.chosen).chance
     nothing_else = chance >= policy.level
     if not choice.chosen:
-        if nothing_else and near_noise(first.fit, first.diagnosis):
+        if nothing_else and near_noise(first.mae_fit, first.diagnosis.noise):
             return f"Nothing is missing: noise alone looks like this in {chance:.0%} of cases.", True
         if nothing_else:
             return "None of the listed effects stands out from what is left.", False
-        trifle = near_noise(first.fit, first.diagnosis)
+        trifle = near_noise(first.mae_fit, first.diagnosis.noise)
         what = "Nothing that matters is missing: no" if trifle else "Something is missing, but no"
         return (
             f"{what} listed effect foretells runs that are left out of the fit better than none does.",

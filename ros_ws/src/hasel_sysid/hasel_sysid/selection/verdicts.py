@@ -8,7 +8,7 @@ import numpy as np
 from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict
 from hasel_sysid.diagnosis.adequacy import adequacy
 from hasel_sysid.diagnosis.context import Context, expected_squares
-from hasel_sysid.diagnosis.explained import share_left
+from hasel_sysid.diagnosis.explained import near_noise, share_left
 from hasel_sysid.diagnosis.judgement import RULED_OUT, as_diagnosis, finding
 from hasel_sysid.diagnosis.reached import squares_reached
 from hasel_sysid.diagnosis.signature import signature
@@ -24,11 +24,13 @@ from hasel_sysid.selection.simulated_sets import SimulatedSets
 def diagnosis(
     sets: SimulatedSets, found: Searched, choice: Choice, changes: Mapping[str, np.ndarray]
 ) -> Diagnosis:
-    """Of the baseline: every effect by the weight of the sets that hold it; changes: by finer numerics [frames]."""
+    """Of the baseline: every effect by the weight of the sets that hold it; changes: by finer numerics [frames].
+
+    The weights compare listed effects. Where the chosen set leaves more than noise can, what is missing is none of
+    them, or not they alone, however much likelier one is than the others.
+    """
     context = _context(sets, found, choice, changes)
-    # what none of the effects accounts for
-    left = share_left_by(found, choice.chosen, context.noise) if choice.chosen else 1.0
-    none = left if found.first.chance < found.level else 1.0
+    none = _none_of_them(found, choice, context.noise)
     groups = list(choice.groups)
     findings = [
         replace(finding(context, effect), probability=(1.0 - none) * choice.weight_of(effect.id))
@@ -37,6 +39,13 @@ def diagnosis(
     findings = [_one_answer(one, choice, groups) for one in findings]
     findings.sort(key=lambda one: (-_order(one, choice), context.squares.get(one.effect, np.inf)))
     return as_diagnosis(context, findings, groups, none)
+
+
+def _none_of_them(found: Searched, choice: Choice, noise: NoiseModel) -> float:
+    """Probability that what is missing is not listed effects alone."""
+    if not choice.chosen or not near_noise(found.known[choice.chosen].fit.mean_absolute_error, noise):
+        return 1.0
+    return share_left_by(found, choice.chosen, noise)
 
 
 def _context(
@@ -91,7 +100,7 @@ def _order(one: Finding, choice: Choice) -> float:
     return (
         (2.0 if one.effect in first else 0.0)
         + (1.0 if one.effect in choice.chosen else 0.0)
-        + one.probability
+        + (choice.weight_of(one.effect) if choice.chosen else 0.0)
     )
 
 

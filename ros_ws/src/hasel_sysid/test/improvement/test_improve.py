@@ -79,6 +79,16 @@ def test_what_explains_too_little_is_not_added():
     assert found.unexplained_fraction == 1.0
 
 
+@pytest.mark.parametrize(("hidden", "stranger"), [((), 0.02), (("payload",), 0.01)])
+def test_beside_a_stranger_no_listed_effect_is_probable(hidden, stranger):
+    """However much likelier one is than the others: what is missing is none of them, or not they alone."""
+    found = improved(hidden, stranger)
+    assert found.status is (Status.PARTLY_EXPLAINED if hidden else Status.UNEXPLAINED)
+    assert found.diagnosis.findings[0].effect in (hidden or found.refused)
+    assert found.diagnosis.probability_none == 1.0
+    assert not any(finding.probability for finding in found.diagnosis.findings)
+
+
 def test_the_number_of_effects_is_kept_to():
     """Three are hidden, two may be added: what is left is not called explained."""
     found = improved(("slow_creep", "pre_bend", "gravity_tilt"), most_effects=2)
