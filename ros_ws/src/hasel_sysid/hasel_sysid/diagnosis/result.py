@@ -33,13 +33,14 @@ class Verdict(str, Enum):
 class Finding:
     """What is said of one effect.
 
-    probability: that what is missing are listed effects alone, this one among them; it is nil where they leave more than
-    noise can. expected: its values in SI units (name: value, standard error); error_removed: share of the mean |Δ sin θ| above
-    the noise that it explains, 0 to 1; swallowed: share of its signature that the fitted parameters imitate;
-    visible_above: the smallest size that these recordings would have shown, in the unit of its first parameter; source:
-    where a user's own effect comes from; beside: other effects without which it would not be seen; plausible: lowest
-    and highest value of its first parameter; null: the one at which it does nothing; winner: the effect that is in the
-    model where absence is judged, itself without it; leading: the one of its values that does most, or None.
+    probability: that what is missing are listed effects alone, this one among them; it is nil where they leave more
+    than noise can. expected: its values in SI units (name: value, standard error); error_removed: share of the mean
+    |Δ sin θ| above the noise that it explains, 0 to 1; swallowed: share of its signature that the fitted parameters
+    imitate; visible_above: the smallest size that these recordings would have shown, in the unit of its first
+    parameter; source: where a user's own effect comes from; beside: other effects without which it would not be
+    seen; plausible: lowest and highest value of its first parameter; null: the one at which it does nothing;
+    winner: the effect that is in the model where absence is judged, itself without it; leading: the one of its
+    values that does most, or None.
     """
 
     effect: str
