@@ -169,22 +169,3 @@ def mass_product(masses, elements, columns, out, lane):
                 at = 2 * lanes * (column * nodes + elements[e, a])
                 add(out, at, x)
                 add(out, at + lanes, y)
-
-
-@njit(cache=True, fastmath=True, error_model="numpy")
-def scatter_sites(direct, along, nodes, shape, slope, weights, band, diagonal, lane):
-    """Add site matrices [n, 2, 2, lanes], for values (direct) and tangents (along) of the field, to a band matrix."""
-    lanes, width = len(lane), band.shape[1]
-    for s in range(nodes.shape[0]):
-        for i in range(2):
-            at = (4 * s + 2 * i) * lanes
-            d0, d1 = load(direct, at, lane), load(direct, at + lanes, lane)
-            t0, t1 = load(along, at, lane), load(along, at + lanes, lane)
-            for a in range(nodes.shape[1]):
-                weight = weights[s, a]
-                row = 2 * nodes[s, a] + i
-                for b in range(nodes.shape[1]):
-                    by_value, by_slope = weight * shape[s, b], weight * slope[s, b]
-                    at = (row * width + diagonal + 2 * nodes[s, b] - row) * lanes
-                    add(band, at, by_value * d0 + by_slope * t0)
-                    add(band, at + lanes, by_value * d1 + by_slope * t1)

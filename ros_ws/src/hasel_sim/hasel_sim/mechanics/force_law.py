@@ -1,8 +1,10 @@
 """The derivatives of a force effect's nodal forces, and their places in the matrix."""
 
+from functools import cached_property
+
 import numpy as np
 
-from hasel_sim.mechanics.assembly import scatter_sites
+from hasel_sim.mechanics.law_terms import SiteGroups, add_site_matrix, site_groups
 from hasel_sim.mechanics.laws import by_point
 from hasel_sim.mechanics.motion import DriveState, Motion
 from hasel_sim.mechanics.site_force import SiteForce
@@ -60,10 +62,12 @@ class ForceLaw(SiteForce):
         """Subtract the derivatives, weighted per lane, from a band matrix (the force stands on the right-hand side)."""
         if not self._moved_by:
             return
-        direct, along = self.weighted(position, velocity, acceleration)
-        s = self.sites
-        places = s.nodes, s.shape, s.slope, s.weight
-        scatter_sites(direct, along, *places, band, diagonal, lane_tuple(band.shape[-1]))
+        derivatives = self.weighted(position, velocity, acceleration)
+        add_site_matrix((self._site_groups, *derivatives), band, diagonal, lane_tuple(band.shape[-1]))
+
+    @cached_property
+    def _site_groups(self) -> SiteGroups:
+        return site_groups([(self.sites, self.looks_along)])
 
     def add_directions(
         self, shift: np.ndarray | None, rate: np.ndarray, acceleration: np.ndarray, out: np.ndarray
