@@ -24,11 +24,14 @@ format: build ## rewrite the code in the project's format
 # A test that hangs where no alarm is heard, as in a fixture, ends its process instead of the whole run.
 WATCHED := -o faulthandler_timeout=1200 -o faulthandler_exit_on_timeout=true
 
-# What computes runs two at a time; what keeps time (the driver's heartbeat, nodes) runs alone, and both are run to their end.
+# What computes runs two at a time, the longest first; what keeps time (the driver's heartbeat, nodes) runs alone, and both are run to their end.
+TIMED := ros_ws/src/hasel_driver tests/nodes tests/ros2 tests/setup
+COMPUTING := $(filter-out $(TIMED),$(patsubst %/,%,$(wildcard tests/*/ ros_ws/src/*/)))
+
 test: lint ## lint, then every test but the slow ones
 	@$(ENVIRONMENT) && python -m hasel_sim.first_run && failed=0; \
-	python -m pytest $(WATCHED) -n 2 --dist loadfile $(filter-out %/hasel_driver,$(wildcard ros_ws/src/*)) || failed=1; \
-	python -m pytest $(WATCHED) ros_ws/src/hasel_driver tests || failed=1; \
+	python -m pytest $(WATCHED) -n 2 --dist loadfile --no-loadscope-reorder $(COMPUTING) || failed=1; \
+	python -m pytest $(WATCHED) $(TIMED) || failed=1; \
 	exit $$failed
 
 test-slow: build ## the slow tests

@@ -17,8 +17,7 @@ class _Lanes:
 
     def copy(self):
         """The same in arrays of their own."""
-        arrays = (getattr(self, field.name) for field in fields(self))
-        return type(self)(*(None if a is None else a.copy() for a in arrays))
+        return type(self)(*(None if a is None else a.copy() for a in vars(self).values()))
 
     def put(self, lanes: int | np.ndarray, other, place: int | np.ndarray = 0) -> None:
         """Take over the lanes of another, from these places in it."""

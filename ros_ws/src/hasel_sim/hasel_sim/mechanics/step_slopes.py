@@ -2,15 +2,11 @@
 
 import numpy as np
 
-from hasel_sim.mechanics import branch_loops, slope_loops
-from hasel_sim.mechanics.balance import balance
+from hasel_sim.mechanics import branch_loops, slope_system
 from hasel_sim.mechanics.banded import BandMatrix, singular_matrix
-from hasel_sim.mechanics.banded_lu import clear_band
 from hasel_sim.mechanics.lane_loops import copy_lanes
 from hasel_sim.mechanics.law_table import LawTable
-from hasel_sim.mechanics.law_terms import add_site_matrix
 from hasel_sim.mechanics.linearisation import StrainedSystem
-from hasel_sim.mechanics.newton import factorise, solve
 from hasel_sim.mechanics.part import Part
 from hasel_sim.mechanics.residual_slopes import ResidualSlope, SolidSlope
 from hasel_sim.mechanics.state import State, StateSlopes
@@ -52,60 +48,44 @@ class StepSlopes:
         state, drive, c, lane = part.before, part.drive, part.coefficients, self._lane
         moving = slopes.position, slopes.velocity, slopes.acceleration
         strained = StrainedSystem(self.system, part.motion)
-        driven = self._driven(part)
         self._laws.linearise(strained, drive, c.matrix_weights)
-        self._factorise(part, driven)
-        rate, inertia, instead = self._moved
-        slope_loops.directions(moving, c.to_balance, self._moved, lane)
-        self._right[:] = 0.0
-        slope_loops.right_hand_sides(
-            part.motion.position,
+        _, sites, further = self._laws.terms
+        contraction = np.concatenate([self._at_rest[0], drive.contraction])
+        bad = np.full(self.system.lanes, -1)
+        slope_system.begin(
+            (part.motion.position, part.motion.velocity, part.motion.acceleration),
+            moving,
+            (c.to_balance, c.matrix_weights),
             self._body,
-            driven,
-            (rate, inertia),
+            (self.system.solid.table(c.at), contraction, self._history_of(state, c.at)),
+            (sites, further, self._laws.by_rate),
+            self._found,
+            self._matrix,
+            self._moved,
             np.concatenate([self._at_rest, by_contraction], axis=1),
             self._no_stress if slopes.branch is None else self._carried(slopes, c.at),
-            (self._laws.terms[2][0], self._laws.by_rate),
             self._right,
+            bad,
             lane,
         )
+        if (bad >= 0).all():
+            raise singular_matrix(bad[0])
+        rate, inertia, instead = self._moved
         self._laws.add_directions(rate, inertia, self._right)
-        if by_contraction.any():
+        if self._laws and by_contraction.any():
             self._laws.add_contraction(strained, drive, by_contraction, self._right)
         for column, parameter in enumerate(self.parameters):
             parameter.add(part.motion, drive, strained, state, c.at, self._right[column])
-        slope_loops.pad(self._right, self._padded, lane)
-        solve(self._matrix, self._padded, lane)
-        slope_loops.advance(moving, instead, self._padded, c.to_end, chosen, lane)
+        slope_system.end(self._matrix, self._right, self._padded, moving, instead, c.to_end, chosen, lane)
         if slopes.branch is not None:
             self._advance_branches(part, slopes, chosen)
 
-    def _driven(self, part: Part) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The solid's coefficients, the contraction and what the branches carry, where a step balances."""
-        solid, state, at = self.system.solid, part.before, part.coefficients.at
-        history = (
-            solid.no_history
-            if state.branch is None
-            else solid.branches.history(state.branch, state.green, at)
-        )
-        return solid.table(at), np.concatenate([self._at_rest[0], part.drive.contraction]), history
-
-    def _factorise(self, part: Part, driven: tuple[np.ndarray, np.ndarray, np.ndarray]) -> None:
-        """Factors of the matrix of a step at the motion that it found."""
-        motion = part.motion.position, part.motion.velocity, part.motion.acceleration
-        _, sites, further = self._laws.terms
-        band, reach, (diagonal, _, _), _ = self._matrix
-        (solid, masses, _), (residual, stress) = self._body, self._found
-        clear_band(band, reach, diagonal, self._lane)
-        weights, wanted = part.coefficients.matrix_weights, (True, False)
-        out = residual, stress, band, diagonal
-        balance(motion, solid, driven, further, masses, weights, stress, wanted, out, self._lane)
-        if self._laws:
-            add_site_matrix(sites, band, diagonal, self._lane)
-        bad = np.full(self.system.lanes, -1)
-        factorise(self._matrix, bad, self._lane)
-        if (bad >= 0).all():
-            raise singular_matrix(bad[0])
+    def _history_of(self, state: State, at: float | np.ndarray) -> np.ndarray:
+        """What the branches carry to the balance."""
+        solid = self.system.solid
+        if state.branch is None:
+            return solid.no_history
+        return solid.branches.history(state.branch, state.green, at)
 
     def _carried(self, slopes: StateSlopes, at: float | np.ndarray) -> np.ndarray:
         """Changes of the stress that the branches carry to the balance, [columns, elements, points, 3, lanes]."""
