@@ -65,12 +65,15 @@ def node_alone(name: str, namespace: str | None = None, domain: int | None = Non
 
 @contextmanager
 def quiet_at_shutdown(context: Context | None = None) -> Iterator[None]:
-    """Whatever rclpy raises because its context (None: the default) was shut down meanwhile is no error."""
+    """Whatever rclpy raises because its context (None: the default) was shut down meanwhile is no error.
+
+    A signal in the middle of a message makes pybind11 raise a plain RuntimeError.
+    """
     try:
         yield
     except ExternalShutdownException:
         pass
-    except RCLError:
+    except RuntimeError:
         if rclpy.ok(context=context):
             raise
 

@@ -13,6 +13,7 @@ from rclpy._rclpy_pybind11 import RCLError
 from rclpy.executors import ExternalShutdownException
 
 ILLEGAL = RCLError("Failed to trigger lifecycle state machine transition: Transition is not registered.")
+CUT_SHORT = RuntimeError("Unable to convert call argument '0' to Python object")
 CONTEXT_GONE = RCLError("failed to initialize wait set: the given context is not valid")
 
 
@@ -42,7 +43,7 @@ def spin(monkeypatch):
     return run
 
 
-@pytest.mark.parametrize("last", [CONTEXT_GONE, ExternalShutdownException()])
+@pytest.mark.parametrize("last", [CONTEXT_GONE, CUT_SHORT, ExternalShutdownException()])
 def test_shutting_down_is_not_an_illegal_transition(spin, last):
     """Ctrl-C, which makes rclpy raise from spin, ends it without a word."""
     assert spin(last) == []

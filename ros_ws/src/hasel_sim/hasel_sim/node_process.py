@@ -6,9 +6,8 @@ import sys
 from collections.abc import Callable
 
 import rclpy
-from rclpy._rclpy_pybind11 import RCLError
+from hasel_recording.spinning import quiet_at_shutdown
 from rclpy.exceptions import InvalidParameterValueException
-from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 
 from hasel_sim.errors import HaselSimError
@@ -26,16 +25,14 @@ def run_node(
     rclpy.init()
     node = None
     try:
-        node = make()
-        spin(node)
+        with quiet_at_shutdown():  # which may come while it is being made, too
+            node = make()
+            spin(node)
     except (*errors, InvalidParameterValueException) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
-    except (KeyboardInterrupt, ExternalShutdownException):
+    except KeyboardInterrupt:
         pass
-    except RCLError:
-        if rclpy.ok():  # otherwise it was interrupted while it was being made
-            raise
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in a launch file comes twice
         if node is not None:

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 import rclpy
 from hasel_recording import RecordingError, read_recordings
-from rclpy._rclpy_pybind11 import RCLError
-from rclpy.executors import ExternalShutdownException
+from hasel_recording.spinning import quiet_at_shutdown
 from rich.progress import Progress
 
 from hasel_bringup.errors import BringupError
@@ -35,15 +34,13 @@ def run(options: argparse.Namespace) -> int:
     """Run the command with these options; returns its exit code."""
     rclpy.init()
     try:
-        replay(options.recordings, options.rate, options.expect, options.wait, options.clock)
+        with quiet_at_shutdown():
+            replay(options.recordings, options.rate, options.expect, options.wait, options.clock)
     except (RecordingError, BringupError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 1
-    except (KeyboardInterrupt, ExternalShutdownException):
+    except KeyboardInterrupt:
         pass
-    except RCLError:
-        if rclpy.ok():  # otherwise it was ended in the middle of a message
-            raise
     finally:
         rclpy.try_shutdown()
     return 0
