@@ -12,12 +12,13 @@ class _Lanes:
 
     def lane(self, index: int):
         """What belongs to one lane, as arrays of their own."""
-        arrays = (getattr(self, field.name) for field in fields(self))
+        arrays = vars(self).values()
         return type(self)(*(None if a is None else a[..., index : index + 1].copy() for a in arrays))
 
     def copy(self):
         """The same in arrays of their own."""
-        return type(self)(*(None if a is None else a.copy() for a in vars(self).values()))
+        arrays = vars(self).values()
+        return type(self)(*(None if a is None else a.copy() for a in arrays))
 
     def put(self, lanes: int | np.ndarray, other, place: int | np.ndarray = 0) -> None:
         """Take over the lanes of another, from these places in it."""

@@ -25,9 +25,7 @@ def _measured(share: float) -> Problem:
     return simulated_runs(truth, drives, np.arange(0.0, 2.0, 1 / 60))
 
 
-@pytest.mark.parametrize(
-    ("share", "fewer"), [pytest.param(0.5, POLICY.effort.fits, marks=pytest.mark.slow), (2.0, 0)]
-)
+@pytest.mark.parametrize(("share", "fewer"), [(0.5, POLICY.effort.fits), (2.0, 0)])
 def test_a_wrong_density_is_found_from_afar(share, fewer):
     """No first order leads there from the file's value; over its range it comes near, and a fit goes the rest.
 
