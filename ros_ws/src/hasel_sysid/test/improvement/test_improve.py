@@ -153,3 +153,16 @@ def test_what_is_no_law_is_not_fitted_to_its_last_digit(monkeypatch):
     found = improve(world.measured_of_each(truths), world.model, only=("payload", "pre_bend"))
     assert found.refused == ("payload",)
     assert not [effects for effects in finished if "payload" in effects]
+
+
+def test_what_is_no_law_is_not_probable_however_little_it_leaves():
+    """A mass that goes up by a tenth with the voltage is near the noise with one value, which is refused."""
+    world = MadeUpWorld(1)
+    truth = world.with_typical("payload")
+    masses = {3500.0: 0.009, 4500.0: 0.01, 5500.0: 0.011}
+    truths = {voltage: truth.with_values({"payload.mass": mass}) for voltage, mass in masses.items()}
+    found = improve(world.measured_of_each(truths), world.model, only=("payload",))
+    assert found.status is Status.UNEXPLAINED
+    assert found.refused == ("payload",)
+    assert found.diagnosis.probability_none == 1.0
+    assert found.diagnosis.findings[0].probability == 0.0
