@@ -3,6 +3,8 @@
 import threading
 from collections.abc import Mapping
 
+UNNAMED = "a node whose name is not known yet"
+
 
 class StopHolders:
     """Publishers are told apart by their identifier in the middleware; names are for people. For any thread."""
@@ -19,7 +21,7 @@ class StopHolders:
                 return False
             self._last_sequence[publisher] = sequence
             if asserted:
-                self._holding[publisher] = name
+                self._note(publisher, name)
             else:
                 self._holding.pop(publisher, None)
         return True
@@ -35,11 +37,16 @@ class StopHolders:
         """Who holds the stop; a publisher that is not among those `present` is marked as gone."""
         with self._lock:
             for publisher in self._holding.keys() & present.keys():
-                self._holding[publisher] = present[publisher]  # may have been learnt since
+                self._note(publisher, present[publisher])
             return sorted(
                 name if publisher in present else f"{name} (gone)"
                 for publisher, name in self._holding.items()
             )
+
+    def _note(self, publisher: bytes, name: str) -> None:
+        """A name may be learnt later, and is kept: a node that ends is nameless before its publisher goes."""
+        if name != UNNAMED or publisher not in self._holding:
+            self._holding[publisher] = name
 
     def __bool__(self) -> bool:
         return bool(self._holding)

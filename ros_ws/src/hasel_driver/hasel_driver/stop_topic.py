@@ -9,7 +9,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 from hasel_driver.identified_subscription import IDENTIFIER_BYTES, IdentifiedSubscription
-from hasel_driver.stop_holders import StopHolders
+from hasel_driver.stop_holders import UNNAMED, StopHolders
 
 TYPE = TOPIC_TYPES[EMERGENCY_STOP]
 DEPTH = 100
@@ -70,5 +70,5 @@ class StopTopic:
 
 def _name(info: TopicEndpointInfo) -> str:
     if info.node_name == NOT_KNOWN_YET:
-        return "a node whose name is not known yet"
+        return UNNAMED
     return f"{info.node_namespace.rstrip('/')}/{info.node_name}"

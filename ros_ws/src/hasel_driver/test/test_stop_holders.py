@@ -1,6 +1,6 @@
 """One flag for each publisher."""
 
-from hasel_driver.stop_holders import StopHolders
+from hasel_driver.stop_holders import UNNAMED, StopHolders
 
 A, B = b"a", b"b"
 
@@ -31,3 +31,14 @@ def test_release_names_who_held():
     assert holders.names({}) == ["/a (gone)"]
     assert holders.release() == ["/a"]
     assert not holders
+
+
+def test_a_name_is_learnt_late_and_kept():
+    """A node that ends is nameless for a moment before its publisher goes; who held the stop is still said."""
+    holders = StopHolders()
+    holders.take(A, 1, UNNAMED, True)
+    assert holders.names({A: UNNAMED}) == [UNNAMED]
+    assert holders.names({A: "/a"}) == ["/a"]
+    assert holders.names({A: UNNAMED}) == ["/a"]
+    holders.take(A, 2, UNNAMED, True)
+    assert holders.names({}) == ["/a (gone)"]
