@@ -7,6 +7,7 @@ import numpy as np
 
 from hasel_sim.adjoint.observed import reverse_observation
 from hasel_sim.adjoint.reverse import reverse_start, reverse_step
+from hasel_sim.adjoint.step_back import StepBack
 from hasel_sim.adjoint.trajectory import Trajectory
 from hasel_sim.adjoint.weights import no_weights
 from hasel_sim.mechanics.residual_slopes import ResidualSlope
@@ -67,13 +68,13 @@ def _reversed(
     slopes: list[ResidualSlope] = list(prepared.residual_slopes)
     slopes += [builder.outline_slope(index) for index in range(coefficients)]
     totals = np.concatenate([direct, np.zeros(coefficients)])
-    steps = trajectory.steps
+    steps, back = trajectory.steps, StepBack(prepared.stepper.system)
     contraction = np.zeros((len(steps), prepared.muscles))
     current = no_weights(steps[-1][-1].after if steps else trajectory.start)
     for step in range(len(steps) - 1, -1, -1):
         add_weights(step + 1, current.position[..., 0])
         for part in reversed(steps[step]):
-            current, by_contraction, by_parameter = reverse_step(prepared.stepper, part, current, slopes)
+            current, by_contraction, by_parameter = reverse_step(back, part, current, slopes)
             contraction[step] += by_contraction
             totals += by_parameter
     add_weights(0, current.position[..., 0])

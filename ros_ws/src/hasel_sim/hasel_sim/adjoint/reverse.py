@@ -8,35 +8,34 @@ the multiplier mu = -A^-T g gives every derivative: mu . dR/dc by the contractio
 
 import numpy as np
 
+from hasel_sim.adjoint.step_back import StepBack
 from hasel_sim.adjoint.weights import StateWeights, green_pulled_back, history_pulled_back
 from hasel_sim.mechanics.initial import start_of_motion
-from hasel_sim.mechanics.linearisation import Linearisation
+from hasel_sim.mechanics.linearisation import StrainedSystem
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.residual_slopes import NoSlope, ResidualSlope, SolidSlope
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.statics import equilibrium_multiplier
-from hasel_sim.mechanics.stepper import Part, Stepper
+from hasel_sim.mechanics.stepper import Part
 from hasel_sim.mechanics.system import System
 
 
 def reverse_step(
-    stepper: Stepper,
+    back: StepBack,
     part: Part,
     weights: StateWeights,
     parameters: list[ResidualSlope],
 ) -> tuple[StateWeights, np.ndarray, np.ndarray]:
     """Weights of the state before, the contraction [muscles] and the parameters [n], from those of the state after."""
     before, after, motion, drive, c = part.before, part.after, part.motion, part.drive, part.coefficients
-    system, solid = stepper.system, stepper.system.solid
-    line = system.linearise(motion, drive, system.memory(before, c.at))
+    solid, at = back.system.solid, StrainedSystem(back.system, motion)
     position = weights.position
     if weights.branch is not None:
         left, gain = solid.branches.factors(c.step)
         green = weights.green + np.tensordot(gain[:, 0], weights.branch, 1)
         position = position + green_pulled_back(solid, after.position, green)
     reached = c.end_position * position + c.end_velocity * weights.velocity + weights.acceleration
-    multiplier = -stepper.factorise(line, c).solve(reached[None], transposed=True)[0]
-    by_position, by_velocity, by_acceleration = line.pulled_back(multiplier)
+    multiplier, (by_position, by_velocity, by_acceleration) = back.pull(part, at, reached)
     earlier = StateWeights(
         position + by_position,
         weights.velocity + c.step * position + c.position_v * by_position + by_velocity,
@@ -47,12 +46,12 @@ def reverse_step(
         + c.acceleration_a * by_acceleration,
     )
     if weights.branch is not None:
-        history = history_pulled_back(solid, line.F, multiplier)
+        history = history_pulled_back(solid, at.F, multiplier)
         kept, gained = solid.branches.factors(c.at)
         earlier.branch = left[:, None, None, None] * weights.branch + np.multiply.outer(kept[:, 0], history)
         earlier.green = -np.tensordot(gain[:, 0], weights.branch, 1) - gained.sum() * history
-    contraction = np.tensordot(line.by_contraction(drive), multiplier, 3)
-    by_parameter = _by_parameter(parameters, motion, drive, line, before, c.at, multiplier)
+    contraction = np.tensordot(at.by_contraction(drive), multiplier, 3)
+    by_parameter = _by_parameter(parameters, motion, drive, at, before, c.at, multiplier)
     if weights.branch is not None:
         for column, parameter in enumerate(parameters):
             by_parameter[column] += _by_branch_parameter(parameter, before, after, c.step, weights)
@@ -93,7 +92,7 @@ def _by_parameter(
     parameters: list[ResidualSlope],
     motion: Motion,
     drive: DriveState,
-    line: Linearisation,
+    line: StrainedSystem,
     state: State | None,
     at: float,
     multiplier: np.ndarray,

@@ -1,5 +1,6 @@
 """The derivatives of a force effect's nodal forces, and their places in the matrix."""
 
+from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
@@ -89,10 +90,10 @@ class ForceLaw(SiteForce):
             if field is not None:
                 sites.scatter_products(self._slopes[name], weights, field, out)
 
-    def add_pulled_back(self, weights: np.ndarray, out: np.ndarray) -> None:
-        """Subtract the transposed derivatives times weights [nodes, 2, lanes] from out [3, nodes, 2, lanes].
+    def add_pulled_back(self, weights: np.ndarray, out: Sequence[np.ndarray | None]) -> None:
+        """Subtract the transposed derivatives times weights [nodes, 2, lanes] from out, each [nodes, 2, lanes].
 
-        The first axis of out: by position, velocity and acceleration.
+        out: by position, velocity and acceleration, None for what is not wanted.
         """
         s = self.sites
         here = s.gathered(weights)
@@ -105,8 +106,11 @@ class ForceLaw(SiteForce):
         }
         for name in self._moved_by:
             row, interpolation = places[name]
+            wanted = out[row]
+            if wanted is None:
+                continue
             pulled = np.einsum("nijl,nil->njl", self._slopes[name], here)
-            np.subtract.at(out[row], s.nodes, interpolation[:, :, None, None] * pulled[:, None])
+            np.subtract.at(wanted, s.nodes, interpolation[:, :, None, None] * pulled[:, None])
 
     def add_contraction(self, out: np.ndarray) -> None:
         """Subtract the change of the nodal forces by each muscle's contraction from out [muscles, nodes, 2, lanes]."""

@@ -102,6 +102,11 @@ class LawTable:
         for law in self._system.forces:
             law.add_directions(None, rate, acceleration, out)
 
+    def add_pulled_back(self, weights: np.ndarray, rate: np.ndarray, acceleration: np.ndarray) -> None:
+        """Add to both [nodes, 2, lanes] the transposed derivatives of the forces out of balance times weights."""
+        for law in self._system.forces:
+            law.add_pulled_back(weights, (None, rate, acceleration))
+
     def add_contraction(
         self, at: StrainedSystem, drive: DriveState, by_contraction: np.ndarray, out: np.ndarray
     ) -> None:

@@ -130,5 +130,5 @@ class Linearisation(StrainedSystem):
             assembly.transpose_moduli(moduli, transposed, lane)
             assembly.scatter_directions(transposed, none, *places, weights[None], out[row : row + 1], lane)
         for law in self.system.forces:
-            law.add_pulled_back(self._load_factor * weights, out)
+            law.add_pulled_back(self._load_factor * weights, list(out))
         return self.system.held_to_zero(out)

@@ -67,20 +67,37 @@ def factorise(matrix, bad, lane):
     banded_lu.factorise(band[held:], n - held, half_bandwidth, reach[held:], bad, lane)
 
 
+@njit(inline="always")
+def _unknowns_of(columns, c, unknowns, held, lane):
+    """One right-hand side [1, unknowns and padding, lanes] from the first unknown that is not held, all others zero."""
+    lanes = len(lane)
+    height = 2 * columns.shape[1] * lanes
+    for at in range(c * height, c * height + held * lanes, lanes):
+        store(columns, at, zero(lane))
+    for at in range(c * height + unknowns * lanes, (c + 1) * height, lanes):
+        store(columns, at, zero(lane))
+    own = columns.reshape(columns.shape[0], 2 * columns.shape[1], lanes)[c, held:]
+    return own.reshape(1, own.shape[0], lanes)
+
+
 @njit(cache=True, fastmath=True, error_model="numpy")
 def solve(matrix, columns, lane):
     """Solve in place with the factors for right-hand sides [columns, nodes and padding, 2, lanes]."""
     band, reach, (_, half_bandwidth, held), _ = matrix
-    n, lanes = len(reach), len(lane)
-    height = 2 * columns.shape[1] * lanes
+    n = len(reach)
     for c in range(columns.shape[0]):
-        for at in range(c * height, c * height + held * lanes, lanes):
-            store(columns, at, zero(lane))
-        for at in range(c * height + n * lanes, (c + 1) * height, lanes):
-            store(columns, at, zero(lane))
-        own = columns.reshape(columns.shape[0], 2 * columns.shape[1], lanes)[c, held:]
-        inner = own.reshape(1, own.shape[0], lanes)
-        banded_lu.solve(band[held:], n - held, half_bandwidth, reach[held:], inner, lane)
+        own = _unknowns_of(columns, c, n, held, lane)
+        banded_lu.solve(band[held:], n - held, half_bandwidth, reach[held:], own, lane)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def solve_transposed(matrix, columns, lane):
+    """The same with the transposed matrix."""
+    band, reach, (_, half_bandwidth, held), _ = matrix
+    n = len(reach)
+    for c in range(columns.shape[0]):
+        own = _unknowns_of(columns, c, n, held, lane)
+        banded_lu.solve_transposed(band[held:], n - held, half_bandwidth, reach[held:], own, lane)
 
 
 @njit(cache=True, error_model="numpy")

@@ -3,13 +3,12 @@
 import numpy as np
 
 from hasel_sim.mechanics import branch_loops, slope_system
-from hasel_sim.mechanics.banded import BandMatrix, singular_matrix
 from hasel_sim.mechanics.lane_loops import copy_lanes
-from hasel_sim.mechanics.law_table import LawTable
 from hasel_sim.mechanics.linearisation import StrainedSystem
 from hasel_sim.mechanics.part import Part
 from hasel_sim.mechanics.residual_slopes import ResidualSlope, SolidSlope
 from hasel_sim.mechanics.state import State, StateSlopes
+from hasel_sim.mechanics.step_matrix import StepMatrix
 from hasel_sim.mechanics.system import System
 from hasel_sim.simd import lane_tuple
 
@@ -22,20 +21,15 @@ class StepSlopes:
 
     def __init__(self, system: System, parameters: list[ResidualSlope]) -> None:
         self.system, self.parameters, lanes = system, parameters, system.lanes
-        self._lane, self._laws = lane_tuple(lanes), LawTable(system)
-        solid, matrix = system.solid, BandMatrix(system.mesh.reach, 2 * system.held, lanes)
-        self._body = (*solid.places, solid.muscle, solid.plane_stress), system.mass.masses, system.weight
-        shape = matrix.diagonal, matrix.half_bandwidth, matrix.held
-        self._matrix = matrix.entries, matrix.reach, shape, np.zeros(1, dtype=bool)
-        nodal, points, columns = system.weight.shape, solid.areas.shape, len(parameters)
+        self._lane, self._matrix = lane_tuple(lanes), StepMatrix(system)
+        nodal, points, columns = system.weight.shape, system.solid.areas.shape, len(parameters)
         self._moved = tuple(np.empty((columns, *nodal)) for _ in range(3))
         self._right = np.empty((columns, *nodal))
-        self._padded = np.empty((columns, nodal[0] + matrix.half_bandwidth + 4, 2, lanes))
-        self._found = np.empty(nodal), np.empty((*points, 3, lanes))
+        self._padded = np.empty((columns, nodal[0] + self._matrix.more, 2, lanes))
         self._at_rest = np.zeros((columns, 1, lanes))
         self._no_stress = np.empty((0, *points, 3, lanes))
         self._history = np.empty((columns, *points, 3, lanes))
-        self._branch = np.empty((columns, len(solid.branches), *points, 3, lanes))
+        self._branch = np.empty((columns, len(system.solid.branches), *points, 3, lanes))
 
     def advance(
         self, part: Part, slopes: StateSlopes, by_contraction: np.ndarray, chosen: np.ndarray
@@ -47,20 +41,11 @@ class StepSlopes:
         """
         state, drive, c, lane = part.before, part.drive, part.coefficients, self._lane
         moving = slopes.position, slopes.velocity, slopes.acceleration
-        strained = StrainedSystem(self.system, part.motion)
-        self._laws.linearise(strained, drive, c.matrix_weights)
-        _, sites, further = self._laws.terms
-        contraction = np.concatenate([self._at_rest[0], drive.contraction])
-        bad = np.full(self.system.lanes, -1)
+        strained, bad = StrainedSystem(self.system, part.motion), np.full(self.system.lanes, -1)
         slope_system.begin(
-            (part.motion.position, part.motion.velocity, part.motion.acceleration),
+            self._matrix.at_step(part, strained),
             moving,
-            (c.to_balance, c.matrix_weights),
-            self._body,
-            (self.system.solid.table(c.at), contraction, self._history_of(state, c.at)),
-            (sites, further, self._laws.by_rate),
-            self._found,
-            self._matrix,
+            c.to_balance,
             self._moved,
             np.concatenate([self._at_rest, by_contraction], axis=1),
             self._no_stress if slopes.branch is None else self._carried(slopes, c.at),
@@ -68,24 +53,19 @@ class StepSlopes:
             bad,
             lane,
         )
-        if (bad >= 0).all():
-            raise singular_matrix(bad[0])
+        self._matrix.check(bad)
         rate, inertia, instead = self._moved
-        self._laws.add_directions(rate, inertia, self._right)
-        if self._laws and by_contraction.any():
-            self._laws.add_contraction(strained, drive, by_contraction, self._right)
+        laws = self._matrix.laws
+        laws.add_directions(rate, inertia, self._right)
+        if laws and by_contraction.any():
+            laws.add_contraction(strained, drive, by_contraction, self._right)
         for column, parameter in enumerate(self.parameters):
             parameter.add(part.motion, drive, strained, state, c.at, self._right[column])
-        slope_system.end(self._matrix, self._right, self._padded, moving, instead, c.to_end, chosen, lane)
+        slope_system.end(
+            self._matrix.matrix, self._right, self._padded, moving, instead, c.to_end, chosen, lane
+        )
         if slopes.branch is not None:
             self._advance_branches(part, slopes, chosen)
-
-    def _history_of(self, state: State, at: float | np.ndarray) -> np.ndarray:
-        """What the branches carry to the balance."""
-        solid = self.system.solid
-        if state.branch is None:
-            return solid.no_history
-        return solid.branches.history(state.branch, state.green, at)
 
     def _carried(self, slopes: StateSlopes, at: float | np.ndarray) -> np.ndarray:
         """Changes of the stress that the branches carry to the balance, [columns, elements, points, 3, lanes]."""

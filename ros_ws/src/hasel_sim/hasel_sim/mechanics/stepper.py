@@ -5,9 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from hasel_sim.errors import SimulationError
-from hasel_sim.mechanics.banded import BandFactors, BandMatrix
 from hasel_sim.mechanics.generalised_alpha import StepCoefficients
-from hasel_sim.mechanics.linearisation import Linearisation
 from hasel_sim.mechanics.marcher import Drives, Marcher
 from hasel_sim.mechanics.motion import DriveState, Motion
 from hasel_sim.mechanics.part import Part
@@ -28,7 +26,6 @@ class Stepper:
 
     def __init__(self, system: System, tolerance: float) -> None:
         self.system, self.tolerance = system, tolerance
-        self._matrix: BandMatrix | None = None
         self.marcher: Marcher | None = None
         self.jerk: np.ndarray | None = None
         self.stress: np.ndarray | None = None
@@ -42,11 +39,6 @@ class Stepper:
     def begin(self, jerk: np.ndarray, stress: np.ndarray) -> None:
         """Go on after a step with this rate of the acceleration [m/s^3] and this second Piola stress [Pa]."""
         self.jerk, self.stress = jerk, stress
-
-    def factorise(self, line: Linearisation, c: StepCoefficients) -> BandFactors:
-        """Factors of the derivative of the residual by the end-of-step acceleration."""
-        self._matrix = line.matrix(c.position, c.velocity, c.acceleration, self._matrix)
-        return self._matrix.factorise()
 
     def follow(
         self, state: State, drive: DriveState, c: StepCoefficients, halvings: int = _MOST_HALVINGS

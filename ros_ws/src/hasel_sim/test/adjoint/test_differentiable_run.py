@@ -1,5 +1,7 @@
 """Gradients by the adjoint against gradcheck, forward sensitivities and central differences."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import torch
@@ -11,6 +13,7 @@ from hasel_sim.prepared_run import PreparedRun
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 
+FRICTION = f"{Path(__file__).parent}/film_friction.py:FilmFriction"
 EFFECTS = ("quadratic_drag", "soft_modulus", "viscoelastic_creep", "muscle_asymmetry", "marker_offset")
 
 
@@ -62,9 +65,12 @@ def test_gradient_by_the_activation_series_agrees_with_differences(swimmer, boxe
         assert abs(contraction.grad.view(-1)[index] - expected) < 1e-6 * largest
 
 
-def test_gradient_by_every_parameter_agrees_with_the_forward_sensitivities(swimmer, boxes):
-    """Drive, force, material, branches and observation at once, to 1e-6 of each."""
-    model = _model(swimmer, EFFECTS)
+@pytest.mark.parametrize(
+    "effects", [EFFECTS, ("added_mass", "linear_drag", "tether", "strain_softening", FRICTION)]
+)
+def test_gradient_by_every_parameter_agrees_with_the_forward_sensitivities(effects, swimmer, boxes):
+    """Drive, force, material, branches and observation at once, to 1e-6 of each; a law of the user's own too."""
+    model = _model(swimmer, effects)
     run, names = boxes(duration=0.4), list(model.parameters)
     differentiable = DifferentiableRun(model, run, names)
     values = differentiable.values().requires_grad_()
