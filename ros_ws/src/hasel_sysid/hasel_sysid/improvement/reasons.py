@@ -62,15 +62,17 @@ def _why_here(found: Searched, choice: Choice, policy: Policy, first: Stage) -> 
     """Why the chosen set is the last, in a sentence, and whether nothing else is missing."""
     chance = found.tested(choice.chosen).chance
     nothing_else = chance >= policy.level
+    some = first.diagnosis.not_tried
+    looked_at = "effects that were tried" if some else "listed effects"
     if not choice.chosen:
         if nothing_else and near_noise(first.mae_fit, first.diagnosis.noise):
             return f"Nothing is missing: noise alone looks like this in {chance:.0%} of cases.", True
         if nothing_else:
-            return "None of the listed effects stands out from what is left.", False
+            return f"None of the {looked_at} stands out from what is left.", False
         trifle = near_noise(first.mae_fit, first.diagnosis.noise)
-        what = "Nothing that matters is missing: no" if trifle else "Something is missing, but no"
+        what = "Nothing that matters is missing: none" if trifle else "Something is missing, but none"
         return (
-            f"{what} listed effect foretells runs that are left out of the fit better than none does.",
+            f"{what} of the {looked_at} foretells runs that are left out of the fit better than no effect does.",
             trifle,
         )
     added = listed(in_order(choice, choice.chosen))
@@ -80,7 +82,7 @@ def _why_here(found: Searched, choice: Choice, policy: Policy, first: Stage) -> 
         return f"Effect {policy.most_effects} was the last: more effects could imitate anything.", False
     nearest = f"; nearest was {name_of(found.best)}" if found.best != choice.chosen else ""
     return (
-        f"After adding {added} something is still missing, but no further effect {_CREDIT}{nearest}.",
+        f"After adding {added} something is still missing, but none of the other {looked_at} {_CREDIT}{nearest}.",
         False,
     )
 

@@ -118,6 +118,15 @@ def test_a_search_whose_time_is_over_ends_in_good_order():
     assert found[1].not_tried == []
 
 
+def test_of_what_was_not_tried_nothing_is_said():
+    """What is hidden was not looked at: only of the others it is known that they do not help."""
+    world = MadeUpWorld(1, shared=16)
+    measured = world.measured(world.with_typical("linear_drag"), most_evaluations=0)
+    found = improve(measured, world.model, only=("gain_drift", "linear_drag"))
+    assert "none of the effects that were tried foretells" in found.reason
+    assert "not tried: linear_drag" in found.reason
+
+
 def test_without_candidates_the_baseline_stays():
     """The only effect that was named is in the model already."""
     world = MadeUpWorld(1, shared=16)
