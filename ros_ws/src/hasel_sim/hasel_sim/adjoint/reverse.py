@@ -50,7 +50,8 @@ def reverse_step(
         kept, gained = solid.branches.factors(c.at)
         earlier.branch = left[:, None, None, None] * weights.branch + np.multiply.outer(kept[:, 0], history)
         earlier.green = -np.tensordot(gain[:, 0], weights.branch, 1) - gained.sum() * history
-    contraction = np.tensordot(at.by_contraction(drive), multiplier, 3)
+    by_muscle = at.by_contraction(drive)
+    contraction = by_muscle.reshape(len(by_muscle), multiplier.size) @ multiplier.ravel()
     by_parameter = _by_parameter(parameters, motion, drive, at, before, c.at, multiplier)
     if weights.branch is not None:
         for column, parameter in enumerate(parameters):

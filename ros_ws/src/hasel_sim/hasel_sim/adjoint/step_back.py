@@ -51,5 +51,6 @@ class StepBack:
         velocity, acceleration = self._pulled.copy()
         self._matrix.laws.add_pulled_back(multiplier, velocity, acceleration)
         position = -(reached + c.velocity * velocity + c.acceleration * acceleration) / c.position
-        held = self.system.held_to_zero
-        return multiplier, tuple(held(by[None])[0] for by in (position, velocity, acceleration))  # type: ignore[return-value]
+        for by in (position, velocity, acceleration):
+            by[: self.system.held] = 0.0
+        return multiplier, (position, velocity, acceleration)
