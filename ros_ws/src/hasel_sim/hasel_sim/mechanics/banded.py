@@ -4,7 +4,6 @@ import numpy as np
 
 from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics import banded_lu
-from hasel_sim.mechanics.banded_lu import clear_band
 from hasel_sim.simd import lane_tuple
 
 
@@ -30,18 +29,6 @@ class BandMatrix:
         # odd, lest the rows of a column share one set of the cache
         width = (banded_lu.LEFT + 2 * half_bandwidth + 1 + banded_lu.RIGHT) | 1
         self.entries = np.zeros((unknowns + half_bandwidth + 8, width, lanes))
-        self._spoilt = False
-
-    def clear(self) -> None:
-        """Set every entry to zero."""
-        self.wipe()
-        clear_band(self.entries, self.reach, self.diagonal, lane_tuple(self.entries.shape[2]))
-
-    def wipe(self) -> None:
-        """Take out what factors that are no numbers have left beyond the band, where `clear_band` does not look."""
-        if self._spoilt:
-            self.entries.fill(0.0)
-            self._spoilt = False
 
     def factorise(self) -> "BandFactors":
         """LU factors without pivoting; the matrix itself is used up.
@@ -56,7 +43,6 @@ class BandMatrix:
         inner, free = self.entries[self.held :], self.unknowns - self.held
         reach, bad = self.reach[self.held :], np.full(lanes, -1)
         banded_lu.factorise(inner, free, self.half_bandwidth, reach, bad, lane_tuple(lanes))
-        self._spoilt = bool((bad >= 0).any() or not np.isfinite(inner[free - 1]).all())
         if (bad >= 0).all():
             raise singular_matrix(bad[0])
         return BandFactors(inner, reach, self.half_bandwidth, self.held, bad >= 0)

@@ -58,14 +58,10 @@ class Linearisation(StrainedSystem):
         position: float | np.ndarray,
         velocity: float | np.ndarray,
         acceleration: float | np.ndarray,
-        out: BandMatrix | None = None,
     ) -> BandMatrix:
-        """position K + velocity C + acceleration M, weighted per lane; into `out`, whose factors are then lost."""
+        """position K + velocity C + acceleration M, weighted per lane."""
         lanes = self.system.lanes
-        if out is None:
-            out = BandMatrix(self.system.mesh.reach, 2 * self.system.held, lanes)
-        else:
-            out.clear()
+        out = BandMatrix(self.system.mesh.reach, 2 * self.system.held, lanes)
         weights = np.empty((3, lanes))
         weights[0], weights[1], weights[2] = position, velocity, acceleration
         assembly.scatter_matrix(

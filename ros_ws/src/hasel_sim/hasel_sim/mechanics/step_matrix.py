@@ -12,8 +12,8 @@ from hasel_sim.mechanics.system import System
 class StepMatrix:
     """Room for the matrix, and what the compiled calls of `slope_system` take of a step.
 
-    laws: the system's effects, differentiated at the step that `at_step` was called for; more: nodes behind those of
-    the mesh that a right-hand side has.
+    laws: the system's effects, differentiated at the step that `at_step` was called for; matrix: as in `march`; more:
+    nodes behind those of the mesh that a right-hand side has.
     """
 
     def __init__(self, system: System) -> None:
@@ -21,22 +21,18 @@ class StepMatrix:
         solid, matrix = system.solid, BandMatrix(system.mesh.reach, 2 * system.held, system.lanes)
         self._body = (*solid.places, solid.muscle, solid.plane_stress), system.mass.masses, system.weight
         shape = matrix.diagonal, matrix.half_bandwidth, matrix.held
-        self._matrix = matrix.entries, matrix.reach, shape, np.zeros(1, dtype=bool)
+        self.matrix = matrix.entries, matrix.reach, shape, np.zeros(1, dtype=bool)
         self._found = np.empty(system.weight.shape), np.empty((*solid.areas.shape, 3, system.lanes))
         self._at_rest = np.zeros((1, system.lanes))
         self.more = matrix.half_bandwidth + 4
-
-    @property
-    def matrix(self) -> tuple:
-        """As in `march`."""
-        return self._matrix
 
     def at_step(self, part: Part, at: StrainedSystem, transposed: bool = False) -> tuple:
         """Motion, weights of the matrix, body, drive, laws, room for a residual and a stress, matrix.
 
         at: the system at the step's motion; transposed: the derivative of the further stress by the rate.
         """
-        motion, drive, c = part.motion, part.drive, part.coefficients
+        motion, drive, c, solid = part.motion, part.drive, part.coefficients, self.system.solid
+        history = self.system.memory(part.before, c.at).history
         self.laws.linearise(at, drive, c.matrix_weights)
         _, sites, further = self.laws.terms
         by_rate = self.laws.by_rate
@@ -47,18 +43,11 @@ class StepMatrix:
             (motion.position, motion.velocity, motion.acceleration),
             c.matrix_weights,
             self._body,
-            (self.system.solid.table(c.at), contraction, self._history(part)),
+            (solid.table(c.at), contraction, solid.no_history if history is None else history),
             (sites, further, by_rate),
             self._found,
-            self._matrix,
+            self.matrix,
         )
-
-    def _history(self, part: Part) -> np.ndarray:
-        """What the branches carry to the balance."""
-        solid, state = self.system.solid, part.before
-        if state.branch is None:
-            return solid.no_history
-        return solid.branches.history(state.branch, state.green, part.coefficients.at)
 
     @staticmethod
     def check(bad: np.ndarray) -> None:

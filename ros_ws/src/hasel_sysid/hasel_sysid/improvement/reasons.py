@@ -62,8 +62,7 @@ def _why_here(found: Searched, choice: Choice, policy: Policy, first: Stage) -> 
     """Why the chosen set is the last, in a sentence, and whether nothing else is missing."""
     chance = found.tested(choice.chosen).chance
     nothing_else = chance >= policy.level
-    some = first.diagnosis.not_tried
-    looked_at = "effects that were tried" if some else "listed effects"
+    looked_at = "effects that were tried" if first.diagnosis.not_tried else "listed effects"
     if not choice.chosen:
         if nothing_else and near_noise(first.mae_fit, first.diagnosis.noise):
             return f"Nothing is missing: noise alone looks like this in {chance:.0%} of cases.", True
