@@ -8,15 +8,18 @@ from hasel_sim.adjoint.step_back import StepBack
 from hasel_sim.adjoint.trajectory import follow
 from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.linearisation import StrainedSystem
+from hasel_sim.model import load_model
 from hasel_sim.prepared_run import PreparedRun
+from hasel_sim.run import Run
 
 
 @pytest.fixture
-def part(swimmer, boxes):
-    """A step in the middle of a run with drag and a creep, and the system that made it."""
-    model = swimmer.with_numerics(mesh_density=0.5).with_effects("quadratic_drag", "viscoelastic_creep")
+def part():
+    """A step of a clamped beam that was let go, with drag and a creep, and the system that made it."""
+    model = load_model("beam").with_effects("quadratic_drag", "viscoelastic_creep")
     typical = {f"{e.id}.{p.name}": p.typical for e in model.effects for p in e.parameters}
-    prepared = PreparedRun(model.with_values(typical), boxes(duration=0.1))
+    run = Run("let go", np.arange(0.0, 0.1, 1 / 60), None, "static_equilibrium", 1.4)
+    prepared = PreparedRun(model.with_values(typical), run)
     trajectory = follow(prepared, prepared.contraction(prepared.plan.balance_times))
     return prepared.stepper.system, trajectory.steps[12][0]
 
