@@ -4,9 +4,16 @@ import multiprocessing
 import os
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor
+from concurrent.futures import (
+    CancelledError,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+)
 from contextlib import contextmanager
 from functools import partial
+from typing import TypeVar
 
 from threadpoolctl import threadpool_limits
 
@@ -15,6 +22,9 @@ from hasel_sim.model import Model
 from hasel_sim.run import Run, Simulation
 from hasel_sim.simd import LANES
 from hasel_sim.simulate import simulate_many
+from hasel_sim.turns import Turns
+
+Result = TypeVar("Result")
 
 
 class SerialExecutor(Executor):
@@ -71,8 +81,8 @@ def _executor(jobs: int | None, scheduler: str | None) -> Iterator[Executor]:
                 "tcp://127.0.0.1:8786: start one with 'dask scheduler'"
             ) from None
         with client, client.get_executor() as pool:
-            pool.workers = max(1, len(client.nthreads()))
-            yield pool
+            workers = max(1, len(client.nthreads()))
+            yield Turns(pool, workers) if workers > 1 else pool
         return
     count = worker_count(jobs)
     if count == 1:
@@ -80,12 +90,22 @@ def _executor(jobs: int | None, scheduler: str | None) -> Iterator[Executor]:
         return
     context = multiprocessing.get_context("forkserver")
     with ProcessPoolExecutor(count, mp_context=context, initializer=_start_worker) as pool:
-        pool.workers = count  # type: ignore[attr-defined]
         try:
-            yield pool
+            yield Turns(pool, count)
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
+
+
+def all_at_once(pool: Executor, calls: Sequence[Callable[[], Result]]) -> list[Result]:
+    """Results of calls that have a pool simulate, in their order.
+
+    Where it has several processes the calls go on at once: what one of them leaves idle another uses.
+    """
+    if not isinstance(pool, Turns) or len(calls) < 2:
+        return [call() for call in calls]
+    with ThreadPoolExecutor(len(calls)) as threads:
+        return [future.result() for future in [threads.submit(call) for call in calls]]
 
 
 def submit_all(

@@ -2,9 +2,11 @@
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 
 from hasel_sim.errors import HaselSimError, SimulationError
 from hasel_sim.model import Model
+from hasel_sim.parallel import all_at_once
 
 from hasel_sysid.diagnosis.candidates import is_place
 from hasel_sysid.diagnosis.step import bounded_step
@@ -58,8 +60,8 @@ def deepest(problem: Problem, fit: FitResult, effects: Collection[str], most_eva
     except SimulationError:
         return fit
     promising = sorted(_promised(drafts, begins), key=lambda pair: pair[0])[:_FOLLOWED]
-    found = filter(None, (_fitted(drafts, model, 1e-2, _SHORT) for _, model in promising))
-    best = min(found, key=_squares, default=fit)
+    fits = [partial(_fitted, drafts, model, 1e-2, _SHORT) for _, model in promising]
+    best = min(filter(None, all_at_once(problem.pool, fits)), key=_squares, default=fit)
     if _squares(best) >= _LOWER * _squares(fit):
         return fit
     deeper = _fitted(problem, fit.model.with_values(best.model.values), 1e-3, most_evaluations)

@@ -1,6 +1,6 @@
 """The search over sets of effects: add, exchange, drop; what promises most is fitted in full."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Protocol
@@ -82,8 +82,7 @@ class _Search(StandIns):
             return True
         self.fit(self.singles(), self.policy.effort.fits - sum(map(bool, plausible(self.known))))
         beam = self.beam()
-        for one in beam:
-            self.look_beyond_if_anything_is_missing(one)
+        self.look_beyond_where_anything_is_missing(beam)
         around = self.better(self.around(beam))
         return self.fit(around, self.policy.effort.fits, enough=self.promises_less) > 0
 
@@ -115,24 +114,32 @@ class _Search(StandIns):
 
     def look_beyond(self, effects: EffectSet, wanted: list[str] | None) -> None:
         """Learn what one more effect could do to a set."""
-        self.say(f"looking beyond {name_of(effects)}", 0.1 * min(len(self.known), 5))
-        self.prospects[effects] = self.sets.prospects(
-            self.known[effects], wanted, self.likelihood.promised, self.policy.effort.trials
-        )
+        self.look_beyond_each({effects: wanted})
 
-    def look_beyond_if_anything_is_missing(self, effects: EffectSet) -> None:
-        """The same for the effects whose score is more than noise alone makes of it, and for those that cost nothing.
+    def look_beyond_each(self, wanted: Mapping[EffectSet, Collection[str] | None]) -> None:
+        """The same of several sets, with the effects that are wanted beside each of them."""
+        self.say(f"looking beyond {', '.join(map(name_of, wanted))}", 0.1 * min(len(self.known), 5))
+        looks = [(self.known[effects], names) for effects, names in wanted.items()]
+        seen = self.sets.prospects_of_each(looks, self.likelihood.promised, self.policy.effort.trials)
+        self.prospects.update(zip(wanted, seen, strict=True))
+
+    def look_beyond_where_anything_is_missing(self, beam: Sequence[EffectSet]) -> None:
+        """The same of these sets, as far as none was looked beyond yet."""
+        new = [s for s in beam if s not in self.prospects and len(s) < self.policy.most_effects]
+        if new and not self.sets.out_of_time():
+            self.look_beyond_each({effects: self.promising_beside(effects) for effects in new})
+
+    def promising_beside(self, effects: EffectSet) -> list[str]:
+        """The effects whose score is more than noise alone makes of it, and those that cost nothing.
 
         Beside the baseline, where that score is from, two wrong constants may look alike that together are the answer.
         """
-        if effects in self.prospects or len(effects) >= self.policy.most_effects or self.sets.out_of_time():
-            return
         test = self.tested(effects)
         promising = sorted(test.gains, key=lambda effect: -test.gains[effect])[
             : 2 * self.policy.effort.trials
         ]
         wanted = [e for e in promising if test.gains[e] > test.threshold and self.could_matter(e, effects)]
-        self.look_beyond(effects, list(dict.fromkeys([*wanted, *self.sets.at_null])))
+        return list(dict.fromkeys([*wanted, *self.sets.at_null]))
 
     def singles(self) -> list[Proposal]:
         """Sets of one effect, most promising first."""

@@ -128,6 +128,14 @@ class Sets(Protocol):
         sized: sets in which effects have the values from which they are to be looked at.
         """
 
+    def prospects_of_each(
+        self,
+        looks: Sequence[tuple[FittedSet, Collection[str] | None]],
+        rank: Callable[[Prospect], float],
+        most: int,
+    ) -> list[dict[str, Prospect]]:
+        """The same beside several sets, each with the effects that are wanted there."""
+
     def from_other_sizes(self, of: FittedSet, prospect: Prospect) -> Prospect | None:
         """The same effect beside the same set from where other sizes lead; None where there are none."""
 

@@ -1,11 +1,13 @@
 """Sets of effects of the simulator: drafts for a first look, full fits for what is compared."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import partial
 
 import numpy as np
 from hasel_sim.effects.base import Effect
 from hasel_sim.errors import HaselSimError
 from hasel_sim.model import Model
+from hasel_sim.parallel import all_at_once
 
 from hasel_sysid.diagnosis.candidates import Start, starts, valued
 from hasel_sysid.diagnosis.side_by_side import go_together
@@ -116,6 +118,13 @@ class SimulatedSets:
             moved = [prospect_of(t, looks, of.effects) for t in trials.further([p.start for p in going_on])]
             best = best_of_each([*moved, *(p for p in best if p not in going_on)], rank)
         return {prospect.effect: prospect for prospect in best}
+
+    def prospects_of_each(
+        self, looks: Sequence[tuple[FittedSet, Collection[str] | None]], rank: Rank, most: int
+    ) -> list[dict[str, Prospect]]:
+        """The same beside several sets, side by side where there are processes for it."""
+        calls = [partial(self.prospects, of, wanted, rank, most) for of, wanted in looks]
+        return all_at_once(self.problem.pool, calls)
 
     def from_other_sizes(self, of: FittedSet, prospect: Prospect) -> Prospect | None:
         """The same effect from a quarter to four times the size that it was tried at."""

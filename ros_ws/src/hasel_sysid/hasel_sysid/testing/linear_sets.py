@@ -90,6 +90,15 @@ class LinearSets:
         names = [name for name in (self.series if wanted is None else wanted) if name not in of.effects]
         return {name: self._prospect(of, name) for name in names}
 
+    def prospects_of_each(
+        self,
+        looks: Sequence[tuple[FittedSet, Collection[str] | None]],
+        rank: Callable[[Prospect], float],
+        most: int,
+    ) -> list[dict[str, Prospect]]:
+        """One after the other."""
+        return [self.prospects(of, wanted, rank, most) for of, wanted in looks]
+
     def foresee(self, likely: Sequence[Wanted]) -> None:
         """Keep in mind what was said to be likely."""
         self.foreseen = [effects for effects, _, _ in likely]

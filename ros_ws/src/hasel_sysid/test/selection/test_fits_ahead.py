@@ -1,34 +1,30 @@
 """Fits that are begun before they are asked for."""
 
 from collections.abc import Callable
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from functools import partial
 from threading import Event
 
 import pytest
+from hasel_sim.parallel import SerialExecutor
+from hasel_sim.turns import Turns
 from hasel_sysid.estimation import fit_least_squares
 from hasel_sysid.problem import Problem
-from hasel_sysid.selection.fits_ahead import FitsAhead, UnaskedError
+from hasel_sysid.selection.fits_ahead import FitsAhead
 
 PATIENCE_S = 60.0
 
 
-class Processes(Executor):
-    """Threads that call themselves so many processes."""
-
-    def __init__(self, workers: int) -> None:
-        self.workers, self._threads = workers, ThreadPoolExecutor(workers)
-
-    def submit(self, function: Callable, /, *arguments, **keywords) -> Future:
-        """Hand on to a thread."""
-        return self._threads.submit(function, *arguments, **keywords)
-
-
 @pytest.fixture
 def problem_with(bent_swimmer) -> Callable[[int], Problem]:
-    """The bent swimmer's run, with so many processes to simulate it."""
+    """The bent swimmer's run, with so many threads in the place of processes to simulate it."""
     problem, _ = bent_swimmer
-    return lambda workers: Problem(problem.experiments, Processes(workers))
+
+    def made(workers: int) -> Problem:
+        pool = Turns(ThreadPoolExecutor(workers), workers) if workers > 1 else SerialExecutor()
+        return Problem(problem.experiments, pool)
+
+    return made
 
 
 def test_a_fit_that_was_foreseen_is_not_made_again_and_ends_where_it_would_have(problem_with, bent_swimmer):
@@ -86,7 +82,7 @@ def test_what_is_no_longer_likely_is_given_up(problem_with, bent_swimmer):
         given_up.wait(PATIENCE_S)
         try:
             of.evaluate(evaluation.model)
-        except UnaskedError as error:
+        except CancelledError as error:
             raised.append(error)
         ended.set()
 
