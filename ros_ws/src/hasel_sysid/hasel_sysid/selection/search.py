@@ -77,14 +77,22 @@ class _Search(StandIns):
     def extended(self) -> bool:
         """Whether anything promised more than the best set and was fitted."""
         if self.fit(
-            self.better(self.additions([NOTHING])), self.policy.effort.fits, enough=self.promises_less
+            self.better(self.additions([NOTHING])), self.policy.effort.fits, enough=self.needless
         ):
             return True
         self.fit(self.singles(), self.policy.effort.fits - sum(map(bool, plausible(self.known))))
         beam = self.beam()
         self.look_beyond_where_anything_is_missing(beam)
         around = self.better(self.around(beam))
-        return self.fit(around, self.policy.effort.fits, enough=self.promises_less) > 0
+        return self.fit(around, self.policy.effort.fits, enough=self.needless) > 0
+
+    def needless(self, proposal: Proposal, answers: int) -> bool:
+        """Whether it promises less than what was reached, or is larger than a set that wants nothing."""
+        if self.promises_less(proposal, answers):
+            return True
+        best = self.judged().best
+        larger = len(proposal.effects) > len(best)
+        return larger and not self.anything_missing() and not self.fails(best)
 
     def beam(self) -> list[EffectSet]:
         """The best sets, and the likeliest one where its values are out of range: it is no answer itself, but an

@@ -149,3 +149,26 @@ def test_the_best_law_is_extended_by_what_promises_little(seed):
         sets, POLICY, stand_ins=False, judges=Judged(is_law=lambda effects: effects <= frozenset("cd"))
     )
     assert choose(found, POLICY, lambda effects: effects <= frozenset("cd")).chosen == frozenset("cd")
+
+
+class _SeenLate(LinearSets):
+    """What b promises is seen beside two effects only; until then c, which looks like it, is."""
+
+    def prospects(self, of, wanted, rank, most, sized=None):
+        """As of sets, b without room to move where it is not seen."""
+        seen = super().prospects(of, wanted, rank, most, sized)
+        if "b" in seen and len(of.effects) < 2:
+            room = np.array([*of.upper, 0.0])
+            seen["b"] = replace(seen["b"], lower=np.array([*of.lower, 0.0]), upper=room)
+        return seen
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_wants_nothing_is_not_extended(seed):
+    """The third effect may come beside a stand-in or in its place, where a fit leaves nothing to be fitted further."""
+    series = made_up(seed)
+    series["c"] = series["b"] + 0.7 * series["c"]
+    found = search(_SeenLate(series, {"a": 0.3, "b": 0.2}, WHITE, seed), POLICY)
+    assert choose(found, POLICY).chosen == frozenset("ab")
+    assert frozenset("ac") in found.known
+    assert max(map(len, found.known)) == 2
