@@ -76,9 +76,7 @@ class _Search(StandIns):
 
     def extended(self) -> bool:
         """Whether anything promised more than the best set and was fitted."""
-        if self.fit(
-            self.better(self.additions([NOTHING])), self.policy.effort.fits, enough=self.needless
-        ):
+        if self.fit(self.better(self.additions([NOTHING])), self.policy.effort.fits, enough=self.needless):
             return True
         self.fit(self.singles(), self.policy.effort.fits - sum(map(bool, plausible(self.known))))
         beam = self.beam()

@@ -91,6 +91,10 @@ def together(of: FittedSet, added: Sequence[Prospect], dropped: Collection[str])
 
 Wanted = tuple[EffectSet, FittedSet, Sequence[Prospect]]
 """A fit that may be asked for."""
+Rank = Callable[[Prospect], float]
+"""How much a prospect is worth, by which the best of each effect is told."""
+Look = tuple[FittedSet, Collection[str] | None]
+"""A set that is looked beyond, and the effects that are wanted beside it: all of them, where that is None."""
 
 
 class Sets(Protocol):
@@ -119,7 +123,7 @@ class Sets(Protocol):
         self,
         of: FittedSet,
         wanted: Collection[str] | None,
-        rank: Callable[[Prospect], float],
+        rank: Rank,
         most: int,
         sized: Mapping[str, FittedSet] | None = None,
     ) -> dict[str, Prospect]:
@@ -128,12 +132,7 @@ class Sets(Protocol):
         sized: sets in which effects have the values from which they are to be looked at.
         """
 
-    def prospects_of_each(
-        self,
-        looks: Sequence[tuple[FittedSet, Collection[str] | None]],
-        rank: Callable[[Prospect], float],
-        most: int,
-    ) -> list[dict[str, Prospect]]:
+    def prospects_of_each(self, looks: Sequence[Look], rank: Rank, most: int) -> list[dict[str, Prospect]]:
         """The same beside several sets, each with the effects that are wanted there."""
 
     def from_other_sizes(self, of: FittedSet, prospect: Prospect) -> Prospect | None:

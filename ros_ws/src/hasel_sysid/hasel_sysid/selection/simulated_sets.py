@@ -22,10 +22,9 @@ from hasel_sysid.selection.known_set import known_set
 from hasel_sysid.selection.noise_bound import bounded_noise
 from hasel_sysid.selection.other_valleys import deepest
 from hasel_sysid.selection.set_fits import SetFits
-from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Prospect, Wanted
+from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Look, Prospect, Rank, Wanted
 from hasel_sysid.selection.sized_starts import Expected, expected_beside, overlooked
 from hasel_sysid.selection.trial_prospects import (
-    Rank,
     best_of_each,
     from_other_sizes,
     looks_of,
@@ -119,9 +118,7 @@ class SimulatedSets:
             best = best_of_each([*moved, *(p for p in best if p not in going_on)], rank)
         return {prospect.effect: prospect for prospect in best}
 
-    def prospects_of_each(
-        self, looks: Sequence[tuple[FittedSet, Collection[str] | None]], rank: Rank, most: int
-    ) -> list[dict[str, Prospect]]:
+    def prospects_of_each(self, looks: Sequence[Look], rank: Rank, most: int) -> list[dict[str, Prospect]]:
         """The same beside several sets, side by side where there are processes for it."""
         calls = [partial(self.prospects, of, wanted, rank, most) for of, wanted in looks]
         return all_at_once(self.problem.pool, calls)

@@ -1,20 +1,17 @@
 """What trials of effects on a draft of the model promise."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from hasel_sysid.diagnosis.candidates import resized
 from hasel_sysid.diagnosis.step import room
 from hasel_sysid.diagnosis.trial import Trial, Trials
-from hasel_sysid.selection.sets import EffectSet, Prospect
+from hasel_sysid.selection.sets import EffectSet, Prospect, Rank
 
 _OTHER_SIZES = (0.25, 0.5, 2.0, 4.0)
 _FOLLOWED = 2
 """Of the other sizes, those whose next step promises most."""
-
-Rank = Callable[[Prospect], float]
-"""How much a prospect is worth, by which the best of each effect is told."""
 
 
 def from_other_sizes(trials: Trials, of: Prospect) -> Prospect | None:

@@ -1,12 +1,12 @@
 """A problem of sets of effects without a simulator: every effect adds a known series, and the noise is known."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from hasel_sysid.noise import NoiseModel
-from hasel_sysid.selection.sets import EffectSet, FittedSet, Prospect, Wanted
+from hasel_sysid.selection.sets import EffectSet, FittedSet, Look, Prospect, Rank, Wanted
 
 RUNS, FRAMES = 8, 80
 
@@ -82,7 +82,7 @@ class LinearSets:
         self,
         of: FittedSet,
         wanted: Collection[str] | None,
-        rank: Callable[[Prospect], float],
+        rank: Rank,
         most: int,
         sized: Mapping[str, FittedSet] | None = None,
     ) -> dict[str, Prospect]:
@@ -90,12 +90,7 @@ class LinearSets:
         names = [name for name in (self.series if wanted is None else wanted) if name not in of.effects]
         return {name: self._prospect(of, name) for name in names}
 
-    def prospects_of_each(
-        self,
-        looks: Sequence[tuple[FittedSet, Collection[str] | None]],
-        rank: Callable[[Prospect], float],
-        most: int,
-    ) -> list[dict[str, Prospect]]:
+    def prospects_of_each(self, looks: Sequence[Look], rank: Rank, most: int) -> list[dict[str, Prospect]]:
         """One after the other."""
         return [self.prospects(of, wanted, rank, most) for of, wanted in looks]
 
