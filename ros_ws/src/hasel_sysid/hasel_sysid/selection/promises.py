@@ -26,11 +26,15 @@ class Promises(Knowledge):
         # at d standard errors the error itself is at most 2 d, and the ratio 2 d^2: half its square is what it costs
         return 2 * self.policy.doubt**2
 
+    def likeliest(self) -> EffectSet:
+        """The known set whose values are in range that is worth most."""
+        return max(plausible(self.known), key=self.value)
+
     def better(self, proposals: Iterable[Proposal]) -> list[Proposal]:
         """Those that promise more than the best known set, most promising first; what an effect is added to may be
         likelier than that one, and out of range: what takes nothing away from it does not mend it.
         """
-        best = max(plausible(self.known), key=self.value)
+        best = self.likeliest()
         ranked = self.ranked(proposals, self.value(best), self.threshold)
         more = [p for p in ranked if len(p.effects) <= len(best) or self.matters(p, best)]
         return [p for p in more if p.dropped or self.matters(p, p.of.effects)]
@@ -39,7 +43,7 @@ class Promises(Knowledge):
         """Whether it promises less than what was reached, with as many possible answers as a beam is wide."""
         if answers < self.policy.effort.width:
             return False
-        reached = max(map(self.value, plausible(self.known))) - self.reach
+        reached = self.value(self.likeliest()) - self.reach
         return self.promised(proposal) - self.threshold * len(proposal.effects) < reached
 
     def matters(self, proposal: Proposal, best: EffectSet) -> bool:

@@ -42,7 +42,7 @@ def search(
     """
     known = {f.effects: f for f in (sets.baseline(), *begun)}
     state = _Search(sets, policy, known, progress=progress, judges=judges)
-    state.look_beyond(NOTHING, None)
+    state.look_beyond({NOTHING: None})
     state.fit(state.singles(), 1, even_late=True)
     while True:
         more = state.anything_missing() and state.extended()
@@ -88,9 +88,11 @@ class _Search(StandIns):
         """Whether it promises less than what was reached, or is larger than a set that wants nothing."""
         if self.promises_less(proposal, answers):
             return True
-        best = self.judged().best
-        larger = len(proposal.effects) > len(best)
-        return larger and not self.anything_missing() and not self.fails(best)
+        best = self.likeliest()
+        # the test of what is missing draws noise and judges every set: it is made only where little is left
+        if len(proposal.effects) <= len(best) or self.leaves_what_matters(best):
+            return False
+        return not self.anything_missing() and not self.fails(best)
 
     def beam(self) -> list[EffectSet]:
         """The best sets, and the likeliest one where its values are out of range: it is no answer itself, but an
@@ -109,7 +111,7 @@ class _Search(StandIns):
         if known or self.sets.out_of_time() or not (self.leaves_what_matters(best) or self.fails(best)):
             return False
         self.closely.add(best)
-        self.look_beyond(best, None)
+        self.look_beyond({best: None})
         return True
 
     def fails(self, effects: EffectSet) -> bool:
@@ -118,12 +120,8 @@ class _Search(StandIns):
         """
         return self.judges is not None and not self.judges.described(self.judged(), effects)
 
-    def look_beyond(self, effects: EffectSet, wanted: list[str] | None) -> None:
-        """Learn what one more effect could do to a set."""
-        self.look_beyond_each({effects: wanted})
-
-    def look_beyond_each(self, wanted: Mapping[EffectSet, Collection[str] | None]) -> None:
-        """The same of several sets, with the effects that are wanted beside each of them."""
+    def look_beyond(self, wanted: Mapping[EffectSet, Collection[str] | None]) -> None:
+        """Learn what one more effect of those that are wanted (None: any) could do to each of these sets."""
         self.say(f"looking beyond {', '.join(map(name_of, wanted))}", 0.1 * min(len(self.known), 5))
         looks = [(self.known[effects], names) for effects, names in wanted.items()]
         seen = self.sets.prospects_of_each(looks, self.likelihood.promised, self.policy.effort.trials)
@@ -133,7 +131,7 @@ class _Search(StandIns):
         """The same of these sets, as far as none was looked beyond yet."""
         new = [s for s in beam if s not in self.prospects and len(s) < self.policy.most_effects]
         if new and not self.sets.out_of_time():
-            self.look_beyond_each({effects: self.promising_beside(effects) for effects in new})
+            self.look_beyond({effects: self.promising_beside(effects) for effects in new})
 
     def promising_beside(self, effects: EffectSet) -> list[str]:
         """The effects whose score is more than noise alone makes of it, and those that cost nothing.
@@ -206,7 +204,7 @@ class _Search(StandIns):
             return
         if law not in self.closely:
             self.closely.add(law)
-            self.look_beyond(law, None)
+            self.look_beyond({law: None})
         beside = [p for p in self.ranked(self.additions([law])) if self.matters(p, law)]
         self.fit(beside, self.policy.effort.fits, enough=lambda *_: self.may_be_a_law(chosen))
 
