@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Sequence
 from concurrent.futures import Executor
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -95,6 +96,14 @@ class Problem:
         """Largest |sin theta| from the mean of its run, in all runs."""
         series = [e.sin_theta[np.isfinite(e.sin_theta)] for e in self.experiments]
         return max((float(np.abs(s - s.mean()).max()) for s in series if len(s)), default=0.0)
+
+    def with_experiments(self, experiments: Sequence[Experiment]) -> "Problem":
+        """The same with parts of its runs or some of them, in as much noise."""
+        out = copy(self)
+        out.experiments, out.evaluations, out._noise = tuple(experiments), 0, self.measured_noise
+        for measured in ("measured_noise", "largest_swing"):
+            out.__dict__.pop(measured, None)
+        return out
 
     def evaluate(self, model: Model, names: Sequence[str] = ()) -> Evaluation:
         """Simulate every run with the model, with derivatives by the named parameters."""

@@ -9,7 +9,9 @@ from hasel_sim.errors import SimulationError
 from hasel_sim.model import load_model
 from hasel_sim.run import Run, Simulation
 from hasel_sysid.dataset import Experiment
+from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import Problem
+from hasel_sysid.testing.made_up_world import MadeUpWorld
 
 RUN = Run("let go", np.linspace(0.0, 1.0, 20), None)
 NAMES = ("first", "second")
@@ -34,3 +36,18 @@ def test_derivatives_that_are_not_finite_are_an_error_of_that_model_alone():
     assert isinstance(found, SimulationError)
     with pytest.raises(SimulationError, match="let go: the derivatives by second are not finite"):
         problem.evaluate(load_model("beam"), NAMES)
+
+
+def test_some_of_its_runs_are_judged_by_the_noise_of_all():
+    """And by how far they swing themselves; what was counted of all of them is not theirs."""
+    world = MadeUpWorld(1)
+    whole = world.measured(world.with_typical("payload"))
+    whole.evaluate(world.model)
+    one = whole.with_experiments(whole.experiments[2:3])
+    assert (whole.evaluations, one.evaluations) == (1, 0)
+    series = one.experiments[0].sin_theta
+    assert one.largest_swing == np.abs(series - series.mean()).max() < whole.largest_swing
+    alone, every = one.evaluate(world.model), whole.evaluate(world.model)
+    np.testing.assert_array_equal(alone.residual, every.residual[every.runs == 2])
+    known = Problem(whole.experiments, Lost(), NoiseModel(0.002, 0.0, 0.5))
+    assert known.with_experiments(known.experiments[:1]).measured_noise == known.measured_noise

@@ -55,7 +55,7 @@ def openings(problem: Problem) -> list[Problem]:
         times * s < _LONGEST_SHARE * _duration(e) for s, e in zip(swings, problem.experiments, strict=True)
     ):
         short = [_opening(e, times * s) for s, e in zip(swings, problem.experiments, strict=True)]
-        found.append(Problem(short, problem.pool, problem.measured_noise, problem.time_limit))
+        found.append(problem.with_experiments(short))
         times *= 2
     return [*found, problem]
 

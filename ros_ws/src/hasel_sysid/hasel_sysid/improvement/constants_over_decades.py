@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
@@ -21,31 +22,50 @@ def over_decades(problem: Problem, begun: Sequence[Evaluation], policy: Policy) 
     begun: the model as fitted, and with other values of the same parameters: where it is far off, its fit may have
     taken them further away from the truth than they were.
     """
-    looks = [look for evaluation in begun for look in _two_steps_on(problem, evaluation, policy)]
+    every = [Trials(problem, evaluation) for evaluation in begun]
+    worst = _worst_run(begun[0])
+    nearest = [_nearest(_of_one_run(trials, worst)) for trials in every]
+    first = [_one_step_on(trials, looks) for trials, looks in zip(every, nearest, strict=True)]
+    best = _best_of_each([look for looks in first for look in looks])[: policy.effort.trials]
+    if problem.time_limit.is_over():
+        return []
+    further = [
+        look
+        for trials, looks in zip(every, first, strict=True)
+        for look in _one_step_on(trials, [look for look in looks if look in best])
+    ]
+    return most_promising(_best_of_each(further), (1 - policy.effort.hope) * begun[0].sum_of_squares)
+
+
+def _worst_run(evaluation: Evaluation) -> int:
+    """The run of which most is left: what a constant does there tells enough to see over a range."""
+    return int(np.bincount(evaluation.runs, evaluation.residual**2).argmax())
+
+
+def _of_one_run(trials: Trials, number: int) -> Trials:
+    """The same beside one of the runs."""
+    alone = trials.problem.with_experiments([trials.problem.experiments[number]])
+    return Trials(alone, alone.evaluate(trials.fitted.model, trials.fitted.names))
+
+
+def _one_step_on(trials: Trials, looks: Sequence[Look]) -> list[Look]:
+    correction = trials.fitted.residual - trials.base.residual
+    return one_step_on(trials.problem, trials.model, looks, correction)
+
+
+def _best_of_each(looks: Sequence[Look]) -> list[Look]:
+    """The most promising look at every constant, the best first."""
     best: dict[str, Look] = {}
-    for look in most_promising(looks, (1 - policy.effort.hope) * begun[0].sum_of_squares):
+    for look in sorted(looks, key=lambda look: look.squares):
         best.setdefault(look.name, look)
     return list(best.values())
-
-
-def _two_steps_on(problem: Problem, begun: Evaluation, policy: Policy) -> list[Look]:
-    trials = Trials(problem, begun)
-    correction = begun.residual - trials.base.residual
-    looks = one_step_on(problem, trials.model, _nearest(trials), correction)
-    best = sorted(looks, key=lambda look: look.squares)[: policy.effort.trials]
-    if trials.time_is_over():
-        return []
-    return one_step_on(problem, trials.model, best, correction)
 
 
 def _nearest(trials: Trials) -> list[Look]:
     """Every constant that comes nearer somewhere, where it does so most; all that was fitted is left as it is."""
     fitted = {name: trials.fitted.model.values[name] for name in trials.fitted.names}
-    best: dict[str, Look] = {}
-    for name, value, left in _seen(trials):
-        if name not in best or left < best[name].squares:
-            best[name] = Look(name, {**fitted, name: value}, left)
-    return most_promising(list(best.values()), left_beyond(trials.fitted.residual, trials))
+    looks = [Look(name, {**fitted, name: value}, left) for name, value, left in _seen(trials)]
+    return most_promising(_best_of_each(looks), left_beyond(trials.fitted.residual, trials))
 
 
 def _seen(trials: Trials) -> Iterator[tuple[str, float, float]]:

@@ -88,6 +88,7 @@ class _Search(StandIns):
         """Whether it promises less than what was reached, or is larger than a set that wants nothing."""
         if self.promises_less(proposal, answers):
             return True
+        self.use_noise()  # which the last fit may tell better
         best = self.likeliest()
         # the test of what is missing draws noise and judges every set: it is made only where little is left
         if len(proposal.effects) <= len(best) or self.leaves_what_matters(best):

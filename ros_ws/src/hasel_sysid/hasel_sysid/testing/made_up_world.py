@@ -164,14 +164,16 @@ class MadeUpProblem(Problem):
         return [self._made_up(model, tuple(by)) for model, by in zip(models, names, strict=True)]
 
     def _made_up(self, model: Model, names: tuple[str, ...]) -> Evaluation:
-        series = self.world.sin_theta(model)
+        series = self._of_experiments(self.world.sin_theta(model))
         slopes = np.zeros((len(names), len(series), len(series[0])))
         for index, name in enumerate(names):
             step = 1e-6 * max(abs(model.values[name]), 1e-6)
             more, less = (
                 np.array(
-                    self.world.sin_theta_at(
-                        model.effects, {**model.values, name: model.values[name] + change}
+                    self._of_experiments(
+                        self.world.sin_theta_at(
+                            model.effects, {**model.values, name: model.values[name] + change}
+                        )
                     )
                 )
                 for change in (step, -step)
@@ -179,11 +181,16 @@ class MadeUpProblem(Problem):
             slopes[index] = (more - less) / (2 * step)
         simulations = [
             Simulation(
-                run, own, names, slopes[:, number].T, np.zeros((len(own), 3, 2)), np.zeros((len(own), 2))
+                one.run, own, names, slopes[:, number].T, np.zeros((len(own), 3, 2)), np.zeros((len(own), 2))
             )
-            for number, (run, own) in enumerate(zip(self.world.runs, series, strict=True))
+            for number, (one, own) in enumerate(zip(self.experiments, series, strict=True))
         ]
         return self._collect(model, names, simulations)
+
+    def _of_experiments(self, of_runs: list[np.ndarray]) -> list[np.ndarray]:
+        """Of what is known of every run of the world, what belongs to the experiments."""
+        number = {run.name: number for number, run in enumerate(self.world.runs)}
+        return [of_runs[number[one.run.name]] for one in self.experiments]
 
 
 def box_drive(voltage: float, frequency: float) -> DriveSchedule:

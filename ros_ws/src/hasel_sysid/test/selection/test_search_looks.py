@@ -172,3 +172,22 @@ def test_what_wants_nothing_is_not_extended(seed):
     assert choose(found, POLICY).chosen == frozenset("ab")
     assert frozenset("ac") in found.known
     assert max(map(len, found.known)) == 2
+
+
+class _SeenLateAndBounded(_SeenLate):
+    """What tells of the noise is quieter beside a bad fit."""
+
+    def noise(self, known):
+        """A tenth of the noise, until a fit comes near it."""
+        near = min(fitted.squares for fitted in known) < 2 * len(self.runs) * WHITE.standard_deviation**2
+        return WHITE if near else replace(WHITE, white=WHITE.white / 100, coloured=WHITE.coloured / 100)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_whether_a_set_wants_anything_is_told_by_the_noise_that_its_own_fit_shows(seed):
+    """By the noise as worse fits bound it, the pair that was just fitted would leave a hundred times as much."""
+    series = made_up(seed)
+    series["c"] = series["b"] + 0.7 * series["c"]
+    found = search(_SeenLateAndBounded(series, {"a": 0.3, "b": 0.2}, WHITE, seed), POLICY)
+    assert choose(found, POLICY).chosen == frozenset("ab")
+    assert max(map(len, found.known)) == 2
