@@ -164,7 +164,7 @@ class _SeenLate(LinearSets):
 
 
 class _SeenLateAndBounded(_SeenLate):
-    """What tells of the noise is quieter beside a bad fit: by that, one that leaves noise leaves a hundred times as much."""
+    """What tells of the noise is a tenth as loud beside a bad fit; by that, what leaves noise leaves much."""
 
     def noise(self, known):
         """A tenth of the noise, until a fit comes near it."""
