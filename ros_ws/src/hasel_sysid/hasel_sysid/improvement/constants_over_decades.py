@@ -24,21 +24,18 @@ def over_decades(problem: Problem, begun: Sequence[Evaluation], policy: Policy) 
     """
     every = [Trials(problem, evaluation) for evaluation in begun]
     worst = _worst_run(begun[0])
-    nearest = [_nearest(_of_one_run(trials, worst)) for trials in every]
-    first = [_one_step_on(trials, looks) for trials, looks in zip(every, nearest, strict=True)]
+    first = [_further(trials, _nearest(_of_one_run(trials, worst))) for trials in every]
     best = _best_of_each([look for looks in first for look in looks])[: policy.effort.trials]
     if problem.time_limit.is_over():
         return []
-    further = [
-        look
-        for trials, looks in zip(every, first, strict=True)
-        for look in _one_step_on(trials, [look for look in looks if look in best])
-    ]
-    return most_promising(_best_of_each(further), (1 - policy.effort.hope) * begun[0].sum_of_squares)
+    going_on = [[look for look in looks if look in best] for looks in first]
+    second = [_further(trials, looks) for trials, looks in zip(every, going_on, strict=True)]
+    reached = _best_of_each([look for looks in second for look in looks])
+    return most_promising(reached, (1 - policy.effort.hope) * begun[0].sum_of_squares)
 
 
 def _worst_run(evaluation: Evaluation) -> int:
-    """The run of which most is left: what a constant does there tells enough to see over a range."""
+    """The run of which most is left: a constant that is what is wrong does most there."""
     return int(np.bincount(evaluation.runs, evaluation.residual**2).argmax())
 
 
@@ -48,7 +45,8 @@ def _of_one_run(trials: Trials, number: int) -> Trials:
     return Trials(alone, alone.evaluate(trials.fitted.model, trials.fitted.names))
 
 
-def _one_step_on(trials: Trials, looks: Sequence[Look]) -> list[Look]:
+def _further(trials: Trials, looks: Sequence[Look]) -> list[Look]:
+    """One step on, all runs simulated."""
     correction = trials.fitted.residual - trials.base.residual
     return one_step_on(trials.problem, trials.model, looks, correction)
 
