@@ -14,8 +14,8 @@ from hasel_sim.run import Simulation
 
 from hasel_sysid.dataset import Experiment
 from hasel_sysid.errors import SysidError
-from hasel_sysid.noise import NoiseModel
-from hasel_sysid.noise_sources.measured import measured_noise
+from hasel_sysid.noise.model import NoiseModel
+from hasel_sysid.noise.sources import measured_noise
 from hasel_sysid.time_limit import TimeLimit
 
 
@@ -56,6 +56,19 @@ class Evaluation:
         ]
         return replace(self, names=tuple(names), jacobian=np.reshape(columns, (-1, len(self.residual))).T)
 
+    def of_runs(self, numbers: Sequence[int]) -> "Evaluation":
+        """The same of some of the runs only."""
+        here = np.concatenate([np.flatnonzero(self.runs == number) for number in numbers])
+        return replace(
+            self,
+            simulations=tuple(self.simulations[number] for number in numbers),
+            residual=self.residual[here],
+            jacobian=self.jacobian[here],
+            runs=np.repeat(np.arange(len(numbers)), [int((self.runs == n).sum()) for n in numbers]),
+            offsets=self.offsets[list(numbers)],
+            frames=tuple(self.frames[number] for number in numbers),
+        )
+
     def simulated(self) -> np.ndarray:
         """The simulated series at the frames of `residual`, the mean of every run removed, [frames]."""
         chosen = [s.sin_theta[used] for s, used in zip(self.simulations, self.frames, strict=True)]
@@ -64,6 +77,10 @@ class Evaluation:
     def measured(self) -> np.ndarray:
         """The measured series at the same frames, the mean of every run removed, [frames]."""
         return self.simulated() + self.residual
+
+
+_CLOSE = 0.15
+"""Share of the motion up to which an error changes the motion to first order only."""
 
 
 class Problem:
@@ -165,3 +182,62 @@ class Problem:
             np.array(offsets),
             tuple(frames),
         )
+
+
+def low_fidelity(model: Model) -> Model:
+    """The model at half the cost: seven tenths of the mesh density, reduced quadrature and half the steps."""
+    numerics = model.description.numerics
+    return model.with_numerics(
+        mesh_density=0.7 * numerics.mesh_density,
+        quadrature_order=2,
+        steps_per_second=0.5 * numerics.steps_per_second,
+    )
+
+
+class LowFidelityProblem(Problem):
+    """The same runs by the low-fidelity model, its error at one evaluated model added back.
+
+    The additive correction of multi-fidelity optimisation (Alexandrov et al. 2001): at that model the residuals are the
+    same to the last digit. A low-fidelity model that cannot follow the motion is not used at all.
+    """
+
+    def __init__(self, of: Problem, known: Evaluation) -> None:
+        """known: a model, evaluated by `of`."""
+        super().__init__(of.experiments, of.pool, of.measured_noise, of.time_limit)
+        self.known, self._of, self._lower = known, of, low_fidelity
+        self._error: np.ndarray | float = 0.0
+        try:
+            error = known.residual - of.evaluate(low_fidelity(known.model)).residual
+        except SimulationError:
+            self._lower = _as_it_is
+            return
+        if np.linalg.norm(error) <= _CLOSE * np.linalg.norm(known.simulated()):
+            self._error = error
+        else:
+            self._lower = _as_it_is
+
+    def of_runs(self, numbers: Sequence[int]) -> "LowFidelityProblem":
+        """The same with some of its runs only."""
+        out = copy(self)
+        out._of = self._of.with_experiments([self.experiments[number] for number in numbers])
+        out.experiments, out.known = out._of.experiments, self.known.of_runs(numbers)
+        if isinstance(self._error, np.ndarray):
+            out._error = np.concatenate([self._error[self.known.runs == number] for number in numbers])
+        return out
+
+    def evaluate_each(
+        self, models: Sequence[Model], names: Sequence[Sequence[str]]
+    ) -> list[Evaluation | SimulationError]:
+        """As of a problem; the models of the results are those that were asked for."""
+        self.evaluations += len(models)
+        found = self._of.evaluate_each([self._lower(model) for model in models], names)
+        return [
+            one
+            if isinstance(one, SimulationError)
+            else replace(one, model=model, residual=one.residual + self._error)
+            for model, one in zip(models, found, strict=True)
+        ]
+
+
+def _as_it_is(model: Model) -> Model:
+    return model

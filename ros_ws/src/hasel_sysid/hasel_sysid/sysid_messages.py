@@ -10,10 +10,10 @@ from hasel_sim.model import Model
 from hasel_sim.simulator_messages import to_time
 from std_msgs.msg import Header
 
-from hasel_sysid.diagnosis import Finding, Verdict
-from hasel_sysid.diagnosis import result as diagnosis_result
-from hasel_sysid.estimation import FitResult
+from hasel_sysid import result as diagnosis_result
+from hasel_sysid.estimation import FittedModel
 from hasel_sysid.live import running_error
+from hasel_sysid.result import Finding, Verdict
 
 
 def error_message(stamp_ns: int, error: running_error.RunningError, frame_id: str) -> RunningError:
@@ -44,7 +44,7 @@ def parameter_messages(model: Model, at_bound=(), undetermined=()) -> list[Named
     ]
 
 
-def fit_message(result: FitResult, model_file: str, header: Header) -> Fit:
+def fit_message(result: FittedModel, model_file: str, header: Header) -> Fit:
     """`/hasel/fit`; `model` is the file that was written, ready for the simulator's load_model."""
     return Fit(
         header=header,

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_sysid.noise import NoiseModel, estimate_noise
+from hasel_sysid.noise.model import NoiseModel, estimate_noise
 
 RUNS = np.repeat(np.arange(6), 400)
 TRUTH = NoiseModel(white=6e-6, coloured=3e-6, correlation=0.9)

@@ -7,7 +7,7 @@ from itertools import chain
 from hasel_bringup.hidden_truth.hidden_values import both_signs
 from hasel_sim.errors import nearest_name
 from hasel_sim.model import load_model
-from hasel_sysid.diagnosis.candidates import candidate_effects
+from hasel_sysid.candidates import candidate_effects
 
 from hasel_benchmark.bench_hidden.case import Case, effect_source
 from hasel_benchmark.bench_hidden.unlisted import UNLISTED

@@ -9,9 +9,8 @@ from matplotlib.figure import Figure
 from hasel_sysid.api.picture import Picture
 from hasel_sysid.compare import Comparison
 from hasel_sysid.dataset import Experiment
-from hasel_sysid.diagnosis import Diagnosis
-from hasel_sysid.improvement import Stage
 from hasel_sysid.report.figures.style import DROP, FITTED, MEASURED, MODELS, NOISE, UNSEEN
+from hasel_sysid.result import Diagnosis, Stage
 
 _COLUMNS, _MOST_EFFECTS = 3, 8
 

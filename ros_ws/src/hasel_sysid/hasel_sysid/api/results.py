@@ -9,9 +9,8 @@ from hasel_sysid.api.drawing import draw_comparisons, draw_ranking, draw_recordi
 from hasel_sysid.api.picture import Picture
 from hasel_sysid.compare import Comparison
 from hasel_sysid.dataset import Experiment
-from hasel_sysid.diagnosis import Diagnosis
-from hasel_sysid.estimation import FitResult
-from hasel_sysid.improvement import Improvement
+from hasel_sysid.estimation import FittedModel
+from hasel_sysid.result import Diagnosis, Improvement
 
 
 class Recordings(tuple[Experiment, ...]):
@@ -56,7 +55,7 @@ class Simulated:
 class Fitted(Simulated):
     """A fitted model. result: values, standard errors, and what the recordings do not determine."""
 
-    result: FitResult
+    result: FittedModel
 
     def __str__(self) -> str:
         return f"{self.result}\n{super().__str__()}"
@@ -67,10 +66,10 @@ class Diagnosed:
     """Which effects are missing. diagnosis: what is said of each; fitted: the model that was diagnosed."""
 
     diagnosis: Diagnosis
-    fitted: FitResult
+    fitted: FittedModel
 
     def __str__(self) -> str:
-        return "\n".join(filter(None, [str(self.diagnosis), str(self.diagnosis.adequacy or "")]))
+        return "\n".join(filter(None, [str(self.diagnosis), str(self.diagnosis.goodness or "")]))
 
     def plot(self) -> Picture:
         """The most probable effects, with the share of the error that each removes."""

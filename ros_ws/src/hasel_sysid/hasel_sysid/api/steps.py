@@ -10,10 +10,10 @@ from hasel_sim.parallel import executor
 from hasel_sysid.api.results import Diagnosed, Fitted, Improved, Recordings, Simulated
 from hasel_sysid.compare import compare
 from hasel_sysid.dataset import Experiment, for_model, load_experiments, prepared
-from hasel_sysid.estimation import fit_from_afar, identify
+from hasel_sysid.estimation import fit_baseline, identify
+from hasel_sysid.improvement import diagnose as diagnosis_of
 from hasel_sysid.improvement import improve as improvement_of
 from hasel_sysid.problem import Problem
-from hasel_sysid.selection.diagnose import diagnose as diagnosis_of
 
 
 def load(
@@ -92,7 +92,7 @@ def diagnose(
     start, fitted = _prepared(model, recordings)
     with executor(jobs) as pool:
         problem = Problem(fitted, pool)
-        result = fit_from_afar(problem, start)
+        result = fit_baseline(problem, start)
         return Diagnosed(diagnosis_of(problem, result, effects), result)
 
 

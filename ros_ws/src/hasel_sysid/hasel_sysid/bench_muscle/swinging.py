@@ -10,7 +10,7 @@ from scipy.optimize import least_squares
 
 from hasel_sysid.bench_muscle.lifts import SAME, WINDOW_S, shows_swings, stretches_of
 from hasel_sysid.bench_muscle.recording import BenchRecording
-from hasel_sysid.estimation.between_runs import scatter_between_runs
+from hasel_sysid.estimation.covariance import scatter_between_runs
 
 _FEWEST_LIFTS = 4
 _NAMES = ("damping", "slowness", "lag")

@@ -14,12 +14,12 @@ from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import code_after, show, summarise, tell
 from hasel_sysid.command_line.summary import diagnosis_lines
 from hasel_sysid.compare import compare
-from hasel_sysid.estimation import fit_from_afar
-from hasel_sysid.improvement.result import diagnosis_json
+from hasel_sysid.estimation import fit_baseline
+from hasel_sysid.improvement import diagnose
 from hasel_sysid.problem import Problem
 from hasel_sysid.report.from_diagnosis import diagnosis_content
 from hasel_sysid.report.write import write_report
-from hasel_sysid.selection.diagnose import diagnose
+from hasel_sysid.result import diagnosis_json
 from hasel_sysid.time_limit import TimeLimit
 
 
@@ -37,7 +37,7 @@ def _diagnose(options: argparse.Namespace) -> int:
     given, limit = load_inputs(options), TimeLimit(options.seconds)
     with executor(options.jobs, options.scheduler) as pool, progress_bar("diagnose") as progress:
         problem = Problem(given.experiments, pool, given.noise, limit)
-        fit = fit_from_afar(problem, given.model, part(progress, "fit: ", 0.0, 0.3))
+        fit = fit_baseline(problem, given.model, part(progress, "fit: ", 0.0, 0.3))
         found = diagnose(problem, fit, options.effects, part(progress, "diagnosis: ", 0.3, 0.95))
         label, last = f"{given.label}, fitted", part(progress, "", 0.95, 1.0)
         comparison = compare(fit.model, given.experiments, pool, given.unseen, label, last)

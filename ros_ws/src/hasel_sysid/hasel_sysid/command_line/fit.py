@@ -18,7 +18,7 @@ from hasel_sysid.command_line.shown import code_after, show
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.data_gate import Finding
 from hasel_sysid.errors import SysidError
-from hasel_sysid.estimation import FitResult, identify
+from hasel_sysid.estimation import FittedModel, identify
 from hasel_sysid.report.from_results import fit_content
 from hasel_sysid.report.write import write_report
 
@@ -59,7 +59,7 @@ def _fit(options: argparse.Namespace) -> int:
 
 
 def _finish(
-    options: argparse.Namespace, result: FitResult, comparison: Comparison, said: Sequence[Finding]
+    options: argparse.Namespace, result: FittedModel, comparison: Comparison, said: Sequence[Finding]
 ) -> None:
     path = _save(result.model, options.output)
     show([comparison], said)
@@ -70,7 +70,7 @@ def _finish(
     print(f"Wrote {path} and {report}.")
 
 
-def _fit_json(result: FitResult) -> dict:
+def _fit_json(result: FittedModel) -> dict:
     names = result.evaluation.names
     parameters = {
         name: {

@@ -19,12 +19,13 @@ from hasel_sysid.command_line.summary import improvement_lines
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.compare.compare import comparison_of
 from hasel_sysid.dataset import Experiment
-from hasel_sysid.improvement import Improvement, Stage, Status, improve
-from hasel_sysid.improvement.ledger import Ledger
+from hasel_sysid.improvement import improve
+from hasel_sysid.ledger import Ledger
 from hasel_sysid.problem import Problem
 from hasel_sysid.report.from_improvement import improvement_content
 from hasel_sysid.report.pictures import stages_picture, waterfall_picture
 from hasel_sysid.report.write import write_report
+from hasel_sysid.result import Improvement, Stage, Status
 from hasel_sysid.suggest import Suggestion, in_doubt, suggest
 from hasel_sysid.time_limit import TimeLimit
 

@@ -16,7 +16,7 @@ from hasel_sysid.dataset import Experiment, for_model, load_experiments, prepare
 from hasel_sysid.drive_match import check_levels
 
 if TYPE_CHECKING:
-    from hasel_sysid.noise import NoiseModel
+    from hasel_sysid.noise.model import NoiseModel
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def load_inputs(options: argparse.Namespace) -> Inputs:
 def _noise(given: float | None) -> "NoiseModel | None":
     if given is None:
         return None
-    from hasel_sysid.noise_sources.measured import (
+    from hasel_sysid.noise.sources import (
         given_noise,  # takes as long to import as all else that compare needs
     )
 

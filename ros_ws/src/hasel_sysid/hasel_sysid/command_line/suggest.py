@@ -17,9 +17,9 @@ from hasel_sysid.command_line.progress import progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.drive_match import drive_unit
 from hasel_sysid.errors import SysidError
-from hasel_sysid.estimation import fit_from_afar
+from hasel_sysid.estimation import fit_baseline
+from hasel_sysid.improvement import diagnose
 from hasel_sysid.problem import Problem
-from hasel_sysid.selection.diagnose import diagnose
 from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest
 
 GOAL_FILE = "suggested_run.yaml"
@@ -42,7 +42,7 @@ def _suggest(options: argparse.Namespace) -> None:
     with executor(options.jobs, options.scheduler) as pool, progress_bar("suggest") as progress:
         problem = Problem(given.experiments, pool, given.noise)
         named = any(not name.startswith("+") for name in options.effects or ())
-        fit = fit_from_afar(problem, given.model, lambda text, share: progress(text, 0.15 * share))
+        fit = fit_baseline(problem, given.model, lambda text, share: progress(text, 0.15 * share))
         found = diagnose(
             problem, fit, options.effects, lambda text, share: progress(text, 0.15 + 0.6 * share)
         )

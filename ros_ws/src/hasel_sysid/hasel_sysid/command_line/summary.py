@@ -6,10 +6,9 @@ from collections.abc import Sequence
 from hasel_sim.model import Parameter
 
 from hasel_sysid.compare import Comparison
-from hasel_sysid.diagnosis import Diagnosis, Verdict
-from hasel_sysid.improvement import Improvement
 from hasel_sysid.report.from_improvement import what_is_missing
 from hasel_sysid.report.numbers import error_text, interval_text
+from hasel_sysid.result import Diagnosis, Improvement, Verdict
 from hasel_sysid.suggest import Suggestion
 
 _ON_BOUND = 1e-6
@@ -25,8 +24,8 @@ def improvement_lines(
     if not found.constant:
         lines += [*_doubt(found.diagnosis, found.missing), found.reason]
     lines += [*found.contradictions, *found.open_values.values()]
-    if found.adequacy is not None and not found.adequacy.adequate:
-        lines.append(str(found.adequacy))
+    if found.goodness is not None and not found.goodness.adequate:
+        lines.append(str(found.goodness))
     if suggestions:
         lines.append(f"Measure next: {suggestions[0]}")
     return lines
@@ -43,8 +42,8 @@ def diagnosis_lines(found: Diagnosis, comparison: Comparison) -> list[str]:
     lines += _errors(None, comparison, found.measured.mean_absolute)
     doubt = _doubt(found, [each.effect for each in named])
     lines += doubt
-    if found.adequacy is not None:
-        lines.append(str(found.adequacy))
+    if found.goodness is not None:
+        lines.append(str(found.goodness))
     if found.not_tried:
         lines.append(f"The time was over; not tried: {', '.join(found.not_tried)}.")
     if doubt:

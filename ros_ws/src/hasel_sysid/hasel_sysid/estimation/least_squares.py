@@ -1,158 +1,156 @@
-"""Trust-region least squares with exact sensitivities (scipy), the default way to fit."""
+"""Bounded Gauss-Newton least squares in a trust region (Conn, Gould and Toint 2000), one step at a time.
 
-from dataclasses import replace
+The region is a box in units of the parameters' scales, so that a step is a linear least-squares problem within bounds.
+"""
+
+from collections.abc import Sequence
 
 import numpy as np
 from hasel_sim.errors import SimulationError
-from hasel_sim.model import Model
-from scipy.optimize import least_squares
+from hasel_sim.model import Model, Parameter
+from scipy.optimize import lsq_linear
 
-from hasel_sysid.draft import draft
-from hasel_sysid.estimation.asked import AskedModel, EnoughError, Progress
-from hasel_sysid.estimation.between_runs import wider_where_runs_disagree
-from hasel_sysid.estimation.bounds import at_bound
-from hasel_sysid.estimation.result import FitResult
-from hasel_sysid.estimation.second_start import better_from, onsets_to_doubt, typical_values, unseen_parts
-from hasel_sysid.estimation.uncertainty import parameter_covariance
-from hasel_sysid.noise import estimate_noise
 from hasel_sysid.problem import Evaluation, Problem
 
+_FIRST_RADIUS, _SMALLEST_RADIUS = 0.5, 1e-3
+_POOR, _GOOD = 0.25, 0.75
+"""Share of its predicted decrease below which a step shrinks the region, and above which it widens it."""
 _LEAST_SCALE = 1e-3
-_GENTLER = 4
-"""How often to try a gentler start."""
+_ROUNDS = 10
+"""How often every parameter may come off a bound, at most."""
+_ON, _NEAR = 1e-4, 1e-2
+"""Share of a range within which a value is on a bound; share of a bound from which one more step may lead onto it."""
 
 
-def fit_least_squares(
-    problem: Problem,
-    model: Model,
-    progress: Progress | None = None,
-    tolerance: float = 5e-4,
-    most_evaluations: int = 25,
-    drafts: bool = True,
-    roughly: bool = False,
-    goal: float = 0.0,
-    begun: Evaluation | None = None,
-) -> FitResult:
-    """Minimise the squared residuals over the model's free parameters within their bounds.
+def bounded_change(
+    residual: np.ndarray, jacobian: np.ndarray, lower: np.ndarray, upper: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """The change of the parameters that leaves the least sum of squares, and that sum.
 
-    A draft of the model (coarse mesh, long steps) leads most of the way, without the onsets that start at none; the
-    model itself goes the rest.
-    tolerance: ten times the relative change of the sum of squares at which to stop; drafts: whether to start
-    with the draft, which is a waste of time when the start is already good; roughly: stop earlier where neighbouring
-    frames share what is left, for then so many fewer squares tell models apart; goal: squares that
-    the fit must come below at its pace, or it is broken off; `finished` goes on from there; begun: the model by its
-    free parameters, if it was evaluated.
-    A fit that ends where no derivative leads on is tried once more (`second_start`).
-    Raises SimulationError when even the start cannot be simulated.
+    residual [frames]; jacobian [frames, parameters] of the simulated series; lower, upper [parameters]: of the change.
+    What nothing shows stays as it is.
     """
-    if not model.free:
-        return fitted_result(problem.evaluate(model), 1)
-
-    def fitted(start: Model, led: bool) -> FitResult:
-        count = 0
-        if led:
-            leader = _without_onsets(draft(start))
-            found, count, _ = _minimise(problem, leader, progress, 1e-2, most_evaluations)
-            start = start.with_values({name: found.model.values[name] for name in leader.free})
-        known = begun if begun and start is model and begun.names == model.free else None
-        evaluation, more, ended = _minimise(
-            problem, start, progress, tolerance, most_evaluations, roughly, goal, known
-        )
-        return replace(fitted_result(evaluation, count + more), converged=ended)
-
-    first = fitted(model, drafts)
-    doubted = onsets_to_doubt(first)
-    return better_from(first, unseen_parts(first) | doubted, lambda start: fitted(start, bool(doubted)))
+    scale = np.linalg.norm(jacobian, axis=0)
+    seen = (scale > 1e-12) & (upper - lower > 1e-15)
+    change = np.zeros(jacobian.shape[1])
+    if seen.any():
+        # the frames enter by their share in the columns only: few rows, of which the exact active set is quickly found
+        basis, columns = np.linalg.qr(jacobian[:, seen] / scale[seen])
+        bounds = lower[seen] * scale[seen], upper[seen] * scale[seen]
+        most = _ROUNDS * columns.shape[1]
+        solution = lsq_linear(columns, basis.T @ residual, bounds, method="bvls", max_iter=most)
+        change[seen] = np.clip(solution.x / scale[seen], lower[seen], upper[seen])
+    left = residual - jacobian @ change
+    return change, float(left @ left)
 
 
-def finished(problem: Problem, fit: FitResult, progress: Progress | None = None, **options) -> FitResult:
-    """The fit, gone on with where it was broken off by its number of evaluations; options: as of a fit."""
-    if fit.converged:
-        return fit
-    return fit_least_squares(problem, fit.model, progress, drafts=False, begun=fit.evaluation, **options)
+class GaussNewton:
+    """at: the best model so far, evaluated with its derivatives; predicted: sum of squares expected after the next
+    step; converged: whether a step that nothing held back gave, or would give, next to nothing.
+    """
+
+    def __init__(self, at: Evaluation, tolerance: float, first: Sequence[str] = ()) -> None:
+        """tolerance: relative decrease of the sum of squares below which a step is the last; first: parameters that
+        the first step changes, all others as they are; all of them where there are none.
+        """
+        self.at, self.tolerance = at, tolerance
+        self._radius = _FIRST_RADIUS
+        self._scale = scales(at.model, at.names)
+        self._propose(first)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the parameters that it changes."""
+        return self.at.names
+
+    def _propose(self, only: Sequence[str] = ()) -> None:
+        here = self.at
+        value, lower, upper = values_and_bounds(here.model, here.names)
+        reach = self._radius * self._scale * np.array([not only or name in only for name in here.names])
+        down, up = np.maximum(lower - value, -reach), np.minimum(upper - value, reach)
+        self._change, self.predicted = bounded_change(here.residual, here.jacobian, down, up)
+        _, anywhere = bounded_change(here.residual, here.jacobian, lower - value, upper - value)
+        small = here.sum_of_squares - anywhere <= self.tolerance * here.sum_of_squares
+        self.converged = bool(small or self._radius < _SMALLEST_RADIUS)
+
+    def proposal(self) -> Model:
+        """The model at the end of the next step."""
+        values = {
+            name: self.at.model.values[name] + change
+            for name, change in zip(self.names, self._change, strict=True)
+        }
+        return self.at.model.with_values(values)
+
+    def take(self, new: Evaluation | SimulationError) -> None:
+        """Go there, where that leaves less; otherwise be more careful. new: the proposal, evaluated."""
+        before, promised = self.at.sum_of_squares, self.at.sum_of_squares - self.predicted
+        gain = -np.inf
+        if not isinstance(new, SimulationError):
+            gain = before - new.sum_of_squares
+            self.at = new if gain > 0 else self.at
+        if gain < _POOR * promised:
+            self._radius *= 0.25
+        elif gain > _GOOD * promised:
+            self._radius *= 3.0
+        self._propose()
+        # a step that gave what it promised, and that was next to nothing, is the last
+        self.converged |= bool(0 < gain <= self.tolerance * before and gain >= _POOR * promised)
 
 
-def _minimise(
-    problem: Problem,
-    model: Model,
-    progress: Progress | None,
-    tolerance: float,
-    most_evaluations: int,
-    roughly: bool = False,
-    goal: float = 0.0,
-    begun: Evaluation | None = None,
-) -> tuple[Evaluation, int, bool]:
-    names = model.free
-    lower, upper, start = _bounds_and_start(model, names)
-    # in units of their scales, for a step that is short beside all values ends the search: beside a value in Pa, any is
-    scale = np.maximum(np.abs(start), [_scale(model, name) for name in names])
-    rough = 0.1 * tolerance if roughly else 0.0
-    search = AskedModel(problem, model, names, scale, progress, most_evaluations, rough, goal)
-    try:
-        found = least_squares(
-            search.residual,
-            _first_that_runs(search, start / scale, begun),
-            jac=search.jacobian,
-            bounds=(lower / scale, upper / scale),
-            xtol=0.01 * tolerance,
-            ftol=0.1 * tolerance,
-            gtol=1e-12,
-            max_nfev=most_evaluations,
-        )
-    except EnoughError as reached:
-        return reached.evaluation, search.count, False
-    return search.at(found.x), search.count, found.status > 0
+def minimise(problem: Problem, start: Evaluation, tolerance: float, most: int) -> tuple[Evaluation, bool]:
+    """The best model within so many evaluations, and whether the search converged."""
+    search, count = GaussNewton(start, tolerance), 0
+    while not search.converged and count < most:
+        search.take(problem.evaluate_each([search.proposal()], [search.names])[0])
+        count += 1
+    return search.at, search.converged
 
 
-def _without_onsets(model: Model) -> Model:
-    """Onsets of 0 are left there: beside sizes still far off, a late beginning looks like half of an effect."""
-    return model.with_held(*(name for name in model.free if model.is_onset(name) and not model.values[name]))
+def scales(model: Model, names: Sequence[str]) -> np.ndarray:
+    """By how much first order may be believed to change parameters, [names]: an effect's size by twice what one would
+    notice or what it is; everything else by itself.
+    """
+    sizes = {f"{e.id}.{p.name}": p for e in model.effects for p in e.parameters if not p.scan}
+    found = []
+    for name in names:
+        p = model.parameters[name]
+        own = p.magnitude or _LEAST_SCALE
+        if name in sizes:
+            typical, null = sizes[name].typical, sizes[name].null
+            own = 2 * max(abs(typical - null), abs(p.value - null))
+        found.append(own)
+    return np.array(found)
 
 
-def _first_that_runs(search: AskedModel, start: np.ndarray, begun: Evaluation | None) -> np.ndarray:
-    """The start, its amplitudes halved until the motion is gentle enough to be simulated."""
-    amplitudes = np.array([name.startswith("amplitude_") for name in search.names])
-    for attempt in range(_GENTLER):
-        try:
-            search.begin(start, begun)
-            return start
-        except SimulationError:
-            if attempt == _GENTLER - 1 or not amplitudes.any():
-                raise
-            start = np.where(amplitudes, 0.5 * start, start)
-    return start
+def values_and_bounds(model: Model, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Values, lower and upper bounds of parameters, [names]."""
+    rows = [(model.parameters[n].value, model.parameters[n].lower, model.parameters[n].upper) for n in names]
+    value, lower, upper = np.reshape(rows, (-1, 3)).T.copy()
+    return value, lower, upper
 
 
-def _scale(model: Model, name: str) -> float:
-    typical = typical_values(model)
-    if name in typical:
-        return abs(typical[name]) or 1.0
-    return model.parameters[name].magnitude or _LEAST_SCALE
+def at_bound(evaluation: Evaluation) -> tuple[str, ...]:
+    """Names of the parameters that a fit ended on a bound of, or near one to which one more step would take them."""
+    value, lower, upper = values_and_bounds(evaluation.model, evaluation.names)
+    further, _ = bounded_change(evaluation.residual, evaluation.jacobian, lower - value, upper - value)
+    parameters = [evaluation.model.parameters[name] for name in evaluation.names]
+    ends = zip(parameters, value + further, strict=True)
+    return tuple(p.name for p, end in ends if any(_held(p, bound, end) for bound in (p.lower, p.upper)))
 
 
-def _bounds_and_start(model: Model, names: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    parameters = [model.parameters[name] for name in names]
-    lower = np.array([p.lower for p in parameters])
-    upper = np.array([p.upper for p in parameters])
-    start = np.clip([p.value for p in parameters], lower, upper)
-    return lower, upper, start
+def further_without_bounds(evaluation: Evaluation, name: str) -> float:
+    """By how much one more step would move a parameter, were it not for its own bounds; the others keep theirs."""
+    value, lower, upper = values_and_bounds(evaluation.model, evaluation.names)
+    own = evaluation.names.index(name)
+    lower[own], upper[own] = -np.inf, np.inf
+    step, _ = bounded_change(evaluation.residual, evaluation.jacobian, lower - value, upper - value)
+    return float(step[own])
 
 
-def fitted_result(evaluation: Evaluation, count: int) -> FitResult:
-    """Add standard errors, bounds reached and parameters that are not determined."""
-    model, names = evaluation.model, evaluation.names
-    noise = estimate_noise(evaluation.residual, evaluation.runs, evaluation.jacobian, "what the fit leaves")
-    covariance, undetermined = parameter_covariance(evaluation.jacobian, noise, evaluation.runs)
-    by_noise = np.sqrt(np.diag(covariance))
-    errors = wider_where_runs_disagree(by_noise, evaluation.jacobian, evaluation.residual, evaluation.runs)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        wider = np.where(by_noise > 0, errors / by_noise, 1.0)
-        covariance = np.where(np.isfinite(covariance), covariance * np.outer(wider, wider), np.inf)
-    return FitResult(
-        model.with_covariance(names, covariance),
-        evaluation,
-        at_bound(evaluation),
-        tuple(name for name, hidden in zip(names, undetermined, strict=True) if hidden),
-        count,
-        "least squares",
-    )
+def _held(p: Parameter, bound: float, end: float) -> bool:
+    if not np.isfinite(bound):
+        return False
+    width = p.upper - p.lower
+    on = _ON * (width if np.isfinite(width) else abs(bound) or 1.0)
+    on_its_way = abs(p.value - bound) < _NEAR * abs(bound) and abs(end - bound) < on
+    return bool(abs(p.value - bound) < on or on_its_way)

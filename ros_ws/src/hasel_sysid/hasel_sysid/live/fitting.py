@@ -8,13 +8,13 @@ from hasel_sim.model import Model
 from hasel_sim.parallel import executor
 
 from hasel_sysid.dataset import for_model, prepared, usable
-from hasel_sysid.diagnosis import Diagnosis, Verdict
-from hasel_sysid.diagnosis.explained import Status, status_with
-from hasel_sysid.estimation import FitResult, fit_from_afar, identify
-from hasel_sysid.estimation.least_squares import Progress
+from hasel_sysid.estimation import FittedModel, fit_baseline, identify
+from hasel_sysid.estimation.fit import Progress
+from hasel_sysid.improvement import diagnose
 from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Problem
-from hasel_sysid.selection.diagnose import diagnose
+from hasel_sysid.result import Diagnosis, Status, Verdict
+from hasel_sysid.verdict import status_with
 
 DEFAULT_METHOD = "least_squares"
 
@@ -26,7 +26,7 @@ def chosen_recordings(paths: Sequence[str | Path], heard: Sequence[Recording]) -
 
 def fit_recordings(
     model: Model, recordings: Sequence[Recording], method: str, jobs: int, progress: Progress | None = None
-) -> FitResult:
+) -> FittedModel:
     """Fit the model's free parameters in `jobs` processes (0: one per core), this one staying responsive.
 
     Raises RecordingError, SysidError, SimulationError or ModelError.
@@ -51,13 +51,13 @@ def diagnose_recordings(
     experiments = for_model(model.with_levels([]), usable(recordings))
     with executor(jobs or None) as pool:
         problem = Problem(experiments, pool)
-        fit = fit_from_afar(problem, prepared(model, experiments), progress)
+        fit = fit_baseline(problem, prepared(model, experiments), progress)
         return diagnose(problem, fit, effects or None, progress)
 
 
 def status(diagnosis: Diagnosis) -> str:
     """What a diagnosis comes to, before any effect is added: one of the words of the Diagnosis message."""
-    describes = diagnosis.adequacy is not None and diagnosis.adequacy.adequate
+    describes = diagnosis.goodness is not None and diagnosis.goodness.adequate
     if diagnosis.p_value >= POLICY.level:
         return (Status.NOTHING_MISSING if describes else Status.UNEXPLAINED).value
     missing = any(finding.verdict is Verdict.MISSING for finding in diagnosis.findings)

@@ -15,7 +15,7 @@ from hasel_sysid.report.parameter_words import meaning, plausible
 from hasel_sysid.report.shape import Shapes, simulated_shapes
 
 if TYPE_CHECKING:
-    from hasel_sysid.estimation.result import FitResult
+    from hasel_sysid.estimation import FittedModel
 
 _RMS_TO_MEAN = 0.798
 """Mean magnitude of Gaussian noise of unit standard deviation."""
@@ -142,7 +142,7 @@ def key_numbers(comparison: Comparison) -> tuple[KeyNumber, ...]:
     return tuple(numbers)
 
 
-def fit_content(result: "FitResult", comparison: Comparison) -> ReportContent:
+def fit_content(result: "FittedModel", comparison: Comparison) -> ReportContent:
     """Report of a fit: the comparison, with parameters, their uncertainty and alarms."""
     remarks = dict.fromkeys(result.at_bound, "on its bound")
     remarks |= dict.fromkeys(result.undetermined, "not determined by these recordings")

@@ -1,21 +1,101 @@
-"""The currency: logarithms of the likelihood of whitened residuals."""
+"""The one currency: the log-likelihood of residuals under one declared covariance.
 
-from collections.abc import Collection
+Measured noise, white and shared by neighbouring frames; one slow discrepancy that no model is without (Kennedy and
+O'Hagan 2001); the discretisation error of the likeliest model, in an unknown amount in every run; a free offset in
+every run.
+"""
+
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numba import njit
 
-from hasel_sysid.estimation.bounded import bounded_change
-from hasel_sysid.noise import LONGEST_CORRELATION, NoiseModel
+from hasel_sysid.candidates import Candidate
+from hasel_sysid.estimation.fit import FittedModel
+from hasel_sysid.estimation.least_squares import further_without_bounds
+from hasel_sysid.noise.model import LONGEST_CORRELATION, NoiseModel
+from hasel_sysid.policy import POLICY
 from hasel_sysid.projection import orthonormal
-from hasel_sysid.selection.sets import FittedSet, Prospect
-from hasel_sysid.selection.squares import squares_beyond_slack
+
+Names = frozenset[str]
+NOTHING: Names = frozenset()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
+class FittedSet:
+    """The baseline with a set of candidates, fitted. candidates: by name; fit: the model."""
+
+    candidates: dict[str, Candidate]
+    fit: FittedModel
+
+    @property
+    def names(self) -> Names:
+        """Of the candidates."""
+        return frozenset(self.candidates)
+
+    @property
+    def residual(self) -> np.ndarray:
+        """Measured minus simulated, [frames]."""
+        return self.fit.evaluation.residual
+
+    @cached_property
+    def moving(self) -> tuple[str, ...]:
+        """The fitted parameters that no bound holds."""
+        return tuple(name for name in self.fit.evaluation.names if name not in self.fit.at_bound)
+
+    @property
+    def jacobian(self) -> np.ndarray:
+        """Derivatives by the moving parameters, [frames, moving]."""
+        return self.fit.evaluation.by(self.moving).jacobian
+
+    @cached_property
+    def plausible(self) -> bool:
+        """Whether every candidate's values lie inside their ranges, a model file may say so, and each does what nothing
+        else in the model does.
+        """
+        return all(
+            c.is_possible_in(self.fit.model)
+            and not out_of_range(c, self.fit)
+            and not _is_a_double(c, self.fit)
+            for c in self.candidates.values()
+        )
+
+    @property
+    def on_edge(self) -> bool:
+        """Whether a value only just lies inside, on a bound."""
+        return any(on_edge(c, self.fit) for c in self.candidates.values())
+
+
+def on_edge(candidate: Candidate, fit: FittedModel) -> list[str]:
+    """The candidate's parameters that ended on a bound, but for what is at its null or not determined."""
+    nulls = {name: p.null for name, p in candidate.sizes.items()}
+    return [
+        name
+        for name in fit.at_bound
+        if name in candidate.names
+        and name not in fit.undetermined
+        and not np.isclose(fit.model.values[name], nulls.get(name, np.inf), atol=1e-6)
+    ]
+
+
+def out_of_range(candidate: Candidate, fit: FittedModel) -> bool:
+    """Whether a value would surely have to lie beyond its plausible range."""
+    return any(
+        abs(further_without_bounds(fit.evaluation, name))
+        > POLICY.confidence * (fit.model.parameters[name].standard_error or 0.0)
+        for name in on_edge(candidate, fit)
+    )
+
+
+def _is_a_double(candidate: Candidate, fit: FittedModel) -> bool:
+    """Whether it does only what other free parameters do: such as a modulus that is free already."""
+    sizes = set(candidate.sizes) & set(fit.evaluation.names)
+    return bool(sizes) and sizes <= set(fit.undetermined)
+
+
+@dataclass(frozen=True, eq=False)
 class Whitened:
     """residual [frames]: whitened, what the parameters can still follow taken out of it (the step from least squares to
     generalised least squares); basis [frames, n]: orthonormal, what they can follow; runs [frames].
@@ -27,28 +107,29 @@ class Whitened:
 
     @property
     def logarithm(self) -> float:
-        """Of the likelihood at its maximum, up to a constant that all sets share."""
+        """Of the likelihood at its maximum, up to a constant that all models share."""
         return -0.5 * float(self.residual @ self.residual)
+
+    def beyond(self, columns: np.ndarray) -> np.ndarray:
+        """What the parameters cannot follow of whitened columns [frames] or [frames, n]."""
+        return columns - self.basis @ (self.basis.T @ columns)
 
 
 class Likelihood:
-    """Of frames whose noise is white and partly shared by neighbours, with an unknown offset in every run."""
+    """Of the frames of several runs."""
 
     def __init__(
         self,
         noise: NoiseModel,
         runs: np.ndarray,
         discrepancy: float = 0.0,
-        slack: np.ndarray | None = None,
-        misfit: float = 0.0,
+        discretisation: Sequence[np.ndarray] = (),
     ) -> None:
-        """runs [frames]; discrepancy: rms of what no model has, as slow as noise can be; slack [frames, n]: changes
-        that are in the error of every run, each in an unknown amount with a standard deviation of one; misfit: variance
-        of what is still missing from the models that are compared, of which nothing else is known.
+        """runs [frames]; discrepancy: rms of what no model has, as slow as noise can be; discretisation: changes
+        [frames] by finer numerics, each in an unknown amount with a standard deviation of one in every run.
         """
-        self.noise, self.runs, self.discrepancy, self.misfit = noise, runs, discrepancy, misfit
-        self._slack = np.zeros((len(runs), 0)) if slack is None else slack
-        self._promised: WeakKeyDictionary[Prospect, float] = WeakKeyDictionary()
+        self.noise, self.runs, self.discrepancy = noise, runs, discrepancy
+        self._changes = np.column_stack([np.zeros((len(runs), 0)), *discretisation])
 
     def whiten(self, columns: np.ndarray) -> np.ndarray:
         """Columns [frames] or [frames, n] in units of independent noise of variance one, offsets taken out."""
@@ -59,17 +140,27 @@ class Likelihood:
             out[here] = part - directions @ ((1 - left)[:, None] * (directions.T @ part))
         return out.reshape(columns.shape)
 
+    def whitened(self, fitted: FittedSet) -> Whitened:
+        """A fitted set."""
+        return self.of(fitted.residual, fitted.jacobian)
+
+    def of(self, residual: np.ndarray, jacobian: np.ndarray) -> Whitened:
+        """A residual [frames] of a model with these derivatives [frames, n]."""
+        white = self.whiten(np.column_stack([residual, jacobian]))
+        basis = orthonormal(white[:, 1:])
+        return Whitened(white[:, 0] - basis @ (basis.T @ white[:, 0]), basis, self.runs)
+
     @cached_property
     def _known(self) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Of every run: its frames, the directions of offset and slack, whitened, and what is left of each."""
+        """Of every run: its frames, the directions of offset and discretisation, whitened, and what is left of each."""
         found = []
         for run in np.unique(self.runs):
             here = self.runs == run
             offset = self._innovations(np.ones((int(here.sum()), 1)))
             offset /= np.linalg.norm(offset)
-            slack = self._innovations(self._slack[here])
-            slack = slack - offset @ (offset.T @ slack)
-            directions, strength, _ = np.linalg.svd(slack, full_matrices=False)
+            changes = self._innovations(self._changes[here])
+            changes = changes - offset @ (offset.T @ changes)
+            directions, strength, _ = np.linalg.svd(changes, full_matrices=False)
             left = np.concatenate([[0.0], 1 / np.sqrt(1 + strength**2)])
             found.append((here, np.column_stack([offset, directions]), left))
         return found
@@ -77,68 +168,14 @@ class Likelihood:
     def _innovations(self, columns: np.ndarray) -> np.ndarray:
         """Of the frames of one run."""
         slow = np.array([self.noise.coloured, self.discrepancy**2])
-        white = max(self.noise.white + self.misfit, 1e-9 * float(slow.sum()))
+        white = max(self.noise.white, 1e-9 * float(slow.sum()))
         memory = np.array([self.noise.correlation, LONGEST_CORRELATION])
         return _filtered(np.ascontiguousarray(columns, dtype=float), white, slow, memory)
-
-    def whitened(self, fitted: FittedSet) -> Whitened:
-        """A fitted set."""
-        white = self.whiten(np.column_stack([fitted.residual, fitted.jacobian]))
-        residual, basis = white[:, 0], orthonormal(white[:, 1:])
-        return Whitened(residual - basis @ (basis.T @ residual), basis, self.runs)
-
-    def squares_beyond_slack(self, residual: np.ndarray, most: float) -> float:
-        """Sum of squares of a residual [frames] that the errors which every set is known to make cannot take away.
-
-        most: standard deviations of their amount in a run.
-        """
-        return squares_beyond_slack(residual, self.runs, self._slack, most)
-
-    def promised(self, prospect: Prospect) -> float:
-        """Logarithm of the likelihood, up to the same constant, one bounded step on from where a prospect is."""
-        if prospect not in self._promised:
-            white = self.whiten(np.column_stack([prospect.residual, prospect.jacobian]))
-            _, squares = bounded_change(white[:, 0], white[:, 1:], prospect.lower, prospect.upper)
-            self._promised[prospect] = -0.5 * squares
-        return self._promised[prospect]
-
-    def likeness(self, one: np.ndarray, other: np.ndarray) -> float:
-        """Cosine of the angle between what two effects can look like [frames, n], 0 to 1."""
-        looks = [orthonormal(self.whiten(columns)) for columns in (one, other)]
-        return float(np.linalg.norm(looks[0].T @ looks[1], 2))
-
-    def gains(self, fitted: Whitened, looks: Collection[np.ndarray]) -> list["Look"]:
-        """What effects that look like this [frames, n] could gain beside a fitted set."""
-        return [Look(_beside(fitted, self.whiten(columns)), fitted.residual) for columns in looks]
-
-
-@dataclass(frozen=True)
-class Look:
-    """directions [frames, n]: orthonormal, what an effect does and the fitted parameters cannot; residual: whitened."""
-
-    directions: np.ndarray
-    residual: np.ndarray
-
-    @property
-    def gain(self) -> float:
-        """Of the logarithm of the likelihood, its size and sign left open."""
-        return float(self.by(self.residual[:, None])[0])
-
-    def by(self, residuals: np.ndarray) -> np.ndarray:
-        """The same of other residuals [frames, draws]: [draws]."""
-        return 0.5 * ((self.directions.T @ residuals) ** 2).sum(axis=0)
-
-
-def _beside(fitted: Whitened, columns: np.ndarray) -> np.ndarray:
-    size = np.linalg.norm(columns, axis=0)
-    left = columns - fitted.basis @ (fitted.basis.T @ columns)
-    seen = np.linalg.norm(left, axis=0) > 1e-6 * np.where(size > 0, size, 1.0)
-    return orthonormal(left[:, seen])
 
 
 @njit(cache=True)
 def _filtered(columns, white, variances, correlations):  # pragma: no cover  (compiled)
-    """What no earlier frame foretells of columns [frames, n], over its standard deviation (a Kalman filter)."""
+    """What no earlier frame predicts of columns [frames, n], over its standard deviation (a Kalman filter)."""
     frames, count = columns.shape
     parts = len(variances)
     out = np.empty((frames, count))

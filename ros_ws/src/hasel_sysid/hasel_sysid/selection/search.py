@@ -1,236 +1,371 @@
-"""The search over sets of effects: add, exchange, drop; what promises most is fitted in full."""
+"""The search: fit the likeliest models, linearise about the best of them, and go round again until nothing is better.
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+models = {nothing: the baseline}, and every candidate alone as far as it can win
+repeat
+    about = the likeliest of the models
+    table = every set of at most three candidates, to first order about it
+    new   = what the table holds to be better than any model, else parts of the answer, else rivals of the answer
+    stop where there is none, or fit the first few of it
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
-from typing import Protocol
 
+import numpy as np
+from hasel_sim.errors import HaselSimError
+from hasel_sim.model import Model
+from hasel_sim.parallel import all_at_once
+
+from hasel_sysid.candidates import Candidate, compatible, constants_of
+from hasel_sysid.estimation.covariance import changes_by_refinement
+from hasel_sysid.estimation.fit import FittedModel, Progress, fit, fitted_model, mapped
+from hasel_sysid.estimation.growing_horizon import in_phase
+from hasel_sysid.estimation.starts import Screened, Start
+from hasel_sysid.model_checking.nothing_missing import ScoreTest, score_test
+from hasel_sysid.noise.bounds import bounded_noise
 from hasel_sysid.policy import Policy
-from hasel_sysid.selection.choice import all_alike, choose, smallest
-from hasel_sysid.selection.full_fits import Progress
-from hasel_sysid.selection.proposals import Proposal, additions, exchanges, pairs, smaller
-from hasel_sysid.selection.searched import Searched, lasting, plausible, worth_most
-from hasel_sysid.selection.sets import NOTHING, EffectSet, FittedSet, Sets, name_of
-from hasel_sysid.selection.stand_ins import StandIns
+from hasel_sysid.problem import Evaluation, LowFidelityProblem, Problem
+from hasel_sysid.projection import orthonormal
+from hasel_sysid.selection.best_subsets import Row, best_subsets
+from hasel_sysid.selection.choose import Choice, ComparedModel, Judged, choose, compare, plausible
+from hasel_sysid.selection.cross_validation import leave_one_run_out
+from hasel_sysid.selection.likelihood import NOTHING, FittedSet, Likelihood, Names
+from hasel_sysid.selection.linearise import Columns, linearise, secant
+from hasel_sysid.selection.race import race, screen_typical
+
+_LINEARISED = 12
+"""Candidates that are simulated anew beside a model, those of most score there; the others keep their secants."""
+
+IsLaw = Callable[[FittedSet, "Likelihood"], bool]
 
 
-class Judges(Protocol):
-    """What may be asked of a known set beyond how likely it is."""
-
-    def lawful(self, found: Searched, effects: EffectSet) -> bool:
-        """Whether what it adds is a law."""
-
-    def described(self, found: Searched, effects: EffectSet) -> bool:
-        """Whether it describes its runs everywhere."""
-
-    def named(self, found: Searched, effects: EffectSet) -> bool:
-        """Whether its effects would be said to be missing: what is not named needs nothing that stands in its place."""
-
-
-def search(
-    sets: Sets,
-    policy: Policy,
-    progress: Progress | None = None,
-    begun: tuple[FittedSet, ...] = (),
-    judges: Judges | None = None,
-    stand_ins: bool = True,
-) -> Searched:
-    """Extend the best sets as long as anything is missing from the best one and something promises to supply it.
-
-    begun: further sets that are fitted already; judges: of sets, beyond their likelihoods; stand_ins: also fit what
-    looks like a chosen effect in its place.
+@dataclass(frozen=True, eq=False)
+class Searched:
+    """models: every fitted set; choice: the answer; table: all of them, best first; likelihood: by which they are
+    compared; first, last: is anything missing from the baseline, and from the answer? screened: every candidate at its
+    typical size; alone: by candidate, its best low-fidelity model; discretisation: changes of the baseline's series
+    [frames] by finer numerics; untried: candidates for which there was no time.
     """
-    known = {f.effects: f for f in (sets.baseline(), *begun)}
-    state = _Search(sets, policy, known, progress=progress, judges=judges)
-    state.look_beyond({NOTHING: None})
-    state.fit(state.singles(), 1, even_late=True)
-    while True:
-        more = state.anything_missing() and state.extended()
-        found = state.judged()
-        if not more and not state.looked_closer(found.best):
-            break
-    found = state.shrunk(found)
-    if state.would_be_named(smallest(found, policy)):
-        state.fit(state.rivals(found, smallest(found, policy)), policy.effort.fits)
-        state.look_for_a_law()
-    state.deepen(state.chosen())
-    if stand_ins and state.would_be_named(state.chosen()):
-        state.exchange(state.chosen())
-    return state.judged()
+
+    models: dict[Names, Judged]
+    choice: Choice
+    table: tuple[ComparedModel, ...]
+    likelihood: Likelihood
+    first: ScoreTest
+    last: ScoreTest
+    screened: list[Screened]
+    alone: dict[str, Evaluation]
+    discretisation: dict[str, np.ndarray]
+    untried: list[str]
+
+    @property
+    def answer(self) -> FittedSet:
+        """The chosen set."""
+        return self.models[self.choice.chosen].fitted
 
 
-@dataclass
-class _Search(StandIns):
-    """closely: the sets that were looked beyond with every effect."""
+class Search:
+    """One search for what a fitted baseline lacks."""
 
-    closely: set[EffectSet] = field(default_factory=lambda: {NOTHING})
-    judges: Judges | None = None
-
-    def would_be_named(self, effects: EffectSet) -> bool:
-        """Whether its effects would be said to be missing."""
-        return self.judges is None or self.judges.named(self.judged(), effects)
-
-    def anything_missing(self) -> bool:
-        """From the best set, by more than noise."""
-        return self.judged().last.chance < self.policy.level
-
-    def extended(self) -> bool:
-        """Whether anything promised more than the best set and was fitted."""
-        if self.fit(self.better(self.additions([NOTHING])), self.policy.effort.fits, enough=self.needless):
-            return True
-        self.fit(self.singles(), self.policy.effort.fits - sum(map(bool, plausible(self.known))))
-        beam = self.beam()
-        self.look_beyond_where_anything_is_missing(beam)
-        around = self.better(self.around(beam))
-        return self.fit(around, self.policy.effort.fits, enough=self.needless) > 0
-
-    def needless(self, proposal: Proposal, answers: int) -> bool:
-        """Whether it promises less than what was reached, or is larger than a set that wants nothing."""
-        if self.promises_less(proposal, answers):
-            return True
-        self.use_noise()  # which the last fit may tell better
-        best = self.likeliest()
-        # the test of what is missing draws noise and judges every set: it is made only where little is left
-        if len(proposal.effects) <= len(best) or self.leaves_what_matters(best):
-            return False
-        return not self.anything_missing() and not self.fails(best)
-
-    def beam(self) -> list[EffectSet]:
-        """The best sets, and the likeliest one where its values are out of range: it is no answer itself, but an
-        effect beside it or in its place may be.
+    def __init__(
+        self,
+        problem: Problem,
+        baseline: FittedModel,
+        effects: Sequence[Candidate],
+        policy: Policy,
+        is_law: IsLaw,
+        progress: Progress | None = None,
+        with_constants: bool = True,
+        begun: Sequence[FittedSet] = (),
+    ) -> None:
+        """effects: the candidates; is_law: whether what a fitted set adds has one value in every run; with_constants:
+        whether those of the model file come after the effects; begun: sets that were fitted already.
         """
-        best = lasting(plausible(self.known), self.value)[: self.policy.effort.width]
-        likeliest = max(self.known, key=self.value)
-        return best if likeliest in best else [likeliest, *best]
+        self.problem, self.baseline, self.effects, self.policy = problem, baseline, effects, policy
+        self._is_law, self._progress, self._with_constants = is_law, progress, with_constants
+        self._low = LowFidelityProblem(problem, baseline.evaluation)
+        self.fits = {NOTHING: FittedSet({}, baseline), **{one.names: one for one in begun}}
+        self._tried: set[Names] = set(self.fits)
+        self._proposed: dict[tuple[str, Names], int] = {}
+        self._columns: dict[Names, dict[str, Columns]] = {}
+        self._discretisation: dict[Names, dict[str, np.ndarray]] = {}
+        self.screened: list[Screened] = []
+        self.alone: dict[str, Evaluation] = {}
+        self.untried: list[str] = []
+        self.models: dict[Names, Judged] = {}
+        self.threshold = 0.0
+        self._judge()
 
-    def looked_closer(self, best: EffectSet) -> bool:
-        """Whether a set that leaves more than noise was looked beyond only now, and with every effect.
+    def run(self) -> Searched:
+        """Search until nothing promises more, or time is over."""
+        self._say("every effect at its typical size", 0.05)
+        self.screened, untried = screen_typical(self._low, self.effects)
+        self.untried = [candidate.name for candidate in untried]
+        self.first = self._tested(NOTHING)
+        self.threshold = self.first.threshold
+        if self.first.chance < self.policy.level:
+            self._alone(self.screened, 0.2)
+            self._rounds(0.4)
+            if (
+                self._with_constants
+                and len(self._choose().chosen) != 1
+                and not self.problem.time_limit.is_over()
+            ):
+                self._say("numbers of the model file", 0.8)
+                known, untried = screen_typical(self._low, constants_of(self.baseline.model))
+                self.untried += [candidate.name for candidate in untried]
+                self._alone(known, 0.85)
+                self._rounds(0.9)
+        choice = self._choose()
+        return Searched(
+            self.models,
+            choice,
+            compare(self.models, choice),
+            self.likelihood,
+            self.first,
+            self._tested(choice.chosen),
+            self.screened,
+            self.alone,
+            self._discretisation.get(NOTHING, {}),
+            self.untried,
+        )
 
-        Beside the baseline effects look otherwise: what holds a body up also puts it out of step there.
-        """
-        known = best in self.closely or len(best) >= self.policy.most_effects
-        if known or self.sets.out_of_time() or not (self.leaves_what_matters(best) or self.fails(best)):
-            return False
-        self.closely.add(best)
-        self.look_beyond({best: None})
-        return True
+    def _say(self, text: str, share: float) -> None:
+        if self._progress:
+            self._progress(text, share)
 
-    def fails(self, effects: EffectSet) -> bool:
-        """Whether a set does not describe its runs somewhere: where nothing shows the noise alone, what the best set
-        leaves is all that is known of it, and only its shares tell that some of it is no noise.
-        """
-        return self.judges is not None and not self.judges.described(self.judged(), effects)
+    # the currency
 
-    def look_beyond(self, wanted: Mapping[EffectSet, Collection[str] | None]) -> None:
-        """Learn what one more effect of those that are wanted (None: any) could do to each of these sets."""
-        self.say(f"looking beyond {', '.join(map(name_of, wanted))}", 0.1 * min(len(self.known), 5))
-        looks = [(self.known[effects], names) for effects, names in wanted.items()]
-        seen = self.sets.prospects_of_each(looks, self.likelihood.promised, self.policy.effort.trials)
-        self.prospects.update(zip(wanted, seen, strict=True))
+    def _judge(self) -> None:
+        """All fitted models by one covariance: the noise as it is known now, the discretisation of the likeliest."""
+        noise = self.problem.measured_noise or bounded_noise([f.fit.evaluation for f in self.fits.values()])
+        runs = self.baseline.evaluation.runs
+        measured = self.baseline.evaluation.measured()
+        discrepancy = self.policy.discrepancy * self.problem.largest_swing
+        about = self._likeliest() if self.models else NOTHING
+        changes = self._refinement_changes(about)
+        self.likelihood = Likelihood(noise, runs, discrepancy, list(changes.values()))
+        self.models = {}
+        for names, fitted in self.fits.items():
+            white = self.likelihood.whitened(fitted)
+            elpd = leave_one_run_out(white, measured, self.policy.prior_runs)
+            self.models[names] = Judged(fitted, white, elpd)
 
-    def look_beyond_where_anything_is_missing(self, beam: Sequence[EffectSet]) -> None:
-        """The same of these sets, as far as none was looked beyond yet."""
-        new = [s for s in beam if s not in self.prospects and len(s) < self.policy.most_effects]
-        if new and not self.sets.out_of_time():
-            self.look_beyond({effects: self.promising_beside(effects) for effects in new})
+    def _refinement_changes(self, names: Names) -> dict[str, np.ndarray]:
+        """By finer numerics at a fitted set; none of a model that is out of phase, where they mean nothing."""
+        if names not in self._discretisation:
+            evaluation = self.fits[names].fit.evaluation
+            near = in_phase(evaluation)
+            self._discretisation[names] = changes_by_refinement(self.problem, evaluation) if near else {}
+        return self._discretisation[names]
 
-    def promising_beside(self, effects: EffectSet) -> list[str]:
-        """The effects whose score is more than noise alone makes of it, and those that cost nothing.
+    def _value(self, names: Names) -> float:
+        return self.models[names].whitened.logarithm - self.threshold * len(names)
 
-        Beside the baseline, where that score is from, two wrong constants may look alike that together are the answer.
-        """
-        test = self.tested(effects)
-        promising = sorted(test.gains, key=lambda effect: -test.gains[effect])[
-            : 2 * self.policy.effort.trials
+    def _likeliest(self) -> Names:
+        return max(plausible(self.models), key=self._value)
+
+    def _tested(self, names: Names) -> ScoreTest:
+        """Whether anything is missing from a fitted set."""
+        held = self.fits[names].candidates
+        known = self._columns.get(names, {})
+        looks = [
+            (one.start.candidate.name, one.change[:, None])
+            for one in self.screened
+            if one.start.candidate.name not in known and self._fits_beside(one.start.candidate, held)
+        ] + [(name, column.looks) for name, column in known.items()]
+        white = [(name, self.likelihood.whiten(look)) for name, look in looks]
+        return score_test(self.models[names].whitened, white, self.policy.level)
+
+    @staticmethod
+    def _fits_beside(candidate: Candidate, held: dict[str, Candidate]) -> bool:
+        return candidate.name not in held and compatible([*held.values(), candidate])
+
+    def _choose(self) -> Choice:
+        self._judge()
+        return choose(
+            self.models,
+            self.policy,
+            self.threshold,
+            self._likeness,
+            lambda names: self._is_law(self.fits[names], self.likelihood),
+        )
+
+    def _likeness(self, one: str, other: str) -> float:
+        """Cosine of the angle between what two candidates do beside the baseline."""
+        base = self.models[NOTHING].whitened
+        looks = [
+            [
+                base.beyond(self.likelihood.whiten(s.change))
+                for s in self.screened
+                if s.start.candidate.name == name
+            ]
+            for name in (one, other)
         ]
-        wanted = [e for e in promising if test.gains[e] > test.threshold and self.could_matter(e, effects)]
-        return list(dict.fromkeys([*wanted, *self.sets.at_null]))
+        if not all(looks):
+            return 0.0
+        first, second = (orthonormal(np.column_stack(own)) for own in looks)
+        return float(np.linalg.norm(first.T @ second, 2)) if first.size and second.size else 0.0
 
-    def singles(self) -> list[Proposal]:
-        """Sets of one effect, most promising first."""
-        return self.ranked(self.additions([NOTHING]))
+    # what is fitted
 
-    def additions(self, beam: Sequence[EffectSet]) -> Iterator[Proposal]:
-        """Sets with one effect more than those of a beam."""
-        return additions(self.known, self.prospects, beam)
+    def _alone(self, screened: Sequence[Screened], share: float) -> None:
+        """Every candidate alone: raced by the low-fidelity model, those within reach of the best then by the model."""
+        self._say("each alone", share)
+        ended = race(self._low, screened, self.likelihood, self.policy.reach)
+        self.alone |= ended
+        candidates = {one.start.candidate.name: one.start.candidate for one in screened}
+        value = {
+            name: self.likelihood.of(one.residual, one.jacobian).logarithm for name, one in ended.items()
+        }
+        ranked = sorted(value, key=lambda name: -value[name])
+        near = [name for name in ranked if value[name] >= value[ranked[0]] - self.policy.reach]
+        chosen = near[: 2 * self.policy.fits] if len(near) > 1 else ranked[:2]
+        self._keep(
+            {frozenset({name}): partial(self._mapped, candidates[name], ended[name]) for name in chosen}
+        )
 
-    def around(self, beam: Sequence[EffectSet]) -> Iterator[Proposal]:
-        """One effect more than a beam, one in another's place, or two at once, which may hide each other."""
-        yield from self.additions(beam)
-        yield from exchanges(self.known, self.prospects, beam)
-        base = self.prospects[NOTHING]
-        hopeful = sorted(base.values(), key=self.likelihood.promised, reverse=True)[
-            : self.policy.effort.trials
+    def _mapped(self, candidate: Candidate, low: Evaluation) -> FittedSet:
+        return FittedSet({candidate.name: candidate}, fitted_model(mapped(self.problem, low)))
+
+    def _rounds(self, share: float) -> None:
+        """Propose and fit until nothing promises more."""
+        while not self.problem.time_limit.is_over():
+            rows = self._proposals(self._choose())
+            if not rows:
+                return
+            share += 0.3 * (1.0 - share)
+            self._say(", ".join(" + ".join(sorted(row.names)) for row in rows), share)
+            self._keep({row.names: partial(self._fitted, row) for row in rows})
+
+    def _proposals(self, choice: Choice) -> list[Row]:
+        """What to fit next: better than any model, else parts of the answer, else its rivals."""
+        about = self._likeliest()
+        answer = choice.chosen
+        parts = [answer - {gone} for gone in answer if answer - {gone} not in self._tried]
+        table = self._table(about)
+        better = [row for row in table if self._promises(row, about)]
+        within = self.models[answer].whitened.logarithm - self.policy.reach
+        rivals = [
+            row
+            for row in table
+            if answer
+            and len(row.names) == len(answer)
+            and row.logarithm > within
+            and row.names not in self._tried
         ]
-        yield from pairs(self.known[NOTHING], hopeful)
+        values = self.fits[answer].fit.model.values
+        return (
+            self._first("better", about, better)
+            or [Row(part, 0.0, values) for part in parts]
+            or self._first("rival", answer, rivals)
+        )
 
-    def shrunk(self, found: Searched) -> Searched:
-        """With every part of the smallest set fitted that lacks one effect, until no smaller one does."""
-        while self.fit(self.parts(smallest(found, self.policy)), self.policy.most_effects):
-            found = self.judged()
+    def _first(self, kind: str, of: Names, rows: Sequence[Row]) -> list[Row]:
+        """Of one table no more than the first few are followed: where they were no better, first order is not true."""
+        done = self._proposed.get((kind, of), 0)
+        found = list(rows[: self.policy.fits - done])
+        self._proposed[(kind, of)] = done + len(found)
         return found
 
-    def parts(self, chosen: EffectSet) -> list[Proposal]:
-        """A set without each of its effects in turn, as far as that was not fitted yet.
+    def _promises(self, row: Row, about: Names) -> bool:
+        if row.names in self._tried or len(row.names) > self.policy.most_effects:
+            return False
+        return row.logarithm - self.threshold * len(row.names) > self._value(about)
 
-        Fitted from the values of the others, or from a known set with one effect less where those are farther off.
-        """
-        return [self._nearest(without) for without in self.possible(smaller(self.known, chosen))]
+    def _table(self, about: Names) -> list[Row]:
+        """Every set, to first order about a fitted one."""
+        if about == NOTHING:
+            return []
+        held = self.fits[about].candidates
+        if about not in self._columns:
+            self._columns[about] = {
+                c.start.candidate.name: secant(c)
+                for c in self._best_screened(about)
+                if self._fits_beside(c.start.candidate, held)
+            }
+            test = self._tested(about)
+            gains = sorted(test.gains, key=lambda name: -test.gains[name])
+            promising = [name for name in gains if test.gains[name] > test.threshold][:_LINEARISED]
+            if promising:
+                begin = [self._start(name, about) for name in promising]
+                found = linearise(
+                    LowFidelityProblem(self.problem, self.fits[about].fit.evaluation), self.fits[about], begin
+                )
+                self._columns[about] |= {one.candidate.name: one for one in found}
+        return best_subsets(
+            self.fits[about],
+            self._columns[about],
+            self.likelihood,
+            self.policy.most_effects,
+            self.threshold,
+        )
 
-    def _nearest(self, without: Proposal) -> Proposal:
-        part = self.best_part(without.effects)
-        if part is None or self.sets.out_of_time():
-            return without
-        (gone,) = without.dropped
-        left = self.sets.without(without.of, gone)
-        if left is not None and left.squares < self.known[part].squares:
-            return Proposal(left, ())
-        return self.beside(part, without.effects) or without
+    def _best_screened(self, about: Names) -> list[Screened]:
+        """Of every candidate the typical start, at the time or place, that gains most beside a fitted set."""
+        white = self.models[about].whitened
+        best: dict[str, tuple[float, Screened]] = {}
+        for one in self.screened:
+            look = white.beyond(self.likelihood.whiten(one.change))
+            power = float(look @ look)
+            gain = float(look @ white.residual) ** 2 / power if power > 0 else 0.0
+            name = one.start.candidate.name
+            if name not in best or gain > best[name][0]:
+                best[name] = gain, one
+        return [one for _, one in best.values()]
 
-    def rivals(self, found: Searched, chosen: EffectSet) -> list[Proposal]:
-        """Sets of the chosen one's size that come so near to it that they may not be told apart."""
-        reach = found.whitened[chosen].logarithm - self.reach
-        return self.ranked(self.additions(self.known_parts(chosen)), reach)
+    def _start(self, name: str, about: Names) -> Start:
+        """Where a candidate is linearised beside a set: its typical size, at the time or place of most gain."""
+        return next(one.start for one in self._best_screened(about) if one.start.candidate.name == name)
 
-    def look_for_a_law(self) -> None:
-        """Fit what promises most beside the best law, until something that may stand in the chosen set's place is one.
+    def _fitted(self, row: Row) -> FittedSet | None:
+        """A set from where the table leads, and from what its candidates are alone."""
+        known = {c.name: c for c in self._all_candidates()}
+        candidates = {name: known[name] for name in sorted(row.names)}
+        model = self.baseline.model
+        for candidate in candidates.values():
+            model = candidate.added_to(model)
+        about = self.fits[self._likeliest()].fit.model.values
+        alone = {
+            path: self.alone[name].model.values[path]
+            for name, candidate in candidates.items()
+            if name in self.alone
+            for path in candidate.names
+        }
+        begin = [_at(model, row.values)]
+        if len(candidates) > 1 and alone:
+            begin.append(_at(model, {**about, **row.values, **alone}))
+        try:
+            found = fit(self.problem, self._low, begin)
+        except HaselSimError:
+            return None
+        return FittedSet(candidates, found)
 
-        That promise may be small: what stood in for an effect by no law has drawn every other value to itself.
-        """
-        chosen = smallest(self.judged(), self.policy)
-        if not chosen or self.judges is None or self.may_be_a_law(chosen):
-            return
-        law = self.best_law(len(chosen) - 1)
-        if law is None or self.sets.out_of_time():
-            return
-        if law not in self.closely:
-            self.closely.add(law)
-            self.look_beyond({law: None})
-        beside = [p for p in self.ranked(self.additions([law])) if self.matters(p, law)]
-        self.fit(beside, self.policy.effort.fits, enough=lambda *_: self.may_be_a_law(chosen))
+    def _all_candidates(self) -> list[Candidate]:
+        return [*self.effects, *constants_of(self.baseline.model)]
 
-    def may_be_a_law(self, chosen: EffectSet) -> bool:
-        """Whether a set is a law, or one that may stand in its place."""
-        found = self.judged()
-        return any(self.is_law(found, one) for one in all_alike(found, chosen, self.policy))
+    def _keep(self, fits: dict[Names, Callable[[], FittedSet | None]]) -> None:
+        self._tried |= set(fits)
 
-    def best_law(self, size: int) -> EffectSet | None:
-        """Of the known sets of a size that are laws, the one that is worth most; no effect at all is one."""
-        found = self.judged()
-        every = [one for one in worth_most(found) if len(one) == size]
-        return next((one for one in every if not one or self.is_law(found, one)), None)
+        def done(call: Callable[[], FittedSet | None]) -> FittedSet | None:
+            try:
+                return call()
+            except HaselSimError:
+                return None
 
-    def chosen(self) -> EffectSet:
-        """The set that would be taken now."""
-        found = self.judged()
-        return choose(found, self.policy, partial(self.is_law, found)).chosen
+        for found in all_at_once(self.problem.pool, [partial(done, call) for call in fits.values()]):
+            if found is not None:
+                self.fits[found.names] = found
+        self._judge()
 
-    def is_law(self, found: Searched, effects: EffectSet) -> bool:
-        """Whether what a known set adds is a law; where nobody judges, everything is."""
-        return self.judges is None or self.judges.lawful(found, effects)
 
-    def deepen(self, chosen: EffectSet) -> None:
-        """Look for a deeper valley of the set to be taken."""
-        if chosen and not self.sets.out_of_time():
-            self.say(f"looking for {name_of(chosen)} elsewhere", 0.9)
-            self.keep(self.sets.deepest(self.known[chosen]))
+def _at(model: Model, values: dict[str, float]) -> Model:
+    """The model at these values, as far as it has them, each within its range."""
+    return model.with_values(
+        {
+            name: float(np.clip(values[name], model.parameters[name].lower, model.parameters[name].upper))
+            for name in model.free
+            if name in values
+        }
+    )

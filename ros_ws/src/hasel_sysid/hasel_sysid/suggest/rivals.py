@@ -5,10 +5,10 @@ from collections.abc import Callable, Sequence
 from hasel_sim.errors import HaselSimError
 from hasel_sim.model import Model
 
-from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.errors import SysidError
-from hasel_sysid.estimation import fit_least_squares
+from hasel_sysid.estimation.least_squares import minimise
 from hasel_sysid.problem import Problem
+from hasel_sysid.result import Diagnosis
 
 _BRIEF = 8
 """Evaluations for a fit of what the diagnosis did not think worth one."""
@@ -49,7 +49,7 @@ def _refitted(diagnosis: Diagnosis) -> dict[str, Model]:
 
 def fitted_briefly(problem: Problem, model: Model) -> Model:
     """A model fitted to the runs of a problem, as far as a few evaluations lead."""
-    return fit_least_squares(problem, model, most_evaluations=_BRIEF, drafts=False).model
+    return minimise(problem, problem.evaluate(model, model.free), 1e-3, _BRIEF)[0].model
 
 
 def _at_least_two(
@@ -61,7 +61,7 @@ def _at_least_two(
         if len(found) >= 2:
             break
         try:
-            found[effect] = fit(with_effect(diagnosis.context.fit.model, diagnosis, effect))
+            found[effect] = fit(with_effect(diagnosis.fit.model, diagnosis, effect))
         except HaselSimError:
             continue
     return found

@@ -12,10 +12,10 @@ from hasel_sim.model import Model
 from hasel_sim.simd import LANES
 from hasel_sim.simulate import simulate_many
 
-from hasel_sysid.draft import draft
 from hasel_sysid.drive_match import drive_unit, model_channels
 from hasel_sysid.errors import SysidError
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.noise.model import NoiseModel
+from hasel_sysid.problem import low_fidelity
 from hasel_sysid.suggest.manoeuvre import Manoeuvre, manoeuvres
 
 Progress = Callable[[str, float], None]
@@ -68,9 +68,9 @@ def suggest(
             f"no experiment is possible: the highest level allowed is {highest:g} {unit} and the lowest known one "
             f"{levels[0]:g} {unit}; raise --max-voltage"
         )
-    drafts = {name: draft(model) for name, model in candidates.items()}
+    coarse = {name: low_fidelity(model) for name, model in candidates.items()}
     futures = [
-        {name: pool.submit(_simulated, each, group) for name, each in drafts.items()}
+        {name: pool.submit(_simulated, each, group) for name, each in coarse.items()}
         for group in _alike(library)
     ]
     found = []
@@ -78,7 +78,7 @@ def suggest(
         simulated = {name: future.result() for name, future in pending.items()}
         for index, manoeuvre in enumerate(group):
             series = {name: each[index] for name, each in simulated.items() if each[index] is not None}
-            if len(series) == len(drafts):
+            if len(series) == len(coarse):
                 found.append(_suggestion(manoeuvre, series, noise))
         if progress:
             progress(str(group[-1]), (number + 1) / len(futures))

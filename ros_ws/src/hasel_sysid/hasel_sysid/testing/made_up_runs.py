@@ -1,6 +1,6 @@
 """A model beside runs, for tests: what it misses in every frame is known, and nothing is simulated."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from hasel_sim.drive.schedule import DriveSchedule
@@ -9,9 +9,7 @@ from hasel_sim.run import Run, Simulation
 
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.compare.run_comparison import RunComparison
-from hasel_sysid.diagnosis.candidates import Start
-from hasel_sysid.diagnosis.trial import Trial
-from hasel_sysid.estimation.result import FitResult
+from hasel_sysid.estimation import FittedModel
 from hasel_sysid.problem import Evaluation
 from hasel_sysid.where_it_fails.analyse import where_it_fails
 from hasel_sysid.where_it_fails.run_series import run_series
@@ -74,27 +72,12 @@ def evaluation_of_runs(
     return Evaluation(model, names, simulations, residual, slopes, of_runs, np.zeros(len(runs)), frames)
 
 
-def made_up_fit(model: Model, error: float, at_bound: tuple[str, ...] = ()) -> FitResult:
+def made_up_fit(model: Model, error: float, at_bound: tuple[str, ...] = ()) -> FittedModel:
     """A fit with this mean |Δ sin θ|, of the model's free parameters."""
     evaluation = made_up_evaluation(
         error * np.array([[1.0, -1.0]]), np.array([0.0, 0.01]), names=model.free, model=model
     )
-    return FitResult(model, evaluation, at_bound, (), 1, "least_squares")
-
-
-def made_up_trial(
-    model: Model,
-    start: Start,
-    step: Mapping[str, float],
-    residual: np.ndarray,
-    jacobian: np.ndarray,
-    predicted: float,
-    promised: float = 0.0,
-) -> Trial:
-    """A trial of one effect of the catalogue in a model of which nothing else is fitted; step: values by name."""
-    tried = model.with_effects(start.effect.id).with_values(start.values)
-    names = tuple(start.values)
-    return Trial(start, tried, names, names, residual, jacobian, dict(step), predicted, promised)
+    return FittedModel(model, evaluation, at_bound, (), 1, "least_squares")
 
 
 def made_up_comparison(model: Model, label: str, error: float, unseen: float) -> Comparison:

@@ -9,11 +9,10 @@ from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
 from hasel_sysid.dataset import prepared
-from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.errors import SysidError
-from hasel_sysid.estimation import identify
-from hasel_sysid.estimation.result import FitResult
-from hasel_sysid.selection.diagnose import diagnose
+from hasel_sysid.estimation import FittedModel, identify
+from hasel_sysid.improvement import diagnose
+from hasel_sysid.result import Diagnosis
 from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest
 from hasel_sysid.workbench.cards import source_of
 from hasel_sysid.workbench.evaluate import Progress, WatchedProblem, evaluated
@@ -124,7 +123,7 @@ def _evaluated(
     model: Model,
     pool: Executor,
     progress: Progress,
-    fit: FitResult | None,
+    fit: FittedModel | None,
     did: tuple[str, ...],
 ) -> Step:
     return evaluated(label, model, state.experiments, state.unseen, pool, progress, fit, did)

@@ -6,7 +6,7 @@ from concurrent.futures import Executor
 from hasel_sim.model import Model
 
 from hasel_sysid.dataset import Experiment
-from hasel_sysid.estimation.result import FitResult
+from hasel_sysid.estimation import FittedModel
 from hasel_sysid.problem import Evaluation, Problem
 from hasel_sysid.workbench.step import Step
 
@@ -38,7 +38,7 @@ def evaluated(
     unseen: Sequence[Experiment],
     pool: Executor,
     progress: Progress = silent,
-    fit: FitResult | None = None,
+    fit: FittedModel | None = None,
     did: tuple[str, ...] = (),
 ) -> Step:
     """Simulate all runs with a model and its derivatives by all free parameters.

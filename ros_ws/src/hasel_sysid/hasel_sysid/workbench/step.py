@@ -9,7 +9,7 @@ from hasel_sim.run import Simulation
 from hasel_sysid.compare.compare import comparison_of
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.dataset import Experiment
-from hasel_sysid.estimation.result import FitResult
+from hasel_sysid.estimation import FittedModel
 from hasel_sysid.problem import Evaluation
 
 
@@ -27,7 +27,7 @@ class Step:
     others: tuple[Experiment, ...]
     seen: Evaluation
     unseen: Evaluation | None = None
-    fit: FitResult | None = None
+    fit: FittedModel | None = None
     did: tuple[str, ...] = ()
     file: str = ""
 

@@ -7,8 +7,8 @@ from hasel_sim.model import load_model
 from hasel_sim.run import Run
 from hasel_sysid.diagnosis.context import Context, expected_squares
 from hasel_sysid.diagnosis.signature import Signature
-from hasel_sysid.estimation.result import FitResult
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.estimation import FittedModel
+from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.projection import orthonormal
 from hasel_sysid.testing.made_up_effects import made_up_effect, with_made_up
 from hasel_sysid.testing.made_up_runs import evaluation_of_runs
@@ -59,9 +59,9 @@ def _solve(shape: np.ndarray, residual: np.ndarray) -> np.ndarray:
     return np.linalg.lstsq(np.column_stack([FITTED, shape]), residual, rcond=None)[0]
 
 
-def _fit(residual: np.ndarray, jacobian: np.ndarray, *effects: Effect) -> FitResult:
+def _fit(residual: np.ndarray, jacobian: np.ndarray, *effects: Effect) -> FittedModel:
     sizes = tuple(f"{effect.id}.size" for effect in effects)
     model = with_made_up(load_model("beam").with_freed(MODULUS), *effects)
     model = model.with_values(dict.fromkeys(sizes, 0.5), dict.fromkeys(sizes, 0.1))
     evaluation = evaluation_of_runs(SWINGS, residual, jacobian=jacobian, names=(MODULUS, *sizes), model=model)
-    return FitResult(model, evaluation, (), (), 1, "made up")
+    return FittedModel(model, evaluation, (), (), 1, "made up")

@@ -5,8 +5,8 @@ import pytest
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import load_model
 from hasel_sim.run import Run
-from hasel_sysid.diagnosis.adequacy import adequacy
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.diagnosis.goodness import adequacy
+from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.testing.made_up_runs import evaluation_of_runs
 
 TIME = np.arange(0, 2.0, 1 / 120)

@@ -3,7 +3,7 @@
 import pytest
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import load_model
-from hasel_sysid.diagnosis.candidates import candidate_effects, resized, starts
+from hasel_sysid.candidates import candidate_effects, resized, starts
 
 
 def test_what_is_one_sided_starts_at_its_typical_size():

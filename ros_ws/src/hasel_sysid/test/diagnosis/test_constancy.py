@@ -6,8 +6,8 @@ from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import load_model
 from hasel_sim.run import Run
 from hasel_sysid.diagnosis.constancy import trends
-from hasel_sysid.estimation.result import FitResult
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.estimation import FittedModel
+from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.testing.made_up_runs import evaluation_of_runs
 
 NOISE = NoiseModel(white=9e-6, coloured=0.0, correlation=0.5)
@@ -52,7 +52,7 @@ def fitted(growth, by=VOLTAGE, runs=RUNS, at_bound=(), by_finer_mesh=0.0):
         model=model,
     )
     refined = {"mesh": VALUE * by_finer_mesh * along * own}
-    return FitResult(model, evaluation, at_bound, (), 1, "made up", changes_by_refinement=refined)
+    return FittedModel(model, evaluation, at_bound, (), 1, "made up", changes_by_refinement=refined)
 
 
 def test_a_value_that_grows_with_voltage_contradicts_the_law():

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from hasel_sim.model import load_model
 from hasel_sysid.diagnosis.context import on_edge, out_of_range
-from hasel_sysid.estimation.result import FitResult
+from hasel_sysid.estimation import FittedModel
 from hasel_sysid.testing.made_up_runs import made_up_evaluation
 
 NAME, ERROR = "force_length.weakening", 0.03
 
 
-def ended(value: float, pull: float, at_bound: bool = True, undetermined: bool = False) -> FitResult:
+def ended(value: float, pull: float, at_bound: bool = True, undetermined: bool = False) -> FittedModel:
     """A fit that left the weakening at a value, while the runs ask for so much more of it."""
     model = load_model("swimmer").with_levels([4500.0]).with_effects("force_length")
     model = model.with_values({NAME: value}, {NAME: None if undetermined else ERROR})
@@ -18,7 +18,7 @@ def ended(value: float, pull: float, at_bound: bool = True, undetermined: bool =
     evaluation = made_up_evaluation(
         (pull * series)[None], np.arange(50) / 120, jacobian=series[:, None], names=(NAME,), model=model
     )
-    return FitResult(
+    return FittedModel(
         model, evaluation, (NAME,) if at_bound else (), (NAME,) if undetermined else (), 1, "made up"
     )
 

@@ -5,7 +5,7 @@ import pytest
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import load_model
-from hasel_sysid.diagnosis.candidates import Start, starts, valued
+from hasel_sysid.candidates import Start, starts, valued
 from hasel_sysid.diagnosis.glimpse import Glimpse, glimpses, worth_a_trial
 from hasel_sysid.diagnosis.trial import Trials
 from hasel_sysid.problem import Problem

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from hasel_sim.effects.base import EffectParameter
 from hasel_sysid.diagnosis.judgement import finding
-from hasel_sysid.diagnosis.result import Verdict
+from hasel_sysid.result import Verdict
 from hasel_sysid.testing.made_up_effects import made_up_effect, made_up_size, with_made_up
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import load_model
-from hasel_sysid.diagnosis.candidates import starts
+from hasel_sysid.candidates import starts
 from hasel_sysid.diagnosis.reached import squares_reached
 from hasel_sysid.testing.made_up_runs import made_up_fit, made_up_trial
 

@@ -3,8 +3,8 @@
 import math
 
 import pytest
-from hasel_sysid.diagnosis.result import Diagnosis, Finding, Verdict
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.result import Diagnosis, Finding, Verdict
+from hasel_sysid.noise.model import NoiseModel
 
 RANGE = (0.0, 0.3)
 

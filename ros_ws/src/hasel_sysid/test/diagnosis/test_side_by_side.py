@@ -1,7 +1,7 @@
 """Which effects share a simulation."""
 
 from hasel_sim.effects.registry import catalogue
-from hasel_sysid.diagnosis.candidates import starts
+from hasel_sysid.candidates import starts
 from hasel_sysid.diagnosis.side_by_side import side_by_side
 
 

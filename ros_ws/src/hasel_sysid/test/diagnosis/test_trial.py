@@ -5,7 +5,7 @@ import pytest
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import load_model
-from hasel_sysid.diagnosis.candidates import resized, starts, valued
+from hasel_sysid.candidates import resized, starts, valued
 from hasel_sysid.diagnosis.trial import Trials, _shortened
 from hasel_sysid.problem import Problem
 from hasel_sysid.testing.made_up_runs import made_up_trial

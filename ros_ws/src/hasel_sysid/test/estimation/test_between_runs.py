@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from hasel_sysid.estimation.between_runs import scatter_between_runs, wider_where_runs_disagree
+from hasel_sysid.estimation.covariance import scatter_between_runs, wider_where_runs_disagree
 from hasel_sysid.estimation.uncertainty import parameter_covariance
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.noise.model import NoiseModel
 from scipy.linalg import fractional_matrix_power
 
 RUNS = np.repeat(np.arange(9), 200)

@@ -8,7 +8,7 @@ from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 from hasel_sysid.dataset import Experiment
-from hasel_sysid.estimation import fit_from_afar, fit_least_squares, in_step
+from hasel_sysid.estimation import fit_baseline, fit_least_squares, in_step
 from hasel_sysid.estimation.opening import openings
 from hasel_sysid.problem import Problem
 
@@ -42,7 +42,7 @@ def test_a_mass_is_found_that_nearly_halves_the_frequency():
     """From no mass at all, where no derivative points home; together with the damping."""
     values = {"payload.mass": 1.7, "material_damping.retardation_time": 0.003}
     swinging, model = problem(values), beam("payload", "material_damping")
-    found = fit_from_afar(swinging, model)
+    found = fit_baseline(swinging, model)
     assert in_step(found.evaluation)
     for name, value in values.items():
         assert found.model.values[name] == pytest.approx(value, rel=0.02)
@@ -51,7 +51,7 @@ def test_a_mass_is_found_that_nearly_halves_the_frequency():
 def test_a_model_that_lacks_something_else_is_fitted_as_far_as_it_keeps_step():
     """Without damping the mass is that of the first swings, and the result says so."""
     swinging = problem({"payload.mass": 1.7, "material_damping.retardation_time": 0.003})
-    found = fit_from_afar(swinging, beam("payload"))
+    found = fit_baseline(swinging, beam("payload"))
     assert found.model.values["payload.mass"] == pytest.approx(1.7, rel=0.1)
     assert any("in step with the first" in sentence for sentence in found.sentences)
     near = fit_least_squares(swinging, beam("payload"))

@@ -6,7 +6,7 @@ from hasel_sim.errors import SimulationError
 from hasel_sim.model import load_model
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import METHODS, identify
-from hasel_sysid.estimation.result import FitResult
+from hasel_sysid.estimation import FittedModel
 from hasel_sysid.testing.made_up_runs import made_up_evaluation
 
 NAME = "current_limit.inverse_rate"
@@ -22,7 +22,7 @@ def method(monkeypatch):
             residual = np.array([np.sqrt(squares(value))])
             evaluation = made_up_evaluation(residual[None], np.zeros(1), names=(NAME,), model=model)
             at_bound = (NAME,) if value == 0 else ()
-            return FitResult(model, evaluation, at_bound, (), 1, "nothing")
+            return FittedModel(model, evaluation, at_bound, (), 1, "nothing")
 
         monkeypatch.setitem(METHODS, "least_squares", stay)
 

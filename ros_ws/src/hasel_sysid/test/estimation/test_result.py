@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sim.model import load_model
-from hasel_sysid.estimation import FitResult
+from hasel_sysid.estimation import FittedModel
 from hasel_sysid.problem import Evaluation
 
 
@@ -31,4 +31,4 @@ def test_a_value_on_a_bound_is_said(value, sentence):
     names = ("quadratic_drag.coefficient",)
     nothing = np.zeros(0)
     evaluation = Evaluation(model, names, (), nothing, np.zeros((0, 1)), nothing, nothing, ())
-    assert FitResult(model, evaluation, names, (), 1, "least squares").sentences == [sentence]
+    assert FittedModel(model, evaluation, names, (), 1, "least squares").sentences == [sentence]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import statsmodels.api as sm
 from hasel_sysid.estimation.uncertainty import parameter_covariance
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.noise.model import NoiseModel
 
 RUNS = np.repeat(np.arange(4), 300)
 TIME = np.tile(np.arange(300) / 120.0, 4)

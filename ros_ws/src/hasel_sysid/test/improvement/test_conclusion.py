@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from hasel_sim.model import load_model
-from hasel_sysid.diagnosis import Diagnosis
-from hasel_sysid.improvement import Stage, Status
+from hasel_sysid.result import Diagnosis
+from hasel_sysid.result import Stage, Status
 from hasel_sysid.improvement.conclusion import conclude, left_over
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.testing.made_up_runs import made_up_fit
 
 FLOOR = 0.0024

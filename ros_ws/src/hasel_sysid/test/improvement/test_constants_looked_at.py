@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from hasel_sim.model import Model, load_model
-from hasel_sysid.estimation import fit_from_afar, fit_least_squares, is_close
+from hasel_sysid.estimation import fit_baseline, fit_least_squares, is_close
 from hasel_sysid.estimation.decades import decades
 from hasel_sysid.improvement.constants_looked_at import beside_what_is_far_off
 from hasel_sysid.improvement.freed_constant import freed, held_constants
@@ -43,7 +43,7 @@ def test_a_wrong_density_is_found_from_afar(share, fewer):
     much else promises something, more of it is fitted than beside a model that is close.
     """
     problem, given = _measured(share), _body()
-    fitted = fit_from_afar(problem, given).evaluation
+    fitted = fit_baseline(problem, given).evaluation
     assert not is_close(fitted)
     problem.evaluations = 0
     begin = beside_what_is_far_off(problem, fitted, POLICY, given)

@@ -3,8 +3,8 @@
 import math
 
 import pytest
-from hasel_sysid.diagnosis import Verdict
-from hasel_sysid.improvement import Status, improve
+from hasel_sysid.result import Verdict
+from hasel_sysid.result import Status, improve
 from hasel_sysid.selection.simulated_sets import SimulatedSets
 from hasel_sysid.testing.made_up_world import MadeUpProblem, MadeUpWorld
 
@@ -76,7 +76,7 @@ def test_what_explains_too_little_is_not_added(stranger):
     assert found.missing == ()
     assert not [f for f in found.diagnosis.findings if f.verdict is Verdict.MISSING]
     assert "of the error above the noise, which explains too little of it: not added" in found.reason
-    assert not found.adequacy.adequate
+    assert not found.goodness.adequate
     assert found.unexplained_fraction == 1.0
 
 

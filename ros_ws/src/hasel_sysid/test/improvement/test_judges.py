@@ -1,8 +1,8 @@
 """What a search asks of the sets that it knows."""
 
 from hasel_sysid.data_gate.finding import error
-from hasel_sysid.diagnosis.candidates import candidate_effects
-from hasel_sysid.estimation import fit_from_afar
+from hasel_sysid.candidates import candidate_effects
+from hasel_sysid.estimation import fit_baseline
 from hasel_sysid.improvement.judges import Judges
 from hasel_sysid.selection import POLICY, choose, search
 from hasel_sysid.selection.sets import NOTHING
@@ -16,7 +16,7 @@ TOGETHER = frozenset({"payload", "pre_bend"})
 
 def searched(world, measured, opposed=()):
     """What a search without judges finds, and the judges of it."""
-    fit = fit_from_afar(measured, world.model)
+    fit = fit_baseline(measured, world.model)
     sets = SimulatedSets(measured, fit, candidate_effects(fit.model, None))
     return search(sets, POLICY), Judges(sets, POLICY, opposed)
 

@@ -4,8 +4,8 @@ import json
 
 import pytest
 from hasel_sysid.estimation import fit_least_squares
-from hasel_sysid.improvement import Status, improve
-from hasel_sysid.improvement.ledger import Ledger
+from hasel_sysid.result import Status, improve
+from hasel_sysid.ledger import Ledger
 from hasel_sysid.testing.made_up_world import MadeUpWorld
 
 DENSITY = "material.density_kg_per_m3"
@@ -31,7 +31,7 @@ def test_one_wrong_number_comes_before_two_effects(share):
     assert found.missing == ()
     assert [stage.added for stage in found.stages] == [(), (DENSITY,)]
     assert found.stages[-1].mae_validation < 0.2 * found.stages[0].mae_validation
-    assert found.adequacy.adequate
+    assert found.goodness.adequate
     assert DENSITY in found.reason and "900 kg/m^3" in found.reason
     assert found.diagnosis.probability_none == 1.0
     assert all(finding.probability == 0.0 for finding in found.diagnosis.findings)
@@ -68,7 +68,7 @@ def test_a_number_comes_before_effects_that_do_not_describe_the_runs_either():
     world = MadeUpWorld(1, shared=16, constants={DENSITY: TOGETHER})
     truth = world.with_typical().with_freed(DENSITY).with_values({DENSITY: 1080.0})
     found = improve(world.measured(truth, stranger=0.01), world.model, only=TOGETHER)
-    assert not found.adequacy.adequate
+    assert not found.goodness.adequate
     assert found.constant.name == DENSITY
     assert found.constant.instead_of == frozenset(TOGETHER)
     assert found.status is Status.UNEXPLAINED

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.noise_sources.above_the_band import noise_above_the_band
 from hasel_sysid.testing.made_up_runs import made_up_evaluation
 

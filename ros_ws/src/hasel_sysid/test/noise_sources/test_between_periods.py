@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sim.drive.schedule import DriveSchedule
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.noise_sources.between_periods import noise_between_periods
 from hasel_sysid.testing.made_up_runs import made_up_evaluation
 

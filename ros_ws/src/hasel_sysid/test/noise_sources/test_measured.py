@@ -7,8 +7,8 @@ from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.run import Run
 from hasel_sysid.dataset import Experiment
 from hasel_sysid.errors import SysidError
-from hasel_sysid.noise import NoiseModel
-from hasel_sysid.noise_sources.measured import given_noise, measured_noise
+from hasel_sysid.noise.model import NoiseModel
+from hasel_sysid.noise.sources import given_noise, measured_noise
 
 TIME = np.arange(-0.5, 4.0, 0.01)
 TRUTH = NoiseModel(white=4e-10, coloured=0.0, correlation=0.5)

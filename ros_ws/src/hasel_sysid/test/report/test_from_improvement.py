@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from hasel_sim.model import load_model
 from hasel_sysid.command_line.summary import improvement_lines
-from hasel_sysid.diagnosis.adequacy import Adequacy
-from hasel_sysid.diagnosis.result import Diagnosis, Finding, Verdict
-from hasel_sysid.estimation.result import FitResult
-from hasel_sysid.improvement.result import Improvement, Stage, Status
-from hasel_sysid.improvement.wrong_constant import WrongConstant
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.diagnosis.goodness import Adequacy
+from hasel_sysid.result import Diagnosis, Finding, Verdict
+from hasel_sysid.estimation import FittedModel
+from hasel_sysid.result import Improvement, Stage, Status
+from hasel_sysid.result import WrongConstant
+from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.report.from_diagnosis import diagnosis_content, ranked_rows
 from hasel_sysid.report.from_improvement import improvement_content, what_is_missing
 from hasel_sysid.report.write import render
@@ -44,7 +44,7 @@ def improvement(diagnosis) -> Improvement:
     return Improvement(stages, Status.EXPLAINED, ("quadratic_drag",), 0.02, 0.0024, "What is left is noise.")
 
 
-def _fit(model, error: float) -> FitResult:
+def _fit(model, error: float) -> FittedModel:
     return made_up_fit(model, error, at_bound=("slope",))
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 from hasel_sim.model import load_model
-from hasel_sysid.diagnosis.result import Finding, Verdict
+from hasel_sysid.result import Finding, Verdict
 from hasel_sysid.report.from_diagnosis import ranked_rows
 from hasel_sysid.report.from_results import parameter_rows
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import load_model
-from hasel_sysid.diagnosis.candidates import Start, decade_starts, starts
+from hasel_sysid.candidates import Start, decade_starts, starts
 from hasel_sysid.diagnosis.glimpse import Glimpse
 from hasel_sysid.diagnosis.trial import Trial
 from hasel_sysid.selection.decade_trials import Decades

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import load_model
-from hasel_sysid.estimation.result import FitResult
+from hasel_sysid.estimation import FittedModel
 from hasel_sysid.selection.known_set import known_set
 from hasel_sysid.testing.made_up_runs import made_up_evaluation
 
@@ -19,7 +19,7 @@ def test_a_set_is_on_edge_where_a_value_of_an_effect_ended_on_a_bound(at_bound, 
         np.zeros((1, 50)), np.arange(50) / 120, jacobian=SERIES[:, None], names=(NAME,), model=model
     )
     found = known_set(
-        FitResult(model, evaluation, at_bound, (), 1, "made up"),
+        FittedModel(model, evaluation, at_bound, (), 1, "made up"),
         {"force_length": catalogue()["force_length"]},
     )
     assert found.on_edge == bool(at_bound)
@@ -38,5 +38,5 @@ def test_what_only_does_what_the_model_may_do_already_is_no_answer(undetermined,
         names=(NAME, "slope"),
         model=model,
     )
-    fit = FitResult(model, evaluation, (), undetermined, 1, "made up")
+    fit = FittedModel(model, evaluation, (), undetermined, 1, "made up")
     assert known_set(fit, {"force_length": catalogue()["force_length"]}).plausible == answer

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_sysid.noise import LONGEST_CORRELATION, NoiseModel
+from hasel_sysid.noise.model import LONGEST_CORRELATION, NoiseModel
 from hasel_sysid.selection.likelihood import Likelihood
 from scipy.linalg import toeplitz
 from scipy.stats import multivariate_normal

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.selection.likelihood import Likelihood
 from hasel_sysid.selection.missing import missing
 from hasel_sysid.selection.sets import FittedSet

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.selection import POLICY, choose, search
 from hasel_sysid.testing.linear_choice import SLOW, WHITE, chosen, made_up
 from hasel_sysid.testing.linear_sets import LinearSets, run_numbers, smooth_series

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.selection import POLICY, choose, search
 from hasel_sysid.testing.linear_choice import WHITE, Judged, LookOtherwiseAtFirst, chosen, made_up
 from hasel_sysid.testing.linear_sets import LinearSets

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hasel_sim.effects.registry import catalogue, find_effects
 from hasel_sim.model import Model, load_model
-from hasel_sysid.estimation import FitResult, fit_least_squares
+from hasel_sysid.estimation import FittedModel, fit_least_squares
 from hasel_sysid.estimation.least_squares import fitted_result
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.simulated_sets import SimulatedSets
@@ -81,7 +81,7 @@ def heavy_in_water() -> Problem:
     return simulated_runs(_swimmer("added_mass").with_values(values), drives, np.arange(0.0, 1.5, 1 / 60))
 
 
-def _known(problem: Problem, model: Model) -> FitResult:
+def _known(problem: Problem, model: Model) -> FittedModel:
     return fitted_result(problem.evaluate(model, model.free), 1)
 
 
@@ -95,7 +95,7 @@ def test_beside_a_fit_that_is_far_off_an_effect_is_found_over_decades_and_from_t
         heavy_in_water, _swimmer().with_values({"amplitude_3500": 0.036, "amplitude_5500": 0.009})
     )
 
-    def fitted(given: Model | None) -> FitResult:
+    def fitted(given: Model | None) -> FittedModel:
         sets = SimulatedSets(heavy_in_water, far_off, [catalogue()["added_mass"]], given=given)
         seen = sets.prospects(sets.baseline(), None, lambda p: -float(p.residual @ p.residual), 4)
         return sets.fit(frozenset({"added_mass"}), sets.baseline(), seen.values()).fit
@@ -111,7 +111,7 @@ def test_an_amplitude_that_no_muscle_has_the_time_to_reach_is_given_again(heavy_
     values = {"amplitude_5500": 0.5, "slope": 0.25, "added_mass.added_mass": 3.0}
     astray = _known(heavy_in_water, _swimmer("added_mass").with_values({"amplitude_3500": 0.03, **values}))
 
-    def fitted(given: Model | None) -> FitResult:
+    def fitted(given: Model | None) -> FittedModel:
         sets = SimulatedSets(heavy_in_water, astray, [catalogue()["added_mass"]], given=given)
         return sets.fit(frozenset({"added_mass"}), sets.baseline(), ()).fit
 
@@ -130,7 +130,7 @@ def test_a_fit_is_held_against_the_best_set_that_was_fitted(heavy_in_water):
     )
     lag, heavy = frozenset({"charging_lag"}), frozenset({"added_mass"})
 
-    def fitted_after(*before: frozenset[str]) -> FitResult:
+    def fitted_after(*before: frozenset[str]) -> FittedModel:
         effects = [catalogue()[name] for name in ("charging_lag", "added_mass")]
         sets = SimulatedSets(heavy_in_water, far_off, effects, given=_swimmer())
         seen = sets.prospects(sets.baseline(), None, lambda p: -float(p.residual @ p.residual), 4)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import load_model
-from hasel_sysid.diagnosis.candidates import Start, starts
+from hasel_sysid.candidates import Start, starts
 from hasel_sysid.diagnosis.trial import Trial
 from hasel_sysid.selection.sets import FittedSet
 from hasel_sysid.selection.sized_starts import Expected, expected_beside, overlooked

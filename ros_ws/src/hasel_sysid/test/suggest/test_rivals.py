@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import pytest
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model, load_model
-from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict
+from hasel_sysid.result import Diagnosis, Finding, Verdict
 from hasel_sysid.errors import SysidError
-from hasel_sysid.estimation.result import FitResult
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.estimation import FittedModel
+from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.suggest import in_doubt, rivals
 from hasel_sysid.testing.made_up_runs import made_up_fit
 
@@ -17,7 +17,7 @@ from hasel_sysid.testing.made_up_runs import made_up_fit
 class Baseline:
     """Of a diagnosis's context, what a further explanation begins with."""
 
-    fit: FitResult
+    fit: FittedModel
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ import pytest
 from hasel_sim.model import load_model
 from hasel_sim.parallel import executor
 from hasel_sim.simulate import simulate
-from hasel_sysid.noise import NoiseModel
+from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.suggest import suggest
 
 NOISE = NoiseModel(white=9e-6, coloured=0.0, correlation=0.5)

@@ -1,0 +1,126 @@
+"""Where a fit begins: a typical size and the decades of the plausible range, at every time and place (multi-start)."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from hasel_sim.effects.base import EffectParameter
+from hasel_sim.errors import HaselSimError, SimulationError
+from hasel_sim.model import Model
+
+from hasel_sysid.candidates import Candidate
+from hasel_sysid.problem import Evaluation, Problem
+from hasel_sysid.projection import orthonormal
+
+_MOST = 2.0
+"""Multiples of a start up to which its change is taken to be in proportion."""
+_FACTOR = np.sqrt(10.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """values: of a candidate's parameters, by name in a model; typical: whether its sizes are the typical ones."""
+
+    candidate: Candidate
+    values: Mapping[str, float]
+    typical: bool = False
+
+    def model(self, beside: Model) -> Model:
+        """The model with the candidate at this start. Raises ModelError where it does not fit in."""
+        return self.candidate.added_to(beside).with_values(dict(self.values))
+
+    def scaled(self, amount: float) -> dict[str, float]:
+        """The values with the sizes so many times as far from their nulls, as far as their ranges allow."""
+        sizes = self.candidate.sizes
+        return {
+            name: float(np.clip(p.null + amount * (value - p.null), p.lower, p.upper))
+            if (p := sizes.get(name))
+            else value
+            for name, value in self.values.items()
+        }
+
+
+def starts(candidate: Candidate) -> list[Start]:
+    """All starts of a candidate; those of typical size come first."""
+    sizes, coordinates = candidate.sizes, candidate.coordinates
+    places: list[dict[str, float]] = [{}]
+    for name, p in coordinates.items():
+        places = [{**place, name: value} for place in places for value in p.scan]
+    first = next(iter(sizes.values()), None)
+    factors = [1.0] if first is None else [1.0, *_factors(first)]
+    return [
+        Start(candidate, {**_at(sizes, factor), **place}, factor == 1.0)
+        for factor in factors
+        for place in places
+    ]
+
+
+def _at(sizes: Mapping[str, EffectParameter], factor: float) -> dict[str, float]:
+    return {
+        name: float(np.clip(p.null + factor * (p.typical - p.null), p.lower, p.upper))
+        for name, p in sizes.items()
+    }
+
+
+def _factors(p: EffectParameter) -> list[float]:
+    """Multiples of the typical size over the plausible range: of a ratio evenly in its logarithm, else by sqrt(10) from
+    the typical size outwards, to either side of the null that the range has.
+    """
+    step = p.typical - p.null
+    if step == 0 or not np.isfinite([p.lower, p.upper]).all():
+        return []
+    if p.null > 0 and p.lower > 0:
+        return [float((value - p.null) / step) for value in np.geomspace(p.lower, p.upper, 7)[1:-1]]
+    found, ends = [], ((p.lower - p.null) / step, (p.upper - p.null) / step)
+    for side, end in ((-1.0, min(ends)), (1.0, max(ends))):
+        factor = _FACTOR
+        while factor < side * end:
+            found.append(side * factor)
+            factor *= _FACTOR
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class Screened:
+    """A start, simulated once. change [frames]: of the simulated series by it; amount: by how many times that the sum
+    of squares is least, everything fitted followed to first order; predicted: the sum of squares there.
+    """
+
+    start: Start
+    change: np.ndarray
+    amount: float
+    predicted: float
+
+    def values(self) -> dict[str, float]:
+        """Of the candidate where a search from here begins: as it is, where its change alone promises nothing."""
+        return self.start.scaled(self.amount or 1.0)
+
+
+def screen(problem: Problem, about: Evaluation, every: Sequence[Start]) -> list[Screened]:
+    """Starts beside a model, each simulated once without derivatives; what cannot be simulated is left out."""
+    models, able = [], []
+    for start in every:
+        try:
+            models.append(start.model(about.model))
+            able.append(start)
+        except HaselSimError:
+            continue
+    found = problem.evaluate_each(models, [()] * len(models))
+    basis = orthonormal(about.jacobian)
+    return [
+        _screened(start, about.residual, basis, about.residual - seen.residual)
+        for start, seen in zip(able, found, strict=True)
+        if not isinstance(seen, SimulationError)
+    ]
+
+
+def _screened(start: Start, residual: np.ndarray, basis: np.ndarray, change: np.ndarray) -> Screened:
+    left = residual - basis @ (basis.T @ residual)
+    own = change - basis @ (basis.T @ change)
+    power = float(own @ own)
+    signed = all(p.lower < p.null < p.upper for p in start.candidate.sizes.values())
+    amount = 0.0
+    if power > 0:
+        amount = float(np.clip(own @ left / power, -_MOST if signed else 0.0, _MOST))
+    beyond = left - amount * own
+    return Screened(start, change, amount, float(beyond @ beyond))

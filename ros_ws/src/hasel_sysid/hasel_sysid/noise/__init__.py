@@ -1,0 +1,1 @@
+"""The noise of the measured angle: its model, where it is measured, and how it is bounded elsewhere."""

@@ -1,0 +1,52 @@
+"""A saturated model of the residual: an upper bound of what any effect could explain, and never an explanation.
+
+It predicts the residual by a linear combination of what drives the body and how it moves.
+"""
+
+import numpy as np
+
+from hasel_sysid.problem import Evaluation
+
+_LAGS_S = (0.0, 0.03, 0.1, 0.3)
+
+
+def regressors(evaluation: Evaluation) -> np.ndarray:
+    """Features of every frame, the mean of every run removed and scaled to unit length, [frames, features]."""
+    parts = []
+    for number, simulation in enumerate(evaluation.simulations):
+        used = evaluation.frames[number]
+        parts.append(_features(simulation.time, _filled(simulation.sin_theta), simulation.contraction)[used])
+    columns = np.concatenate(parts)
+    for run in np.unique(evaluation.runs):
+        here = evaluation.runs == run
+        columns[here] -= columns[here].mean(axis=0)
+    length = np.linalg.norm(columns, axis=0)
+    return columns[:, length > 1e-9] / length[length > 1e-9]
+
+
+def _filled(series: np.ndarray) -> np.ndarray:
+    return np.nan_to_num(series, nan=0.0)
+
+
+def _features(time: np.ndarray, angle: np.ndarray, contraction: np.ndarray) -> np.ndarray:
+    rate = np.gradient(angle, time)
+    acceleration = np.gradient(rate, time)
+    contraction = np.nan_to_num(contraction, nan=0.0)
+    together = contraction.sum(axis=1)
+    difference = 2 * contraction[:, 0] - together if contraction.shape[1] else together
+    elapsed = time - time[0]
+    lagged = [np.interp(time - lag, time, difference, left=0.0) for lag in _LAGS_S]
+    return np.stack(
+        [angle, rate, acceleration, angle**3, angle * np.abs(angle), rate * np.abs(rate), angle**2 * rate]
+        + [np.tanh(10 * rate), angle * elapsed, elapsed, together, difference**3, *lagged],
+        axis=1,
+    )
+
+
+def unexplained_by(columns: np.ndarray, residual: np.ndarray) -> np.ndarray:
+    """The part of a residual [frames] outside the span of columns [frames, n]."""
+    if columns.shape[1] == 0:
+        return residual
+    left, strength, _ = np.linalg.svd(columns, full_matrices=False)
+    basis = left[:, strength > 1e-9 * strength[0]]
+    return residual - basis @ (basis.T @ residual)

@@ -1,0 +1,92 @@
+"""How well a model predicts every run from the others: elpd, its differences and their errors.
+
+Leave-one-run-out log predictive density (Vehtari, Gelman and Gabry 2017), linearised at the fit to all runs.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hasel_sysid.selection.likelihood import Whitened
+
+_PARTS, _PIECES = 4, 16
+"""Of a single run every fourth of so many pieces is left out: a body that was let go shows most of itself at first, and
+what its first quarter is like no other quarter predicts."""
+_FEWEST_RUNS = 4
+"""Fewer do not tell how much their differences scatter."""
+_TINY = float(np.finfo(float).tiny)
+
+
+@dataclass(frozen=True, eq=False)
+class Elpd:
+    """densities [folds]: logarithm of the predictive density of every run left out, up to a constant that all models
+    share; residual [frames]: whitened, of the fit to all runs; powers [folds]: of what was measured; None where the
+    folds are no runs.
+    """
+
+    densities: np.ndarray
+    residual: np.ndarray
+    powers: np.ndarray | None
+
+    @property
+    def total(self) -> float:
+        """Of all runs."""
+        return float(self.densities.sum())
+
+    def over(self, other: "Elpd") -> "Difference":
+        """By how much this model predicts better than another."""
+        by_run = self.densities - other.densities
+        scatter = 0.0 if self.powers is None or len(by_run) < _FEWEST_RUNS else _scatter(by_run, self.powers)
+        by_noise = float(np.linalg.norm(self.residual - other.residual))
+        return Difference(float(by_run.sum()), max(scatter, by_noise), by_noise)
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Of two elpd. error: standard error, of runs that disagree, and no less than by_noise: what noise alone makes of a
+    log-likelihood ratio (Vuong 1989).
+    """
+
+    total: float
+    error: float
+    by_noise: float
+
+
+def _scatter(gains: np.ndarray, powers: np.ndarray) -> float:
+    """Standard error of the sum of gains [runs] that grow with the power of what was measured [runs].
+
+    That a run in which the body hardly moves tells little is no disagreement: every run is compared with its share of
+    the sum (the ratio estimator's v_D of Royall and Cumberland 1981). Of runs of one power it is the usual one.
+    """
+    share = powers / max(powers.sum(), _TINY)
+    away = gains - share * gains.sum()
+    return float(np.sqrt((away**2 / np.maximum(1 - share, _TINY)).sum()))
+
+
+def leave_one_run_out(fitted: Whitened, measured: np.ndarray, prior_runs: float) -> Elpd:
+    """measured [frames]: the series itself, the mean of every run removed; prior_runs: what is known of the parameters
+    beforehand, as the information of so many average runs.
+    """
+    folds = fitted.runs
+    alone = len(np.unique(folds)) == 1
+    if alone:
+        folds = _PIECES * np.arange(len(folds)) // len(folds) % _PARTS
+    numbers = np.unique(folds)
+    densities = [
+        _density(fitted.basis, fitted.residual, folds == fold, prior_runs / len(numbers)) for fold in numbers
+    ]
+    powers = None if alone else np.array([(measured[folds == fold] ** 2).sum() for fold in numbers])
+    return Elpd(np.array(densities), fitted.residual, powers)
+
+
+def _density(basis: np.ndarray, residual: np.ndarray, here: np.ndarray, prior: float) -> float:
+    own = basis[here]
+    size = own.shape[1]
+    information = (1 + prior) * np.eye(size) - own.T @ own
+    spread = own @ np.linalg.inv(information)
+    error = residual[here] - spread @ (basis[~here].T @ residual[~here])
+    # the covariance I + own information^-1 own', by its small side
+    inner = np.eye(size) - own.T @ own / (1 + prior)
+    _, logarithm = np.linalg.slogdet(inner)
+    squares = error @ error - (own.T @ error) @ np.linalg.solve((1 + prior) * np.eye(size), own.T @ error)
+    return float(0.5 * logarithm - 0.5 * squares)

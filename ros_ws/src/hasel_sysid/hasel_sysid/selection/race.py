@@ -1,0 +1,95 @@
+"""Every candidate alone, fitted by the low-fidelity model until it converged or can no longer win.
+
+Racing: Maron and Moore, Advances in Neural Information Processing Systems 6 (1994) 59.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from hasel_sim.errors import SimulationError
+
+from hasel_sysid.candidates import Candidate
+from hasel_sysid.estimation.fit import TOLERANCE
+from hasel_sysid.estimation.least_squares import GaussNewton
+from hasel_sysid.estimation.starts import Screened, screen, starts
+from hasel_sysid.problem import Evaluation, LowFidelityProblem
+from hasel_sysid.selection.likelihood import Likelihood
+
+_RUNS = 4
+"""Runs on which other than typical sizes are screened: those of which most is left."""
+_ENTRIES = 12
+"""Starts that take part, the most promising of all that were screened."""
+_MOST_STEPS = 10
+_OPTIMISM = 2.0
+"""Times what first order promises of the next step that a candidate is given the credit of."""
+
+
+def screen_typical(
+    problem: LowFidelityProblem, candidates: Sequence[Candidate]
+) -> tuple[list[Screened], list[Candidate]]:
+    """Every candidate once at its typical size, at all times and places; and those for which there was no time."""
+    found: list[Screened] = []
+    left = list(candidates)
+    for batch in problem.time_limit.in_batches(candidates, even_late=True):
+        found += screen(problem, problem.known, [s for c in batch for s in starts(c) if s.typical])
+        left = left[len(batch) :]
+    return found, left
+
+
+def race(
+    problem: LowFidelityProblem, typical: Sequence[Screened], likelihood: Likelihood, reach: float
+) -> dict[str, Evaluation]:
+    """The best low-fidelity model with each of the candidates that took part, by name.
+
+    problem: corrected at the model without any of them; typical: what `screen_typical` found; reach: by how much of
+    log-likelihood a model may lie behind the best one and still be its equal.
+    """
+    about = problem.known
+    entries = [(one.predicted / about.sum_of_squares, one) for one in typical]
+    worst = np.argsort(-np.bincount(about.runs, about.residual**2))[:_RUNS].tolist()
+    few = problem.of_runs(worst)
+    candidates = {one.start.candidate.name: one.start.candidate for one in typical}
+    others = [s for c in candidates.values() for s in starts(c) if not s.typical]
+    for batch in problem.time_limit.in_batches(others):
+        screened = screen(few, few.known, batch)
+        entries += [(one.predicted / few.known.sum_of_squares, one) for one in screened]
+    entries.sort(key=lambda entry: entry[0])
+    return _run(problem, [one for _, one in entries[:_ENTRIES]], likelihood, reach)
+
+
+def _run(
+    problem: LowFidelityProblem,
+    entries: Sequence[Screened],
+    likelihood: Likelihood,
+    reach: float,
+) -> dict[str, Evaluation]:
+    """The race itself: one Gauss-Newton step each, of those that can still win."""
+    about = problem.known
+    base = likelihood.of(about.residual, about.jacobian).logarithm
+    models = [one.start.candidate.added_to(about.model).with_values(one.values()) for one in entries]
+    begun = problem.evaluate_each(models, [model.free for model in models])
+    searches = [
+        (one.start.candidate.name, GaussNewton(seen, TOLERANCE, _first(seen, about)))
+        for one, seen in zip(entries, begun, strict=True)
+        if not isinstance(seen, SimulationError)
+    ]
+    for _ in range(_MOST_STEPS):
+        gains = [likelihood.of(s.at.residual, s.at.jacobian).logarithm - base for _, s in searches]
+        needed = (max(gains, default=0.0) - reach) / _OPTIMISM
+        going = [
+            s for gain, (_, s) in zip(gains, searches, strict=True) if gain >= needed and not s.converged
+        ]
+        if not going or problem.time_limit.is_over():
+            break
+        seen = problem.evaluate_each([s.proposal() for s in going], [s.names for s in going])
+        for search, new in zip(going, seen, strict=True):
+            search.take(new)
+    ended: dict[str, Evaluation] = {}
+    for name, search in sorted(searches, key=lambda one: one[1].at.sum_of_squares):
+        ended.setdefault(name, search.at)
+    return ended
+
+
+def _first(begun: Evaluation, about: Evaluation) -> Sequence[str]:
+    """What follows alone at first: all that was fitted, where a start alone makes things worse."""
+    return about.names if begun.sum_of_squares > about.sum_of_squares else ()
