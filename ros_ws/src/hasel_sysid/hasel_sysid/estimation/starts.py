@@ -19,11 +19,19 @@ _FACTOR = np.sqrt(10.0)
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """values: of a candidate's parameters, by name in a model; typical: whether its sizes are the typical ones."""
+    """values: of a candidate's parameters, by name in a model; factor: of the typical size; place: the times and places
+    among the values.
+    """
 
     candidate: Candidate
     values: Mapping[str, float]
-    typical: bool = False
+    factor: float
+    place: tuple[float, ...] = ()
+
+    @property
+    def typical(self) -> bool:
+        """Whether its sizes are the typical ones."""
+        return self.factor == 1.0
 
     def model(self, beside: Model) -> Model:
         """The model with the candidate at this start. Raises ModelError where it does not fit in."""
@@ -49,10 +57,19 @@ def starts(candidate: Candidate) -> list[Start]:
     first = next(iter(sizes.values()), None)
     factors = [1.0] if first is None else [1.0, *_factors(first)]
     return [
-        Start(candidate, {**_at(sizes, factor), **place}, factor == 1.0)
+        Start(candidate, {**_at(sizes, factor), **place}, factor, tuple(place.values()))
         for factor in factors
         for place in places
     ]
+
+
+def outward(candidate: Candidate) -> list[list[Start]]:
+    """Other than typical sizes, from the null outwards: a list for every time or place and either side of the null."""
+    chains: dict[tuple, list[Start]] = {}
+    for start in starts(candidate):
+        if not start.typical:
+            chains.setdefault((start.place, start.factor > 0), []).append(start)
+    return [sorted(chain, key=lambda start: abs(start.factor)) for chain in chains.values()]
 
 
 def _at(sizes: Mapping[str, EffectParameter], factor: float) -> dict[str, float]:

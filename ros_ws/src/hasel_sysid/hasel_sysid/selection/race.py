@@ -11,14 +11,14 @@ from hasel_sim.errors import SimulationError
 from hasel_sysid.candidates import Candidate
 from hasel_sysid.estimation.fit import TOLERANCE
 from hasel_sysid.estimation.least_squares import GaussNewton
-from hasel_sysid.estimation.starts import Screened, screen, starts
+from hasel_sysid.estimation.starts import Screened, Start, outward, screen, starts
 from hasel_sysid.problem import Evaluation, LowFidelityProblem
 from hasel_sysid.selection.likelihood import Likelihood
 
 _RUNS = 4
 """Runs on which other than typical sizes are screened: those of which most is left."""
 _ENTRIES = 12
-"""Starts that take part, the most promising of all that were screened."""
+"""Starts that take part at most, the most promising of all that were screened."""
 _MOST_STEPS = 10
 _OPTIMISM = 2.0
 """Times what first order promises of the next step that a candidate is given the credit of."""
@@ -45,16 +45,32 @@ def race(
     log-likelihood a model may lie behind the best one and still be its equal.
     """
     about = problem.known
-    entries = [(one.predicted / about.sum_of_squares, one) for one in typical]
     worst = np.argsort(-np.bincount(about.runs, about.residual**2))[:_RUNS].tolist()
     few = problem.of_runs(worst)
-    candidates = {one.start.candidate.name: one.start.candidate for one in typical}
-    others = [s for c in candidates.values() for s in starts(c) if not s.typical]
-    for batch in problem.time_limit.in_batches(others):
-        screened = screen(few, few.known, batch)
-        entries += [(one.predicted / few.known.sum_of_squares, one) for one in screened]
+    entries = [(one.predicted / about.sum_of_squares, one) for one in typical]
+    entries += _farther(few, typical)
     entries.sort(key=lambda entry: entry[0])
-    return _run(problem, [one for _, one in entries[:_ENTRIES]], likelihood, reach)
+    needed = (1.0 - min((share for share, _ in entries), default=1.0)) / _OPTIMISM
+    able = [one for share, one in entries if 1.0 - share >= needed]
+    return _run(problem, able[:_ENTRIES], likelihood, reach)
+
+
+def _farther(problem: LowFidelityProblem, typical: Sequence[Screened]) -> list[tuple[float, Screened]]:
+    """Other sizes with the share that each promises to leave: outwards for as long as the best amount lies beyond."""
+    going: list[tuple[Screened, list[Start]]] = []
+    for one in typical:
+        for chain in outward(one.start.candidate):
+            if chain[0].place == one.start.place and chain[0].factor * one.amount > 0:
+                going.append((one, chain))
+    found: list[tuple[float, Screened]] = []
+    while going := [(one, chain) for one, chain in going if chain and abs(one.amount) >= 1.0]:
+        if problem.time_limit.is_over():
+            break
+        seen = screen(problem, problem.known, [chain[0] for _, chain in going])
+        found += [(one.predicted / problem.known.sum_of_squares, one) for one in seen]
+        of = {id(one.start): one for one in seen}
+        going = [(of[id(first)], rest) for _, (first, *rest) in going if id(first) in of]
+    return found
 
 
 def _run(

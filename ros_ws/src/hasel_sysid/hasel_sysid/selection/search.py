@@ -221,7 +221,7 @@ class Search:
         }
         ranked = sorted(value, key=lambda name: -value[name])
         near = [name for name in ranked if value[name] >= value[ranked[0]] - self.policy.reach]
-        chosen = near[: 2 * self.policy.fits] if len(near) > 1 else ranked[:2]
+        chosen = near[: 2 * self.policy.fits]
         self._keep(
             {frozenset({name}): partial(self._mapped, candidates[name], ended[name]) for name in chosen}
         )
