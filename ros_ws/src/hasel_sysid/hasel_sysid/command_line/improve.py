@@ -25,7 +25,7 @@ from hasel_sysid.problem import Problem
 from hasel_sysid.report.from_improvement import improvement_content
 from hasel_sysid.report.pictures import stages_picture, waterfall_picture
 from hasel_sysid.report.write import write_report
-from hasel_sysid.result import Improvement, Stage, Status
+from hasel_sysid.result import Improvement, Stage, Status, table_of_models
 from hasel_sysid.suggest import Suggestion, in_doubt, suggest
 from hasel_sysid.time_limit import TimeLimit
 
@@ -78,6 +78,7 @@ def _improve(options: argparse.Namespace) -> int:
         show([stages[0]], [*told, *stages[0].set_up])
         print(found.diagnosis)
         print(found)
+        print(table_of_models(found.models))
 
     lines = improvement_lines(found, stages, suggestions)
     further = len(found.diagnosis.findings) - 1

@@ -8,6 +8,7 @@ import numpy as np
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.report.provenance import Provenance
 from hasel_sysid.report.shape import Shapes
+from hasel_sysid.selection.choose import ComparedModel
 
 
 @dataclass(frozen=True)
@@ -94,7 +95,7 @@ class ReportContent:
     first_of_all: what must be known before any number is read; runs: measured against simulated; comparisons: error
     table and where the models fail; detailed: number of the one that is shown in detail (-1: the last);
     shapes: the body as it swings; stages with noise_floor [sin theta]: the error waterfall; ranking and groups: what is
-    missing; remains: sentences; recordings: their files; made: command, versions and date.
+    missing; models: all that were fitted; remains: sentences; recordings: their files; made: command, versions and date.
     """
 
     title: str
@@ -110,6 +111,7 @@ class ReportContent:
     noise_floor: float | None = None
     ranking: Sequence[RankedRow] = ()
     groups: Sequence[Sequence[str]] = ()
+    models: Sequence[ComparedModel] = ()
     parameters: Sequence[ParameterRow] = ()
     remains: Sequence[str] = ()
     next_runs: Sequence[NextRun] = ()

@@ -46,6 +46,7 @@ def improvement_content(
         noise_floor=improvement.noise_floor,
         ranking=tuple(_final(row, last.fit.model) for row in ranked_rows(improvement.diagnosis)),
         groups=improvement.diagnosis.groups_in_question,
+        models=improvement.models,
         parameters=parameter_rows(
             last.fit.model, dict.fromkeys(last.fit.at_bound, "on its bound"), _before(comparisons, start)
         ),
