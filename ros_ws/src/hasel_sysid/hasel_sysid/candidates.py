@@ -44,6 +44,13 @@ class Candidate:
         return {self.path(p): p for p in self.parameters if p.scan}
 
     @property
+    def acts_at_a_place(self) -> bool:
+        """Whether a coordinate is a place, or a strain from which on it acts, and no time: what acts where the body
+        hardly moves does nothing there, and much on either side, so that no derivative leads from one to another.
+        """
+        return any(p.unit != "s" for p in self.coordinates.values())
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Of all its parameters in a model."""
         return tuple(self.path(p) for p in self.parameters)

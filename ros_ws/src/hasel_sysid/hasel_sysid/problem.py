@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from hasel_sim.errors import SimulationError
+from hasel_sim.errors import ModelError, SimulationError
 from hasel_sim.model import Model
 from hasel_sim.parallel import submit_all
 from hasel_sim.run import Simulation
@@ -144,6 +144,8 @@ class Problem:
                 results.append(self._collect(model, tuple(by), [future.result() for future in futures]))
             except SimulationError as error:
                 results.append(error)
+            except ModelError as error:  # values with which this body cannot be built
+                results.append(SimulationError(str(error)))
         return results
 
     def _collect(self, model: Model, names: tuple[str, ...], simulations: list[Simulation]) -> Evaluation:

@@ -36,7 +36,7 @@ Progress = Callable[[str, float], None]
 
 TOLERANCE = 1e-3
 """Relative change of the sum of squares at which a fit ends."""
-_MOST_STEPS, _MOST_MAPPED = 12, 3
+_MOST_STEPS, _MOST_MAPPED = 10, 3
 _GENTLER = 4
 """How often the amplitudes of a start are halved until it can be simulated."""
 _FOLLOWED = 3
@@ -125,7 +125,8 @@ def refined(problem: Problem, fit: FittedModel) -> FittedModel:
 def descend(
     problem: Problem, models: Sequence[Model], first: Sequence[str] = (), tolerance: float = TOLERANCE
 ) -> list[Evaluation]:
-    """Least squares from each of these models that can be simulated, side by side; what leaves least comes first.
+    """Least squares from each of these models that can be simulated, side by side, as long as it can still become the
+    best; what leaves least comes first.
 
     first: parameters that follow alone in the first step, the others as they begin (variable projection: Golub and
     Pereyra 1973); an onset of 0 moves last of all: beside sizes still far off it looks like half of an effect.
@@ -134,7 +135,8 @@ def descend(
     begun = [one for one in problem.evaluate_each(models, names) if not isinstance(one, SimulationError)]
     searches = [GaussNewton(one, tolerance, first) for one in begun]
     for _ in range(_MOST_STEPS):
-        going = [search for search in searches if not search.converged]
+        least = min((search.at.sum_of_squares for search in searches), default=0.0)
+        going = [s for s in searches if not s.converged and s.may_reach(least)]
         if not going:
             break
         seen = problem.evaluate_each([s.proposal() for s in going], [s.names for s in going])

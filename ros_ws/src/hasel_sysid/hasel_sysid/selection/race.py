@@ -56,14 +56,16 @@ def race(
 
 
 def _farther(problem: LowFidelityProblem, typical: Sequence[Screened]) -> list[tuple[float, Screened]]:
-    """Other sizes with the share that each promises to leave: outwards for as long as the best amount lies beyond."""
+    """Other sizes with the share that each promises to leave: outwards for as long as the best amount lies beyond; of
+    what acts at a place all of them.
+    """
     going: list[tuple[Screened, list[Start]]] = []
     for one in typical:
         for chain in outward(one.start.candidate):
-            if chain[0].place == one.start.place and chain[0].factor * one.amount > 0:
+            if chain[0].place == one.start.place:
                 going.append((one, chain))
     found: list[tuple[float, Screened]] = []
-    while going := [(one, chain) for one, chain in going if chain and abs(one.amount) >= 1.0]:
+    while going := [(one, chain) for one, chain in going if chain and _leads_beyond(one, chain[0])]:
         if problem.time_limit.is_over():
             break
         seen = screen(problem, problem.known, [chain[0] for _, chain in going])
@@ -71,6 +73,10 @@ def _farther(problem: LowFidelityProblem, typical: Sequence[Screened]) -> list[t
         of = {id(one.start): one for one in seen}
         going = [(of[id(first)], rest) for _, (first, *rest) in going if id(first) in of]
     return found
+
+
+def _leads_beyond(one: Screened, farther: Start) -> bool:
+    return one.start.candidate.acts_at_a_place or one.amount * farther.factor >= abs(farther.factor)
 
 
 def _run(

@@ -5,7 +5,7 @@ import pytest
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import load_model
 from hasel_sim.run import Run
-from hasel_sysid.diagnosis.goodness import adequacy
+from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.testing.made_up_runs import evaluation_of_runs
 
@@ -32,7 +32,7 @@ def _evaluation(seed, missed=lambda run: 0.0):
 
 def test_noise_alone_is_adequate_in_every_regime():
     """In thirty draws of correlated noise no regime is accused."""
-    assert all(adequacy(_evaluation(seed), NOISE).adequate for seed in range(30))
+    assert all(goodness_of_fit(_evaluation(seed), NOISE).adequate for seed in range(30))
 
 
 @pytest.mark.parametrize(
@@ -45,7 +45,7 @@ def test_noise_alone_is_adequate_in_every_regime():
 )
 def test_a_law_that_fails_in_one_regime_is_not_adequate(regime, missed):
     """It is told where, though the whole may be near the noise."""
-    found = adequacy(_evaluation(0, missed), NOISE)
+    found = goodness_of_fit(_evaluation(0, missed), NOISE)
     assert not found.adequate
-    assert regime in [misfit.regime for misfit in found.misfits]
+    assert regime in [lack.regime for lack in found.lacking]
     assert "does not describe these runs yet" in str(found)
