@@ -18,7 +18,7 @@ from hasel_sysid.problem import Problem
 from hasel_sysid.result import Diagnosis, Improvement, Stage, Status, Verdict, WrongConstant
 from hasel_sysid.selection.likelihood import FittedSet, Likelihood
 from hasel_sysid.selection.search import IsLaw, Search, Searched
-from hasel_sysid.verdict import allowed, diagnosis, near_noise, share_left, status_with
+from hasel_sysid.verdict import diagnosis, near_noise, share_left, status_with
 
 _OPPOSED = "sign flip or swapped channels"
 OnStage = Callable[[Stage], None]
@@ -112,7 +112,7 @@ def _laws(problem: Problem) -> IsLaw:
     def is_law(fitted: FittedSet, likelihood: Likelihood) -> bool:
         names = [c.name for c in fitted.candidates.values() if not c.is_constant]
         if fitted not in known:
-            noise = allowed(likelihood)
+            noise = likelihood.allowed
             # what finer numerics change makes errors wider: what speaks for a law without it does so with it
             known[fitted] = not against_law(fitted.fit, noise, names) or not against_law(
                 refined(problem, fitted.fit), noise, names
@@ -180,11 +180,7 @@ def _wrong_constant(found: Searched) -> WrongConstant | None:
     answer = found.answer
     if not name or not answer.candidates[name].is_constant:
         return None
-    effects = [
-        n
-        for n, m in found.models.items()
-        if n and not any(c.is_constant for c in m.fitted.candidates.values())
-    ]
+    effects = [n for n, m in found.models.items() if n and not m.fitted.has_constant]
     best = max(effects, key=lambda names: found.models[names].elpd.total, default=frozenset())
     (parameter,) = answer.candidates[name].parameters
     return WrongConstant(name, parameter.null, answer.fit, best)

@@ -10,22 +10,17 @@ from hasel_sysid.candidates import Candidate
 from hasel_sysid.estimation.covariance import with_numerical_error
 from hasel_sysid.estimation.fit import FittedModel
 from hasel_sysid.estimation.starts import Screened
-from hasel_sysid.noise.model import NoiseModel, allowed_noise
+from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.policy import POLICY
 from hasel_sysid.projection import orthonormal
 from hasel_sysid.result import Diagnosis, Finding, Status, Verdict
 from hasel_sysid.saturated_model import regressors, unexplained_by
-from hasel_sysid.selection.likelihood import NOTHING, Likelihood, Names, Whitened
+from hasel_sysid.selection.likelihood import NOTHING, Likelihood, Whitened
 from hasel_sysid.selection.search import Searched
 
 _DETECTION = 3.3
 """Standard errors at which an effect is seen with 95 % certainty at a 5 % false-alarm rate."""
 RULED_OUT = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
-
-
-def allowed(likelihood: Likelihood) -> NoiseModel:
-    """What a right model may leave: what was measured, and what no model has."""
-    return allowed_noise(likelihood.noise, likelihood.discrepancy)
 
 
 def share_left(before: float, after: float, noise: NoiseModel) -> float:
@@ -59,7 +54,7 @@ def diagnosis(found: Searched, effects: Sequence[Candidate]) -> Diagnosis:
     The weights compare listed effects. Where the chosen set leaves more than noise can, what is missing is none of
     them, or not they alone, however much likelier one is than the others.
     """
-    noise, choice = allowed(found.likelihood), found.choice
+    noise, choice = found.likelihood.allowed, found.choice
     base = found.models[NOTHING].fitted.fit
     winner = next((next(iter(names)) for names in choice.path if len(names) == 1), None)
     winner = winner if winner in {effect.name for effect in effects} else None
@@ -246,8 +241,3 @@ def _numerical_suspects(
         drop = 2 * amount * float(change @ residual) - amount**2 * power
         shares[name] = float(np.clip(drop / excess, 0, 1))
     return shares
-
-
-def describes(found: Searched, names: Names) -> bool:
-    """Whether a fitted set leaves no more than a right model may."""
-    return near_noise(found.models[names].fitted.fit.mean_absolute_error, allowed(found.likelihood))

@@ -139,7 +139,7 @@ def confidence_set(models: Models, chosen: Names, policy: Policy) -> list[Names]
         same,
         key=lambda n: (
             models[n].fitted.on_edge,
-            any(c.is_constant for c in models[n].fitted.candidates.values()),
+            models[n].fitted.has_constant,
             n != chosen,
             -models[n].elpd.total,
         ),

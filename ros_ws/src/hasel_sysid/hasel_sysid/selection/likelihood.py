@@ -15,7 +15,7 @@ from numba import njit
 from hasel_sysid.candidates import Candidate
 from hasel_sysid.estimation.fit import FittedModel
 from hasel_sysid.estimation.least_squares import further_without_bounds
-from hasel_sysid.noise.model import LONGEST_CORRELATION, NoiseModel
+from hasel_sysid.noise.model import LONGEST_CORRELATION, NoiseModel, allowed_noise
 from hasel_sysid.policy import POLICY
 from hasel_sysid.projection import orthonormal
 
@@ -34,6 +34,11 @@ class FittedSet:
     def names(self) -> Names:
         """Of the candidates."""
         return frozenset(self.candidates)
+
+    @property
+    def has_constant(self) -> bool:
+        """Whether a number of the model file is among them."""
+        return any(candidate.is_constant for candidate in self.candidates.values())
 
     @property
     def residual(self) -> np.ndarray:
@@ -130,6 +135,11 @@ class Likelihood:
         """
         self.noise, self.runs, self.discrepancy = noise, runs, discrepancy
         self._changes = np.column_stack([np.zeros((len(runs), 0)), *discretisation])
+
+    @property
+    def allowed(self) -> NoiseModel:
+        """What a right model may leave: what was measured, and what no model has."""
+        return allowed_noise(self.noise, self.discrepancy)
 
     def whiten(self, columns: np.ndarray) -> np.ndarray:
         """Columns [frames] or [frames, n] in units of independent noise of variance one, offsets taken out."""

@@ -21,16 +21,16 @@ from hasel_sysid.candidates import Candidate, compatible, constants_of
 from hasel_sysid.estimation.covariance import changes_by_refinement
 from hasel_sysid.estimation.fit import FittedModel, Progress, fit, fitted_model, mapped
 from hasel_sysid.estimation.growing_horizon import in_phase
-from hasel_sysid.estimation.starts import Screened, Start
+from hasel_sysid.estimation.starts import Screened
 from hasel_sysid.model_checking.nothing_missing import ScoreTest, score_test
 from hasel_sysid.noise.bounds import bounded_noise
 from hasel_sysid.policy import Policy
 from hasel_sysid.problem import Evaluation, LowFidelityProblem, Problem
 from hasel_sysid.projection import orthonormal
 from hasel_sysid.selection.best_subsets import Row, best_subsets
-from hasel_sysid.selection.choose import Choice, ComparedModel, Judged, choose, compare, plausible
+from hasel_sysid.selection.choose import Choice, ComparedModel, Judged, choose, compare
 from hasel_sysid.selection.cross_validation import leave_one_run_out
-from hasel_sysid.selection.likelihood import NOTHING, FittedSet, Likelihood, Names
+from hasel_sysid.selection.likelihood import NOTHING, FittedSet, Likelihood, Names, Whitened
 from hasel_sysid.selection.linearise import Columns, linearise, secant
 from hasel_sysid.selection.race import race, screen_typical
 
@@ -91,6 +91,7 @@ class Search:
         self._columns: dict[Names, dict[str, Columns]] = {}
         self._discretisation: dict[Names, dict[str, np.ndarray]] = {}
         self.screened: list[Screened] = []
+        self._constants: list[Screened] = []
         self.alone: dict[str, Evaluation] = {}
         self.untried: list[str] = []
         self.models: dict[Names, Judged] = {}
@@ -113,9 +114,8 @@ class Search:
                 and not self.problem.time_limit.is_over()
             ):
                 self._say("numbers of the model file", 0.8)
-                known, untried = screen_typical(self._low, constants_of(self.baseline.model))
-                self.untried += [candidate.name for candidate in untried]
-                self._alone(known, 0.85)
+                self._constants, _ = screen_typical(self._low, constants_of(self.baseline.model))
+                self._alone(self._constants, 0.85)
                 self._rounds(0.9)
         choice = self._choose()
         return Searched(
@@ -147,7 +147,10 @@ class Search:
         changes = self._refinement_changes(about)
         self.likelihood = Likelihood(noise, runs, discrepancy, list(changes.values()))
         self.models = {}
+        enough = self.policy.near_noise * self.likelihood.allowed.mean_absolute
         for names, fitted in self.fits.items():
+            if fitted.has_constant and fitted.fit.mean_absolute_error > enough:
+                continue  # a number that somebody measured is doubted only where it alone describes the runs
             white = self.likelihood.whitened(fitted)
             elpd = leave_one_run_out(white, measured, self.policy.prior_runs)
             self.models[names] = Judged(fitted, white, elpd)
@@ -164,7 +167,8 @@ class Search:
         return self.models[names].whitened.logarithm - self.threshold * len(names)
 
     def _likeliest(self) -> Names:
-        return max(plausible(self.models), key=self._value)
+        """In range or not: what takes nothing away from a model out of range does not mend it, what is added may."""
+        return max(self.models, key=self._value)
 
     def _tested(self, names: Names) -> ScoreTest:
         """Whether anything is missing from a fitted set."""
@@ -244,17 +248,12 @@ class Search:
         about = self._likeliest()
         answer = choice.chosen
         parts = [answer - {gone} for gone in answer if answer - {gone} not in self._tried]
-        table = self._table(about)
-        better = [row for row in table if self._promises(row, about)]
-        within = self.models[answer].whitened.logarithm - self.policy.reach
-        rivals = [
-            row
-            for row in table
-            if answer
-            and len(row.names) == len(answer)
-            and row.logarithm > within
-            and row.names not in self._tried
+        table = [row for row in self._table(about) if row.names not in self._tried]
+        better = [
+            row for row in table if row.logarithm - self.threshold * len(row.names) > self._value(about)
         ]
+        within = self.models[answer].whitened.logarithm - self.policy.reach
+        rivals = [row for row in table if answer and len(row.names) == len(answer) and row.logarithm > within]
         values = self.fits[answer].fit.model.values
         return (
             self._first("better", about, better)
@@ -269,59 +268,39 @@ class Search:
         self._proposed[(kind, of)] = done + len(found)
         return found
 
-    def _promises(self, row: Row, about: Names) -> bool:
-        if row.names in self._tried or len(row.names) > self.policy.most_effects:
-            return False
-        return row.logarithm - self.threshold * len(row.names) > self._value(about)
-
     def _table(self, about: Names) -> list[Row]:
-        """Every set, to first order about a fitted one."""
-        if about == NOTHING:
-            return []
-        held = self.fits[about].candidates
+        """Every set, to first order about a fitted one; believed for one candidate more than that at a time, and for
+        two beside the baseline, which may hide each other.
+        """
         if about not in self._columns:
-            self._columns[about] = {
-                c.start.candidate.name: secant(c)
-                for c in self._best_screened(about)
-                if self._fits_beside(c.start.candidate, held)
-            }
-            test = self._tested(about)
-            gains = sorted(test.gains, key=lambda name: -test.gains[name])
-            promising = [name for name in gains if test.gains[name] > test.threshold][:_LINEARISED]
-            if promising:
-                begin = [self._start(name, about) for name in promising]
-                found = linearise(
-                    LowFidelityProblem(self.problem, self.fits[about].fit.evaluation), self.fits[about], begin
-                )
-                self._columns[about] |= {one.candidate.name: one for one in found}
-        return best_subsets(
-            self.fits[about],
-            self._columns[about],
-            self.likelihood,
-            self.policy.most_effects,
-            self.threshold,
-        )
+            self._columns[about] = self._linearised(about)
+        most = min(self.policy.most_effects, max(2, len(about) + 1))
+        return best_subsets(self.fits[about], self._columns[about], self.likelihood, most, self.threshold)
 
-    def _best_screened(self, about: Names) -> list[Screened]:
-        """Of every candidate the typical start, at the time or place, that gains most beside a fitted set."""
-        white = self.models[about].whitened
+    def _linearised(self, about: Names) -> dict[str, Columns]:
+        """Columns of every candidate that fits beside a set: by its own derivatives there where its score is more than
+        noise makes of it, else by the secant that is known from beside the baseline.
+        """
+        of, white = self.fits[about], self.models[about].whitened
         best: dict[str, tuple[float, Screened]] = {}
         for one in self.screened:
-            look = white.beyond(self.likelihood.whiten(one.change))
-            power = float(look @ look)
-            gain = float(look @ white.residual) ** 2 / power if power > 0 else 0.0
-            name = one.start.candidate.name
-            if name not in best or gain > best[name][0]:
-                best[name] = gain, one
-        return [one for _, one in best.values()]
+            candidate = one.start.candidate
+            if self._fits_beside(candidate, of.candidates):
+                gain = _gain(white, self.likelihood.whiten(one.change))
+                best[candidate.name] = max(
+                    best.get(candidate.name, (-1.0, one)), (gain, one), key=lambda g: g[0]
+                )
+        ranked = sorted(best.values(), key=lambda gained: -gained[0])
+        columns = {one.start.candidate.name: secant(one) for _, one in ranked}
+        promising = [one.start for gain, one in ranked if gain > self.threshold][:_LINEARISED]
+        if about != NOTHING and promising:
+            problem = LowFidelityProblem(self.problem, of.fit.evaluation)
+            columns |= {one.candidate.name: one for one in linearise(problem, of, promising)}
+        return columns
 
-    def _start(self, name: str, about: Names) -> Start:
-        """Where a candidate is linearised beside a set: its typical size, at the time or place of most gain."""
-        return next(one.start for one in self._best_screened(about) if one.start.candidate.name == name)
-
-    def _fitted(self, row: Row) -> FittedSet | None:
+    def _fitted(self, row: Row) -> FittedSet:
         """A set from where the table leads, and from what its candidates are alone."""
-        known = {c.name: c for c in self._all_candidates()}
+        known = {one.start.candidate.name: one.start.candidate for one in (*self.screened, *self._constants)}
         candidates = {name: known[name] for name in sorted(row.names)}
         model = self.baseline.model
         for candidate in candidates.values():
@@ -336,28 +315,29 @@ class Search:
         begin = [_at(model, row.values)]
         if len(candidates) > 1 and alone:
             begin.append(_at(model, {**about, **row.values, **alone}))
-        try:
-            found = fit(self.problem, self._low, begin)
-        except HaselSimError:
-            return None
-        return FittedSet(candidates, found)
+        return FittedSet(candidates, fit(self.problem, self._low, begin))
 
-    def _all_candidates(self) -> list[Candidate]:
-        return [*self.effects, *constants_of(self.baseline.model)]
-
-    def _keep(self, fits: dict[Names, Callable[[], FittedSet | None]]) -> None:
+    def _keep(self, fits: dict[Names, Callable[[], FittedSet]]) -> None:
+        """Make these fits side by side; one that cannot be simulated is left out."""
         self._tried |= set(fits)
-
-        def done(call: Callable[[], FittedSet | None]) -> FittedSet | None:
-            try:
-                return call()
-            except HaselSimError:
-                return None
-
-        for found in all_at_once(self.problem.pool, [partial(done, call) for call in fits.values()]):
+        for found in all_at_once(self.problem.pool, [partial(_if_possible, call) for call in fits.values()]):
             if found is not None:
                 self.fits[found.names] = found
         self._judge()
+
+
+def _if_possible(call: Callable[[], FittedSet]) -> FittedSet | None:
+    try:
+        return call()
+    except HaselSimError:
+        return None
+
+
+def _gain(fitted: Whitened, column: np.ndarray) -> float:
+    """Of the log-likelihood, by a whitened column [frames] beside a fitted model."""
+    look = fitted.beyond(column)
+    power = float(look @ look)
+    return 0.5 * float(look @ fitted.residual) ** 2 / power if power > 0 else 0.0
 
 
 def _at(model: Model, values: dict[str, float]) -> Model:
