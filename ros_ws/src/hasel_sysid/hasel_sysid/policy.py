@@ -40,7 +40,7 @@ class Policy:
     odds: float = 20.0
     matters: float = 0.1
     part: float = 0.6
-    fits: int = 4
+    fits: int = 3
 
     @property
     def reach(self) -> float:

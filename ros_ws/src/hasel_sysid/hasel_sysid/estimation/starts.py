@@ -53,7 +53,8 @@ def starts(candidate: Candidate) -> list[Start]:
     sizes, coordinates = candidate.sizes, candidate.coordinates
     places: list[dict[str, float]] = [{}]
     for name, p in coordinates.items():
-        places = [{**place, name: value} for place in places for value in p.scan]
+        scan = sorted({*p.scan, *_between(p.scan)}) if candidate.acts_at_a_place else p.scan
+        places = [{**place, name: value} for place in places for value in scan]
     first = next(iter(sizes.values()), None)
     factors = [1.0] if first is None else [1.0, *_factors(first)]
     return [
@@ -61,6 +62,11 @@ def starts(candidate: Candidate) -> list[Start]:
         for factor in factors
         for place in places
     ]
+
+
+def _between(scan: Sequence[float]) -> list[float]:
+    """Half way from one value to the next: a body that hardly moves at one place has a valley on either side."""
+    return [0.5 * (one + other) for one, other in zip(scan, scan[1:], strict=False)]
 
 
 def outward(candidate: Candidate) -> list[list[Start]]:

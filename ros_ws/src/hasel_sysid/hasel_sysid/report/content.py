@@ -95,7 +95,8 @@ class ReportContent:
     first_of_all: what must be known before any number is read; runs: measured against simulated; comparisons: error
     table and where the models fail; detailed: number of the one that is shown in detail (-1: the last);
     shapes: the body as it swings; stages with noise_floor [sin theta]: the error waterfall; ranking and groups: what is
-    missing; models: all that were fitted; remains: sentences; recordings: their files; made: command, versions and date.
+    missing; models: all that were fitted; remains: sentences; recordings: their files; made: command, versions and
+    date.
     """
 
     title: str

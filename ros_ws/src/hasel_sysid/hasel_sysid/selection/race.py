@@ -19,6 +19,8 @@ _RUNS = 4
 """Runs on which other than typical sizes are screened: those of which most is left."""
 _ENTRIES = 12
 """Starts that take part at most, the most promising of all that were screened."""
+_OF_EACH = 3
+"""Of them, starts of one candidate at most."""
 _MOST_STEPS = 10
 _OPTIMISM = 2.0
 """Times what first order promises of the next step that a candidate is given the credit of."""
@@ -37,12 +39,17 @@ def screen_typical(
 
 
 def race(
-    problem: LowFidelityProblem, typical: Sequence[Screened], likelihood: Likelihood, reach: float
+    problem: LowFidelityProblem,
+    typical: Sequence[Screened],
+    likelihood: Likelihood,
+    reach: float,
+    to_beat: float = 1.0,
 ) -> dict[str, Evaluation]:
     """The best low-fidelity model with each of the candidates that took part, by name.
 
     problem: corrected at the model without any of them; typical: what `screen_typical` found; reach: by how much of
-    log-likelihood a model may lie behind the best one and still be its equal.
+    log-likelihood a model may lie behind the best one and still be its equal; to_beat: share of the squares that a model
+    leaves which is known already.
     """
     about = problem.known
     worst = np.argsort(-np.bincount(about.runs, about.residual**2))[:_RUNS].tolist()
@@ -50,8 +57,13 @@ def race(
     entries = [(one.predicted / about.sum_of_squares, one) for one in typical]
     entries += _farther(few, typical)
     entries.sort(key=lambda entry: entry[0])
-    needed = (1.0 - min((share for share, _ in entries), default=1.0)) / _OPTIMISM
-    able = [one for share, one in entries if 1.0 - share >= needed]
+    best = min([to_beat, *(share for share, _ in entries)])
+    needed = (1.0 - best) / _OPTIMISM
+    able: list[Screened] = []
+    for share, one in entries:
+        same = sum(other.start.candidate.name == one.start.candidate.name for other in able)
+        if 1.0 - share >= needed and same < _OF_EACH:
+            able.append(one)
     return _run(problem, able[:_ENTRIES], likelihood, reach)
 
 

@@ -217,7 +217,9 @@ class Search:
     def _alone(self, screened: Sequence[Screened], share: float) -> None:
         """Every candidate alone: raced by the low-fidelity model, those within reach of the best then by the model."""
         self._say("each alone", share)
-        ended = race(self._low, screened, self.likelihood, self.policy.reach)
+        least = min(one.fit.evaluation.sum_of_squares for one in self.fits.values())
+        to_beat = least / self.baseline.evaluation.sum_of_squares
+        ended = race(self._low, screened, self.likelihood, self.policy.reach, to_beat)
         self.alone |= ended
         candidates = {one.start.candidate.name: one.start.candidate for one in screened}
         value = {
