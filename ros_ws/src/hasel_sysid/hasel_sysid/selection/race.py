@@ -48,8 +48,8 @@ def race(
     """The best low-fidelity model with each of the candidates that took part, by name.
 
     problem: corrected at the model without any of them; typical: what `screen_typical` found; reach: by how much of
-    log-likelihood a model may lie behind the best one and still be its equal; to_beat: share of the squares that a model
-    leaves which is known already.
+    log-likelihood a model may lie behind the best one and still be its equal; to_beat: share of the squares that
+    a model leaves which is known already.
     """
     about = problem.known
     worst = np.argsort(-np.bincount(about.runs, about.residual**2))[:_RUNS].tolist()
