@@ -53,7 +53,7 @@ def info_main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _description(recording: Recording) -> str:
-    lines = [str(recording), *(f"    {sentence}" for sentence in recording.understood)]
+    lines = [str(recording), *(f"    {s}" for s in (*recording.understood, *recording.ripple))]
     lines += [*(f"    {key}: {value}" for key, value in recording.metadata.items())]
     if recording.driven:
         lines.append(f"    driven by {', '.join(map(str, recording.channels))}")
