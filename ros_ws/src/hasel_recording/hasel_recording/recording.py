@@ -106,8 +106,8 @@ class Recording:
     def drive(self) -> tuple[np.ndarray, np.ndarray]:
         """Return what acts: (times [s] [k], values in SI units [k, channels]), each value holding until the next time.
 
-        A measured drive that stands on plateaus acts without its ripple. The passive body's drive is zero from the first
-        frame on.
+        A measured drive that stands on plateaus acts without its ripple. The passive body's drive is zero from the
+        first frame on.
         """
         return self.recorded_drive()[0], self._acting[0]
 

@@ -9,6 +9,7 @@ from rclpy.subscription import Subscription
 from sensor_msgs.msg import CompressedImage, Image
 
 from hasel_tracker.errors import TrackerError
+from hasel_tracker.live.health_report import POSSIBLE_LATENCY_S
 from hasel_tracker.live.live_tracker import LiveTracker
 from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.image_message import image_of
@@ -16,7 +17,6 @@ from hasel_tracker.sources.image_message import image_of
 LOOK_PERIOD_S = 0.2
 QUEUE_DEPTH = 50
 USUAL_INTERVALS = 100
-CLOCKS_APART_S = 10.0
 KINDS = {"sensor_msgs/msg/Image": Image, "sensor_msgs/msg/CompressedImage": CompressedImage}
 
 
@@ -75,13 +75,13 @@ class ImageTopic:
         now_ns = self._node.get_clock().now().nanoseconds
         stamp_ns = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
         late_s = (now_ns - stamp_ns) * 1e-9
-        if stamp_ns and self._last_stamp_ns is not None and stamp_ns <= self._last_stamp_ns:
+        if stamp_ns and stamp_ns == self._last_stamp_ns:
             self._live().fault = (
-                f"The images on {self._topic} are stamped no later than the ones before; they are left out: check the "
+                f"The images on {self._topic} are all stamped alike; those after the first are left out: check the "
                 "camera driver's stamps."
             )
             return
-        if stamp_ns and not -CLOCKS_APART_S < late_s < CLOCKS_APART_S:
+        if stamp_ns and not -POSSIBLE_LATENCY_S < late_s < POSSIBLE_LATENCY_S:
             self._live().fault = (
                 f"The images on {self._topic} are stamped {abs(late_s):.4g} s {'before' if late_s > 0 else 'after'} "
                 "they arrive, so their clock is another one than the drive's: set the camera's clock, or use_sim_time."

@@ -30,8 +30,9 @@ FIELDS = "mode=send_field:deint=interlaced"
 class VideoSource:
     """A video readable by FFmpeg; `threads` decode it (0: as many as useful).
 
-    frame_rate_hz: at which the pictures were taken, in place of what the file says; unsaid_hz: where it does not say so. notes: what was made of the file,
-    one sentence each. Raises TrackerError for no video, and for one whose times are neither written in it nor given.
+    frame_rate_hz: at which the pictures were taken, in place of what the file says; unsaid_hz: where it does not say
+    so. notes: what was made of the file, one sentence each. Raises TrackerError for no video, and for one whose times
+    are neither written in it nor given.
     """
 
     def __init__(
@@ -70,7 +71,7 @@ class VideoSource:
         fields = 2 if first is not None and first.interlaced_frame else 1
         self.frame_count = count * fields
         self._stored_hz = stored_hz * fields
-        self.frame_rate_hz = given_hz or self._captured_hz(container, stream) * fields
+        self.frame_rate_hz = given_hz or self._captured_hz(container, stream)
         self._interlaced = fields == 2
         if self._interlaced:
             self.notes.append(
@@ -130,13 +131,17 @@ class VideoSource:
         return even if abs(even - time_s) <= 1.01 * coarse_s else time_s
 
     def _pictures(self, container: InputContainer, stream: VideoStream) -> Iterator[av.VideoFrame]:
+        """What can be decoded. AVI keeps times in the order of decoding: pictures get them in the order of showing."""
+        in_order = iter(self._stored_times(container) if container.format.name == "avi" else ())
         packets = container.demux(stream)
         while True:
             try:
                 packet = next(packets, None)
                 if packet is None:
                     return
-                yield from packet.decode()
+                for picture in packet.decode():
+                    picture.pts = next(in_order, picture.pts)
+                    yield picture
             except av.EOFError:
                 return
             except (
@@ -145,13 +150,17 @@ class VideoSource:
             ):  # ValueError: a picture whose size or format became senseless
                 self.damaged_frames += 1
 
+    def _stored_times(self, container: InputContainer) -> list[int]:
+        times = sorted(packet.dts for packet in container.demux(video=0) if packet.size and packet.dts is not None)
+        container.seek(0)
+        return times
+
     def _frame(self, index: int, time_s: float, picture: av.VideoFrame) -> Frame:
         stamp = None if self.start_stamp_ns is None else self.start_stamp_ns + round(time_s * 1e9)
-        width, height = self.size_px if self._shaped else (picture.width, picture.height)
-        image = picture.to_ndarray(
-            format="bgr24", width=width, height=height, interpolation=Interpolation.BICUBIC
-        )
-        return Frame(index, time_s, image=_upright(image, picture), stamp_ns=stamp)
+        if self._shaped:
+            picture = picture.reformat(*self.size_px, "bgr24", interpolation=Interpolation.BICUBIC)
+        image = _upright(picture.to_ndarray(format="bgr24"), picture)
+        return Frame(index, time_s, image=image, stamp_ns=stamp)
 
 
 def _fields(pictures: Iterable[av.VideoFrame], stream: VideoStream) -> Iterator[av.VideoFrame]:
