@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from hasel_recording.csv_reader import read_csv
+from hasel_recording.csv_text import TEXT_SUFFIXES
 from hasel_recording.csv_writer import write_csv
 from hasel_recording.drive_file import with_drive
 from hasel_recording.errors import RecordingError, RecordingWarning, nearest
@@ -14,7 +15,7 @@ from hasel_recording.mcap_writer import write_mcap
 from hasel_recording.recording import DRIVE_KEY, Recording
 from hasel_recording.switch_times import with_placed_switches
 
-SUFFIXES = (".csv", ".mcap", ".db3")
+SUFFIXES = (*TEXT_SUFFIXES, ".mcap", ".db3")
 WRITERS = {".csv": write_csv, ".mcap": write_mcap}
 
 
@@ -43,7 +44,7 @@ def read_recording(
 
 
 def _read(path: Path, mapping: Mapping[str, str] | None, drive: Path | None) -> Recording:
-    in_rows = path.suffix.lower() == ".csv"
+    in_rows = path.suffix.lower() in TEXT_SUFFIXES
     recording = read_csv(path, mapping, drive is None) if in_rows else read_mcap(path)
     if drive is None and DRIVE_KEY in recording.metadata:
         drive = path.parent / recording.metadata[DRIVE_KEY]

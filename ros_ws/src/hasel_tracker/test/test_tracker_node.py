@@ -227,7 +227,11 @@ def test_image_topic_services_and_parameters(observer, start, frames, tmp_path):
     assert not show(frames[40].image, now + 4).valid  # blue markers are not looked for any more
     assert set_parameter("hue_high", 130).successful
     assert observer.call(Trigger, "/hasel/hasel_tracker/restart", Trigger.Request()).success
-    assert [show(frames[40].image, stamp_s).valid for stamp_s in (now + 5, now + 6, now + 7)] == [False, False, True]
+    assert [show(frames[40].image, stamp_s).valid for stamp_s in (now + 5, now + 6, now + 7)] == [
+        False,
+        False,
+        True,
+    ]
     show(frames[40].image, now + 11)  # three images between the stamps never came
     lost = "3 frames were dropped"
     observer.wait(lambda: any(lost in report.status[0].message for report in observer.reports))

@@ -27,8 +27,8 @@ def judge(
         return HealthReport(
             ERROR,
             fault
-            or f"Frames are stamped {health.mean_latency_s:.4g} s before their angle is known, which cannot be: set the "
-            "camera's clock.",
+            or f"Frames are stamped {health.mean_latency_s:.4g} s before their angle is known, which cannot be: set "
+            "the camera's clock.",
         )
     warnings = [fault] if fault else []
     if asked_rate_hz is not None and health.frame_rate_hz < RATE_SHARE * asked_rate_hz:

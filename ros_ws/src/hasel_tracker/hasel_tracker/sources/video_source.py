@@ -151,7 +151,9 @@ class VideoSource:
                 self.damaged_frames += 1
 
     def _stored_times(self, container: InputContainer) -> list[int]:
-        times = sorted(packet.dts for packet in container.demux(video=0) if packet.size and packet.dts is not None)
+        times = sorted(
+            packet.dts for packet in container.demux(video=0) if packet.size and packet.dts is not None
+        )
         container.seek(0)
         return times
 

@@ -21,7 +21,9 @@ def picture(shift: int = 0) -> np.ndarray:
     return image
 
 
-def written(path, pictures, rate=30, aspect=None, matrix=None, options=None, metadata=None, container_format=None):
+def written(
+    path, pictures, rate=30, aspect=None, matrix=None, options=None, metadata=None, container_format=None
+):
     """An H.264 file of these BGR pictures."""
     with av.open(str(path), "w", format=container_format, options={"movflags": "use_metadata_tags"}) as file:
         file.metadata.update(metadata or {})
@@ -118,7 +120,7 @@ def test_slow_motion_runs_at_the_rate_of_taking(tmp_path):
 def test_a_raw_stream_needs_its_rate(tmp_path):
     """Pictures without times are refused, unless a rate is given or known otherwise."""
     path = written(tmp_path / "raw.h264", [picture()] * 5, container_format="h264")
-    with pytest.raises(TrackerError, match="says of no picture when it was taken .* --frame-rate"):
+    with pytest.raises(TrackerError, match=r"says of no picture when it was taken .* --frame-rate"):
         VideoSource(path)
     for source in (open_recorded(path, 120.0), open_recorded(path, unsaid_hz=120.0)):
         assert [frame.time_s for frame in source] == pytest.approx(np.arange(5) / 120)
@@ -128,7 +130,9 @@ def test_a_given_rate_counts_for_every_source(tmp_path):
     """--frame-rate goes before what a video says of itself."""
     path = written(tmp_path / "video.mp4", [picture()] * 5)
     assert [frame.time_s for frame in open_recorded(path, 240.0)] == pytest.approx(np.arange(5) / 240)
-    assert [frame.time_s for frame in open_recorded(path, unsaid_hz=240.0)] == pytest.approx(np.arange(5) / 30)
+    assert [frame.time_s for frame in open_recorded(path, unsaid_hz=240.0)] == pytest.approx(
+        np.arange(5) / 30
+    )
 
 
 def _folder(path, names):
