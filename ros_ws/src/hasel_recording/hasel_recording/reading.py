@@ -41,8 +41,8 @@ def read_recording(
         return _read(path, mapping, None if drive is None else Path(drive))
     except AttributeError as error:  # messages are made from the definition in the file
         raise RecordingError(
-            f"{path} defines messages without {error.name!r}: its definitions are damaged or of another kind; restore it "
-            "from a copy, or record it with ROS 2 Jazzy."
+            f"{path} defines messages without {error.name!r}: its definitions are damaged or of another kind; restore "
+            "it from a copy, or record it with ROS 2 Jazzy."
         ) from None
     except OSError as error:
         raise RecordingError(f"{path} cannot be read ({error.strerror}): check its permissions.") from None
