@@ -64,17 +64,19 @@ def read_recordings(
     paths: Iterable[str | Path],
     mapping: Mapping[str, str] | None = None,
     drives: Sequence[str | Path | None] | None = None,
+    names: Sequence[str] | None = None,
 ) -> list[Recording]:
     """Read all that can be read; the others are skipped, each with a RecordingWarning.
 
-    mapping: as of read_recording. drives: one file per recording, or one for all of them.
-    Raises RecordingError when none can be read.
+    mapping: as of read_recording. drives: one file per recording, or one for all of them. names: of the runs (default:
+    as of distinct_names). Raises RecordingError when none can be read.
     """
     recordings, errors = [], []
     paths = list(paths)
-    for path, drive in zip(paths, drive_of_each(paths, drives), strict=True):
+    names = names or distinct_names(paths)
+    for path, drive, name in zip(paths, drive_of_each(paths, drives), names, strict=True):
         try:
-            recordings.append(read_recording(path, mapping, drive))
+            recordings.append(replace(read_recording(path, mapping, drive), name=name))
         except RecordingError as error:
             errors.append(str(error))
     if not recordings:
@@ -84,6 +86,33 @@ def read_recordings(
     for error in errors:
         warnings.warn(f"Skipped: {error}", RecordingWarning, stacklevel=2)
     return recordings
+
+
+def distinct_names(paths: Sequence[str | Path]) -> list[str]:
+    """The shortest names that differ: the file's without its suffix, after as many folders as it takes (monday_run).
+
+    Files of one folder that differ in their suffix keep it; a file that is given several times is numbered.
+    """
+    places = [Path(path).absolute() for path in paths]
+    labels = {place: _label(place, 1) for place in places}
+    for shared in {label for label in labels.values() if list(labels.values()).count(label) > 1}:
+        alike = [place for place, label in labels.items() if label == shared]
+        for depth in range(2, max(len(place.parts) for place in alike)):
+            longer = {place: _label(place, depth) for place in alike}
+            if len(set(longer.values())) == len(alike):
+                break
+        else:
+            longer = {place: place.name for place in alike}
+        labels |= longer
+    names = [labels[place] for place in places]
+    return [
+        f"{name}_{names[:number].count(name) + 1}" if name in names[:number] else name
+        for number, name in enumerate(names)
+    ]
+
+
+def _label(place: Path, depth: int) -> str:
+    return "_".join([*place.parts[-depth:-1], place.name if place.is_dir() else place.stem])
 
 
 def drive_of_each(

@@ -68,13 +68,14 @@ def load_experiments(
     paths: Iterable[str | Path],
     mapping: Mapping[str, str] | None = None,
     drives: Sequence[str | Path] | None = None,
+    names: Sequence[str] | None = None,
 ) -> list[Experiment]:
     """Read recordings (.csv, .mcap) as experiments.
 
-    mapping, drives: as of hasel_recording.read_recordings. One among good ones that cannot be read, or not be
+    mapping, drives, names: as of hasel_recording.read_recordings. One among good ones that cannot be read, or not be
     simulated, is skipped with a RecordingWarning; raises RecordingError when none is left.
     """
-    return usable(read_recordings(paths, mapping, drives))
+    return usable(read_recordings(paths, mapping, drives, names))
 
 
 def usable(recordings: Iterable[Recording]) -> list[Experiment]:
