@@ -56,7 +56,11 @@ def checked(
     for recording in recordings:
         others = [*known, *found]
         same = [each for each in others if each.name == recording.name]
-        if same and recording.path is not None and all(e.recording.path not in (None, recording.path) for e in same):
+        if (
+            same
+            and recording.path is not None
+            and all(e.recording.path not in (None, recording.path) for e in same)
+        ):
             paths = [each.recording.path for each in others if each.recording.path is not None]
             recording = replace(recording, name=distinct_names([*paths, recording.path])[-1])
         elif same:
