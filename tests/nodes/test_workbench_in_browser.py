@@ -140,7 +140,7 @@ def desk(tmp_path, environment, domain, monkeypatch) -> Iterator[Desk]:
 
 def _address(processes: Processes, rig: Rig) -> str:
     output = processes.output("workbench")
-    found = re.compile(r"http://127\.0\.0\.1:\d+/")
+    found = re.compile(r"http://127\.0\.0\.1:\d+/\?token=\S+")
     rig.until(lambda: found.search(output.read_text()), _PATIENCE_S, "the workbench did not come up")
     return found.search(output.read_text())[0]
 

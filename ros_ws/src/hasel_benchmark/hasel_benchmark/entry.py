@@ -3,14 +3,17 @@
 import sys
 from importlib import import_module
 
+from hasel_recording.command_entry import command
 from hasel_recording.node_usage import user_arguments
 
 
+@command
 def bench_far() -> int:
     """`bench_far`: is a constant that is far off named?"""
     return _run("bench_far")
 
 
+@command
 def bench_hidden() -> int:
     """`bench_hidden`: how often is the right hidden effect named?"""
     return _run("bench_hidden")

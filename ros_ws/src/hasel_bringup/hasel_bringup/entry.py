@@ -6,19 +6,23 @@
 import sys
 from importlib import import_module
 
+from hasel_recording.command_entry import command
 from hasel_recording.node_usage import answer_help, user_arguments
 
 
+@command
 def demo() -> int:
     """`demo`: fit, diagnose, add, and watch the error fall."""
     return _run("demo")
 
 
+@command
 def live_demo() -> int:
     """`live_demo`: the whole rig without hardware."""
     return _run("live_demo")
 
 
+@command
 def recorder() -> int:
     """`recorder`, a node."""
     from hasel_bringup.recorder.recorder_parameters import PARAMETERS
@@ -34,16 +38,19 @@ def recorder() -> int:
     return main()
 
 
+@command
 def replay() -> int:
     """`replay RECORDING…`: onto the topics."""
     return _run("replay")
 
 
+@command
 def soak() -> int:
     """`soak`: the virtual rig for long, each node killed once."""
     return _run("soak")
 
 
+@command
 def virtual_camera() -> int:
     """`virtual_camera`, a node."""
     from hasel_bringup.virtual_camera.camera_parameters import PARAMETERS
@@ -59,6 +66,7 @@ def virtual_camera() -> int:
     return main()
 
 
+@command
 def virtual_rig() -> int:
     """`virtual_rig`: a node, with supply and driver beside it."""
     return _run("virtual_rig")

@@ -1,4 +1,8 @@
-"""Names and units of a lab's own columns, from an option such as `--map time=t,sin_theta=angle_deg`."""
+"""Names and units of a lab's own columns, from an option such as `--map time=t,sin_theta=angle_deg`.
+
+A column may have any name, also one with a comma, or is given by its number (`time=#1`); `drive.time=t` is meant for
+the file of the drive only.
+"""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -7,11 +11,16 @@ from hasel_recording.csv_columns import MARKER_UNITS, SIN_THETA, THETA_UNITS, TI
 from hasel_recording.drive_channel import SI_UNITS, UNITS, is_drive_column
 from hasel_recording.errors import RecordingError, nearest
 
+DRIVE_ONLY = "drive."
+
 
 def parse_map(text: str) -> dict[str, str]:
-    """Return {what is meant: the file's column} of `time=t,sin_theta=angle_deg`; raises RecordingError."""
+    """Return {what is meant: the file's column} of `time=t,sin_theta=angle_deg`; raises RecordingError.
+
+    A comma belongs to a column's name unless NAME= follows.
+    """
     found: dict[str, str] = {}
-    for part in filter(None, (part.strip() for part in text.split(","))):
+    for part in filter(None, (part.strip() for part in re.split(r",(?=\s*[a-z][\w.]*\s*=)", text))):
         meant, equals, column = (piece.strip() for piece in part.partition("="))
         if not (equals and meant and column):
             raise RecordingError(
@@ -24,19 +33,28 @@ def parse_map(text: str) -> dict[str, str]:
 
 
 def meant_names(
-    mapping: Mapping[str, str], columns: Iterable[str], source: str, all_here: bool = True
+    mapping: Mapping[str, str],
+    columns: Iterable[str],
+    source: str,
+    all_here: bool = True,
+    of_drive: bool = False,
 ) -> dict[str, str]:
     """Return {the file's column: the full name it is read as}, units included.
 
     mapping: as of parse_map. A unit that is not given is taken from the end of the file's own name (`angle_deg`,
     `t [ms]`), else it is the SI unit. all_here: raise RecordingError for a column that the file has not got; otherwise
-    the columns may be spread over two files.
+    the columns may be spread over two files. of_drive: the columns are those of a drive's own file, for which
+    `drive.NAME` goes before NAME.
     """
     columns = list(columns)
     names: dict[str, str] = {}
-    for meant, column in mapping.items():
+    own = {meant.removeprefix(DRIVE_ONLY): c for meant, c in mapping.items() if meant.startswith(DRIVE_ONLY)}
+    shared = {meant: c for meant, c in mapping.items() if not meant.startswith(DRIVE_ONLY)}
+    for meant, column in (shared | own if of_drive else shared).items():
+        if re.fullmatch(r"#\d+", column) and column not in columns and 0 < int(column[1:]) <= len(columns):
+            column = columns[int(column[1:]) - 1]
         if column not in columns:
-            if not all_here:
+            if not all_here and meant not in own:
                 continue
             near = nearest(column, columns)
             hint = f"did you mean {near!r}?" if near else f"choose among {', '.join(columns)}."

@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from hasel_recording.command_entry import command
 from hasel_recording.convert import convert
 from hasel_recording.errors import RecordingError, RecordingWarning
 from hasel_recording.reading import drive_of_each, read_recording
@@ -13,6 +14,7 @@ from hasel_recording.reading_options import RecordingsParser, add_reading_option
 from hasel_recording.recording import Recording
 
 
+@command
 def convert_main(arguments: Sequence[str] | None = None) -> int:
     """Convert the recordings named on the command line; return an exit code."""
     parser = RecordingsParser(
@@ -43,6 +45,7 @@ def convert_main(arguments: Sequence[str] | None = None) -> int:
     return _for_each(options, work)
 
 
+@command
 def info_main(arguments: Sequence[str] | None = None) -> int:
     """Describe the recordings named on the command line; return an exit code."""
     parser = RecordingsParser(prog="info", description="Say what a recording holds.")
@@ -53,7 +56,7 @@ def info_main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _description(recording: Recording) -> str:
-    lines = [str(recording), *(f"    {sentence}" for sentence in recording.understood)]
+    lines = [str(recording), *(f"    {s}" for s in (*recording.understood, *recording.ripple))]
     lines += [*(f"    {key}: {value}" for key, value in recording.metadata.items())]
     if recording.driven:
         lines.append(f"    driven by {', '.join(map(str, recording.channels))}")

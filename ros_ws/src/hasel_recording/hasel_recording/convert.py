@@ -3,11 +3,12 @@
 from collections.abc import Mapping
 from pathlib import Path
 
+from hasel_recording.csv_text import TEXT_SUFFIXES
 from hasel_recording.csv_writer import drive_path
 from hasel_recording.errors import RecordingError
 from hasel_recording.reading import WRITERS, read_recording, write_recording
 
-OTHER_SUFFIX = {".csv": ".mcap", ".mcap": ".csv", ".db3": ".csv"}
+OTHER_SUFFIX = dict.fromkeys(TEXT_SUFFIXES, ".mcap") | {".mcap": ".csv", ".db3": ".csv"}
 
 
 def target_path(source: Path, output: Path | None = None) -> Path:

@@ -59,11 +59,11 @@ def understand(names: list[str], meant: Mapping[str, str], source: str, angle: b
     found; angle: whether an angle or markers must be there. Raises RecordingError for what is missing, twice,
     misspelt or in a unit that is not known.
     """
-    for name in names:
+    reader = _Reader(names, meant, source, angle)
+    columns = reader.columns()
+    for name in columns.names():
         if names.count(name) > 1:
             raise RecordingError(f"{source} has the column {name!r} twice: keep one of them.")
-    reader = _Reader(names, meant, source)
-    columns = reader.columns()
     found = columns.sin_theta or columns.theta or set(MARKER_NAMES) <= set(columns.marker_names)
     if angle and not found:
         raise reader.missing(SIN_THETA, "or theta_deg, theta_rad, or the markers head, middle and tail")
@@ -73,8 +73,8 @@ def understand(names: list[str], meant: Mapping[str, str], source: str, angle: b
 class _Reader:
     """Sorts columns by what they are; a column that is mapped counts before one that has the name itself."""
 
-    def __init__(self, names: list[str], meant: Mapping[str, str], source: str) -> None:
-        self.source, self.names = source, names
+    def __init__(self, names: list[str], meant: Mapping[str, str], source: str, angle: bool) -> None:
+        self.source, self.names, self.angle = source, names, angle
         self.left = {meant[name]: name for name in names if name in meant}
         mapped = {_role(name) for name in self.left}
         self.unused = [name for name in names if name not in meant and _role(name.lower()) in mapped]
@@ -95,7 +95,7 @@ class _Reader:
         """Return the error that says a column is missing and which there are."""
         return RecordingError(
             f"{self.source} has no column {name!r} ({others}), only {', '.join(self.names)}: "
-            f"rename a column, or say which it is with --map {name}=COLUMN."
+            f"rename a column, or say which it is with --map {'' if self.angle else 'drive.'}{name}=COLUMN."
         )
 
     def _missing_time(self) -> Column:

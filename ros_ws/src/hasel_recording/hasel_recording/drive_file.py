@@ -12,7 +12,7 @@ from hasel_recording.column_map import meant_names
 from hasel_recording.csv_columns import understand
 from hasel_recording.csv_numbers import CsvNumbers
 from hasel_recording.csv_reader import drive_columns
-from hasel_recording.csv_text import read_text
+from hasel_recording.csv_text import TEXT_SUFFIXES, read_text
 from hasel_recording.drive_channel import DriveChannel
 from hasel_recording.errors import RecordingError, RecordingWarning
 from hasel_recording.mcap_drive import stamped_drive
@@ -43,7 +43,7 @@ def read_drive(
     """
     if not path.exists():
         raise RecordingError(f"There is no drive file {path}: check the name.")
-    read = _read_csv if path.suffix.lower() == ".csv" else _read_bag
+    read = _read_csv if path.suffix.lower() in TEXT_SUFFIXES else _read_bag
     return read(path, mapping or {}, metadata or {})
 
 
@@ -78,7 +78,7 @@ def with_drive(recording: Recording, path: Path, mapping: Mapping[str, str] | No
 def _read_csv(path: Path, mapping: Mapping[str, str], metadata: Mapping[str, str]) -> RecordedDrive:
     text = read_text(path)
     text = replace(text, metadata={**metadata, **text.metadata})
-    meant = meant_names(mapping, text.names, str(path), all_here=False)
+    meant = meant_names(mapping, text.names, str(path), all_here=False, of_drive=True)
     columns = understand(text.names, meant, str(path), angle=False)
     numbers = CsvNumbers(text)
     time_s = numbers.times(columns.time)

@@ -1,19 +1,24 @@
 """The messages and metadata of an MCAP file, also of one whose writer was killed."""
 
+import mmap
+import os
 import struct
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from mcap.exceptions import EndOfFile, InvalidMagic, McapError
-from mcap.records import Channel, McapRecord, Message, Metadata, Schema
-from mcap.stream_reader import CRCValidationError, StreamReader
+from mcap.exceptions import McapError
+from mcap.records import Channel, Message, Metadata, Schema
 from mcap_ros2.decoder import DecoderFactory
 
 from hasel_recording.errors import RecordingError, RecordingWarning, nearest
+from hasel_recording.mcap_records import MAGIC, Damage, whole_records
 from hasel_recording.topics import TOPIC_TYPES, known_as
+
+UNREADABLE = (McapError, ValueError, LookupError, struct.error, MemoryError, OverflowError, TypeError)
+"""What decoding a message, or its definition, raises where bytes make no sense."""
 
 
 @dataclass
@@ -44,13 +49,34 @@ class McapFile:
             raise RecordingError(
                 f"{self.path}: topic {topic} holds {found}, but {type_name} is expected; remap the topic."
             )
-        decode = decoders.decoder_for(channel.message_encoding, schema)
+        try:
+            decode = decoders.decoder_for(channel.message_encoding, schema)
+        except Exception:  # noqa: BLE001 - parsers of definitions raise what they like
+            raise RecordingError(
+                f"{self.path}: the definition of {topic} is damaged: restore the file from a copy."
+            ) from None
         if decode is None:
             raise RecordingError(
                 f"{self.path}: {topic} is {channel.message_encoding} with a {schema.encoding} "
                 "definition, but cdr with ros2msg is expected; record it with ROS 2 Jazzy."
             )
-        return [decode(message.data) for message in messages]
+        return self._whole(topic, messages, decode)
+
+    def _whole(self, topic: str, messages: list[Message], decode: Callable[[bytes], Any]) -> list[Any]:
+        """The messages that can be decoded; a RecordingWarning says how many cannot."""
+        decoded, damaged = [], 0
+        for message in messages:
+            try:
+                decoded.append(decode(message.data))
+            except UNREADABLE:
+                damaged += 1
+        if damaged:
+            warnings.warn(
+                f"{self.path}: {damaged} damaged messages on {topic} were left out.",
+                RecordingWarning,
+                stacklevel=5,
+            )
+        return decoded
 
     def name_of(self, topic: str) -> str:
         """Return what a topic is called here: its name, or the same in another namespace where there is only that."""
@@ -77,37 +103,30 @@ class McapFile:
 
 
 def read_file(path: Path) -> McapFile:
-    """Read a whole file; a truncated one is read to its last whole message, with a RecordingWarning."""
-    content = McapFile(path)
+    """Read all of a file that is whole; of a damaged one what is, with a RecordingWarning of what is not."""
+    content, damage = McapFile(path), Damage()
+    by_channel: dict[int, list[Message]] = {}
     with path.open("rb") as file:
-        for record in _whole_records(StreamReader(file, validate_crcs=True), path):
-            if isinstance(record, Message):
-                topic = content.channels[record.channel_id].topic
-                content.messages.setdefault(topic, []).append(record)
-            elif isinstance(record, Channel):
-                content.channels[record.id] = record
-            elif isinstance(record, Schema):
-                content.schemas[record.id] = record
-            elif isinstance(record, Metadata):
-                content.metadata.setdefault(record.name, {}).update(record.metadata)
+        if not os.fstat(file.fileno()).st_size:
+            raise RecordingError(f"{path} is empty: was the recording stopped before it began?")
+        with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+            damage.unread = 0 if data[: len(MAGIC)] == MAGIC else len(MAGIC)
+            for record in whole_records(data, damage):
+                if isinstance(record, Message):
+                    by_channel.setdefault(record.channel_id, []).append(record)
+                elif isinstance(record, Channel):
+                    content.channels.setdefault(record.id, record)
+                elif isinstance(record, Schema):
+                    content.schemas.setdefault(record.id, record)
+                elif isinstance(record, Metadata):
+                    content.metadata.setdefault(record.name, {}).update(record.metadata)
+    for number, messages in by_channel.items():
+        if number in content.channels:
+            content.messages.setdefault(content.channels[number].topic, []).extend(messages)
+        else:
+            damage.nameless += len(messages)
+    if damage.unread and not (content.messages or content.metadata):
+        raise RecordingError(f"{path} is not an MCAP file: give a recording in MCAP or CSV.")
+    for sentence in damage.sentences():
+        warnings.warn(f"{path} {sentence}", RecordingWarning, stacklevel=5)
     return content
-
-
-def _whole_records(reader: StreamReader, path: Path) -> Iterator[McapRecord]:
-    started = False
-    try:
-        for record in reader.records:
-            started = True
-            yield record
-    except (EndOfFile, struct.error):
-        if not started:
-            raise RecordingError(f"{path} is empty: was the recording stopped before it began?") from None
-        warnings.warn(
-            f"{path} is truncated (its writer was killed?); it was read to the last whole message.",
-            RecordingWarning,
-            stacklevel=5,
-        )
-    except InvalidMagic:
-        raise RecordingError(f"{path} is not an MCAP file: give a recording in MCAP or CSV.") from None
-    except (McapError, CRCValidationError) as error:
-        raise RecordingError(f"{path} is damaged ({error}): restore it from a copy.") from None

@@ -50,7 +50,8 @@ def read_mcap(path: Path) -> Recording:
 
 def time_origin(file: McapFile, stamps: np.ndarray) -> int:
     """Return the stamp [ns] that is time 0 of a run: what the file says, else the earliest of `stamps`."""
-    return int(file.metadata.get(TIME_RECORD, {}).get("time_origin_ns", stamps.min()))
+    said = file.metadata.get(TIME_RECORD, {}).get("time_origin_ns", "")
+    return int(said) if said.isdecimal() else int(stamps.min())
 
 
 def seconds(stamps_ns: np.ndarray, origin_ns: int) -> np.ndarray:

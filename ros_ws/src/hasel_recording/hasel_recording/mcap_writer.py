@@ -19,7 +19,7 @@ UNKNOWN_PAIR = [math.nan] * 2
 def write_mcap(recording: Recording, path: Path) -> None:
     """Write one run; times are kept to the nanosecond, every other number exactly."""
     streams = [_drive(recording), _measured(recording)]
-    earliest_s = min(recording.time_s[0], recording.drive()[0][0])
+    earliest_s = min(recording.time_s[0], recording.recorded_drive()[0][0])
     if recording.simulated_time_s is not None:
         streams.append(_simulated(recording))
         earliest_s = min(earliest_s, recording.simulated_time_s[0])
@@ -38,7 +38,7 @@ def _drive(recording: Recording) -> Iterator[tuple[int, str, dict[str, Any]]]:
         return
     columns = [channel.column for channel in recording.channels]
     supply = recording.channels == HASEL_PAIR
-    for time, values in zip(*recording.drive(), strict=True):
+    for time, values in zip(*recording.recorded_drive(), strict=True):
         message = state_message(values.tolist()) if supply else {"channel": columns, "value": values.tolist()}
         yield _nanoseconds(time), STATE if supply else DRIVE, message
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from hasel_recording.csv_reader import read_csv
+from hasel_recording.csv_text import TEXT_SUFFIXES
 from hasel_recording.csv_writer import write_csv
 from hasel_recording.drive_file import with_drive
 from hasel_recording.errors import RecordingError, RecordingWarning, nearest
@@ -14,7 +15,7 @@ from hasel_recording.mcap_writer import write_mcap
 from hasel_recording.recording import DRIVE_KEY, Recording
 from hasel_recording.switch_times import with_placed_switches
 
-SUFFIXES = (".csv", ".mcap", ".db3")
+SUFFIXES = (*TEXT_SUFFIXES, ".mcap", ".db3")
 WRITERS = {".csv": write_csv, ".mcap": write_mcap}
 
 
@@ -38,12 +39,17 @@ def read_recording(
         raise RecordingError(f"There is no file {path}: {hint}")
     try:
         return _read(path, mapping, None if drive is None else Path(drive))
+    except AttributeError as error:  # messages are made from the definition in the file
+        raise RecordingError(
+            f"{path} defines messages without {error.name!r}: its definitions are damaged or of another kind; restore "
+            "it from a copy, or record it with ROS 2 Jazzy."
+        ) from None
     except OSError as error:
         raise RecordingError(f"{path} cannot be read ({error.strerror}): check its permissions.") from None
 
 
 def _read(path: Path, mapping: Mapping[str, str] | None, drive: Path | None) -> Recording:
-    in_rows = path.suffix.lower() == ".csv"
+    in_rows = path.suffix.lower() in TEXT_SUFFIXES
     recording = read_csv(path, mapping, drive is None) if in_rows else read_mcap(path)
     if drive is None and DRIVE_KEY in recording.metadata:
         drive = path.parent / recording.metadata[DRIVE_KEY]
@@ -58,17 +64,19 @@ def read_recordings(
     paths: Iterable[str | Path],
     mapping: Mapping[str, str] | None = None,
     drives: Sequence[str | Path | None] | None = None,
+    names: Sequence[str] | None = None,
 ) -> list[Recording]:
     """Read all that can be read; the others are skipped, each with a RecordingWarning.
 
-    mapping: as of read_recording. drives: one file per recording, or one for all of them.
-    Raises RecordingError when none can be read.
+    mapping: as of read_recording. drives: one file per recording, or one for all of them. names: of the runs (default:
+    as of distinct_names). Raises RecordingError when none can be read.
     """
     recordings, errors = [], []
     paths = list(paths)
-    for path, drive in zip(paths, drive_of_each(paths, drives), strict=True):
+    names = names or distinct_names(paths)
+    for path, drive, name in zip(paths, drive_of_each(paths, drives), names, strict=True):
         try:
-            recordings.append(read_recording(path, mapping, drive))
+            recordings.append(replace(read_recording(path, mapping, drive), name=name))
         except RecordingError as error:
             errors.append(str(error))
     if not recordings:
@@ -78,6 +86,33 @@ def read_recordings(
     for error in errors:
         warnings.warn(f"Skipped: {error}", RecordingWarning, stacklevel=2)
     return recordings
+
+
+def distinct_names(paths: Sequence[str | Path]) -> list[str]:
+    """The shortest names that differ: the file's without its suffix, after as many folders as it takes (monday_run).
+
+    Files of one folder that differ in their suffix keep it; a file that is given several times is numbered.
+    """
+    places = [Path(path).absolute() for path in paths]
+    labels = {place: _label(place, 1) for place in places}
+    for shared in {label for label in labels.values() if list(labels.values()).count(label) > 1}:
+        alike = [place for place, label in labels.items() if label == shared]
+        for depth in range(2, max(len(place.parts) for place in alike)):
+            longer = {place: _label(place, depth) for place in alike}
+            if len(set(longer.values())) == len(alike):
+                break
+        else:
+            longer = {place: place.name for place in alike}
+        labels |= longer
+    names = [labels[place] for place in places]
+    return [
+        f"{name}_{names[:number].count(name) + 1}" if name in names[:number] else name
+        for number, name in enumerate(names)
+    ]
+
+
+def _label(place: Path, depth: int) -> str:
+    return "_".join([*place.parts[-depth:-1], place.name if place.is_dir() else place.stem])
 
 
 def drive_of_each(

@@ -25,9 +25,10 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--map",
         metavar="NAME=COLUMN,…",
-        type=_mapping,
+        action=_Mapping,
         default={},
-        help="names and units of your own CSV columns, such as time=t,sin_theta=angle_deg,voltage_upper=U1_kV",
+        help="names and units of your own CSV columns, such as time=t,sin_theta=angle_deg,voltage_upper=U1_kV; #2 is "
+        "the second column, drive.time the time in the drive's own file; may be given several times",
     )
     parser.add_argument(
         "--drive",
@@ -39,8 +40,12 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _mapping(text: str) -> dict[str, str]:
-    try:
-        return parse_map(text)
-    except RecordingError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
+class _Mapping(argparse.Action):
+    """Collects the pairs of every --map."""
+
+    def __call__(self, parser, namespace, values, option_string=None) -> None:
+        """Add the pairs of one --map."""
+        try:
+            setattr(namespace, self.dest, {**getattr(namespace, self.dest), **parse_map(values)})
+        except RecordingError as error:
+            raise argparse.ArgumentError(self, str(error)) from None

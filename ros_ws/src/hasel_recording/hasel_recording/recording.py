@@ -2,12 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from hasel_recording.drive_channel import HASEL_PAIR, DriveChannel
 from hasel_recording.errors import RecordingError
+from hasel_recording.plateaus import acting
 
 MARKER_NAMES = ("head", "middle", "tail")
 DRIVE_KEY = "drive"  # header line that names the file of the drive, beside the recording
@@ -102,10 +104,24 @@ class Recording:
             )
 
     def drive(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return (times [s] [k], values in SI units [k, channels]), each value holding until the next time.
+        """Return what acts: (times [s] [k], values in SI units [k, channels]), each value holding until the next time.
 
-        The passive body's drive is zero from the first frame on.
+        A measured drive that stands on plateaus acts without its ripple. The passive body's drive is zero from the
+        first frame on.
         """
+        return self.recorded_drive()[0], self._acting[0]
+
+    @property
+    def ripple(self) -> tuple[str, ...]:
+        """One sentence for each channel of the drive whose ripple was taken off."""
+        return self._acting[1]
+
+    @cached_property
+    def _acting(self) -> tuple[np.ndarray, tuple[str, ...]]:
+        return acting(self.channels, self.recorded_drive()[1])
+
+    def recorded_drive(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the drive as it was recorded, ripple included, in the form of `drive`."""
         if self.drive_time_s is not None:
             return self.drive_time_s, self.drive_values
         if self.drive_signal is not None:

@@ -23,7 +23,7 @@ def with_placed_switches(recording: Recording) -> Recording:
     """
     if recording.drive_signal is None or recording.drive_time_s is not None:
         return recording
-    time_s, values = recording.time_s, recording.drive_signal
+    time_s, values = recording.drive()
     changes = 1 + np.flatnonzero(np.any(np.diff(values, axis=0) != 0, axis=1))
     steps = np.diff(time_s)
     if len(steps) == 0 or len(changes) == 0 or len(changes) > SWITCHING * len(steps):
@@ -46,8 +46,8 @@ def with_placed_switches(recording: Recording) -> Recording:
         warnings.warn(f"{recording.path or recording.name}: {said}", RecordingWarning, stacklevel=3)
     if np.array_equal(placed, time_s):
         return recording
-    kept = np.concatenate([[0], changes])
-    return replace(recording, drive_time_s=placed[kept], drive_values=values[kept])
+    kept = slice(None) if recording.ripple else np.concatenate([[0], changes])
+    return replace(recording, drive_time_s=placed[kept], drive_values=recording.drive_signal[kept])
 
 
 def _due(

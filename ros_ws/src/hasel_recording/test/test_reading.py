@@ -1,5 +1,6 @@
 import pytest
 from hasel_recording import RecordingError, RecordingWarning, read_recording, read_recordings, write_recording
+from hasel_recording.reading import distinct_names
 
 
 def test_unreadable_one_is_skipped_aloud(csv_file, tmp_path):
@@ -47,3 +48,18 @@ def test_place_that_cannot_be_written(driven, tmp_path):
     for name in ("run.csv", "run.mcap"):
         with pytest.raises(RecordingError, match="cannot be written"):
             write_recording(driven, tmp_path / "nowhere" / name)
+
+
+@pytest.mark.parametrize(
+    ("paths", "names"),
+    [
+        (["a/run.csv", "a/other.csv"], ["run", "other"]),
+        (["a/run.csv", "b/run.csv", "b/other.csv"], ["a_run", "b_run", "other"]),
+        (["run.csv", "run.mcap"], ["run.csv", "run.mcap"]),
+        (["x/a/run.csv", "y/a/run.csv"], ["x_a_run", "y_a_run"]),
+        (["run.csv", "run.csv"], ["run", "run_2"]),
+    ],
+)
+def test_two_runs_of_one_name_stay_two(paths, names):
+    """The shortest names that differ: with suffix, with folders; the same file twice is numbered."""
+    assert distinct_names(paths) == names

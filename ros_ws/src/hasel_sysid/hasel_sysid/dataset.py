@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from hasel_recording import Recording, RecordingError, RecordingWarning, read_recordings
+from hasel_recording.plateaus import FINEST, roundest
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import Model
 from hasel_sim.run import Run
@@ -67,13 +68,14 @@ def load_experiments(
     paths: Iterable[str | Path],
     mapping: Mapping[str, str] | None = None,
     drives: Sequence[str | Path] | None = None,
+    names: Sequence[str] | None = None,
 ) -> list[Experiment]:
     """Read recordings (.csv, .mcap) as experiments.
 
-    mapping, drives: as of hasel_recording.read_recordings. One among good ones that cannot be read, or not be
+    mapping, drives, names: as of hasel_recording.read_recordings. One among good ones that cannot be read, or not be
     simulated, is skipped with a RecordingWarning; raises RecordingError when none is left.
     """
-    return usable(read_recordings(paths, mapping, drives))
+    return usable(read_recordings(paths, mapping, drives, names))
 
 
 def usable(recordings: Iterable[Recording]) -> list[Experiment]:
@@ -112,13 +114,20 @@ def for_model(model: Model, experiments: Sequence[Experiment]) -> list[Experimen
 def drive_levels(experiments: Sequence[Experiment], channels: tuple[str, ...] | None = None) -> np.ndarray:
     """Levels that get an amplitude of their own, ascending: all that occur, or eight spread over many.
 
+    Levels so near that a muscle hardly tells them apart, as of one voltage measured in several runs, share one.
     channels: those that contract alike (default: all).
     """
     found = [e.run.schedule.levels(channels) for e in experiments if e.run.schedule is not None]
     levels = np.concatenate(found) if found else np.zeros(0)
     levels = np.unique([float(f"{level:.5g}") for level in levels])
-    if len(levels) <= _MOST_LEVELS:
-        return levels
+    alike: list[list[float]] = []
+    for level in levels:
+        if alike and level < (1.0 + FINEST) * alike[-1][0]:
+            alike[-1].append(level)
+        else:
+            alike.append([level])
+    if len(alike) <= _MOST_LEVELS:
+        return np.array([roundest(group[0], group[-1]) for group in alike])
     return np.linspace(levels[-1] / _MOST_LEVELS, levels[-1], _MOST_LEVELS)
 
 

@@ -1,10 +1,12 @@
 """`ros2 run hasel_sysid sysid`: where the executable begins; --help is answered before anything is started."""
 
+from hasel_recording.command_entry import command
 from hasel_recording.node_usage import answer_help
 
 from hasel_sysid.sysid_parameters import PARAMETERS
 
 
+@command
 def main() -> None:
     """Run the node until it is interrupted; the process ends with its exit code."""
     answer_help(

@@ -1,6 +1,5 @@
 """Frames from an image topic of another node."""
 
-import time
 from collections import deque
 from collections.abc import Callable
 
@@ -10,6 +9,7 @@ from rclpy.subscription import Subscription
 from sensor_msgs.msg import CompressedImage, Image
 
 from hasel_tracker.errors import TrackerError
+from hasel_tracker.live.health_report import POSSIBLE_LATENCY_S
 from hasel_tracker.live.live_tracker import LiveTracker
 from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.image_message import image_of
@@ -17,6 +17,7 @@ from hasel_tracker.sources.image_message import image_of
 LOOK_PERIOD_S = 0.2
 QUEUE_DEPTH = 50
 USUAL_INTERVALS = 100
+KINDS = {"sensor_msgs/msg/Image": Image, "sensor_msgs/msg/CompressedImage": CompressedImage}
 
 
 class ImageTopic:
@@ -34,6 +35,7 @@ class ImageTopic:
         self._intervals_ns: deque[int] = deque(maxlen=USUAL_INTERVALS)
         self.lost = 0
         self._subscription: Subscription | None = None
+        self._sent: tuple[type, ReliabilityPolicy] | None = None
         self._waiting = node.create_timer(LOOK_PERIOD_S, self._subscribe)
 
     def close(self) -> None:
@@ -43,21 +45,48 @@ class ImageTopic:
             self._node.destroy_subscription(self._subscription)
 
     def _subscribe(self) -> None:
-        """Subscribe reliably if the images are sent so: best effort loses most large images."""
+        """Subscribe as the images are sent: of their type, and reliably if they are, as best effort loses large ones.
+
+        Looked at again and again: a camera may come back sending otherwise.
+        """
         publishers = self._node.get_publishers_info_by_topic(self._topic)
         if not publishers:
             return
-        self._waiting.cancel()
+        kinds = {each.topic_type for each in publishers}
+        if len(kinds) > 1 or not kinds <= set(KINDS):
+            self._live().fault = (
+                f"The topic {self._topic} is of type {', '.join(sorted(kinds))}; expected {' or '.join(KINDS)}: name "
+                "another one."
+            )
+            return
         reliable = all(each.qos_profile.reliability == ReliabilityPolicy.RELIABLE for each in publishers)
         policy = ReliabilityPolicy.RELIABLE if reliable else ReliabilityPolicy.BEST_EFFORT
-        kind = CompressedImage if self._topic.endswith("compressed") else Image
+        sent = (KINDS[kinds.pop()], policy)
+        if sent == self._sent:
+            return
+        if self._subscription is not None:
+            self._node.destroy_subscription(self._subscription)
+        self._sent = sent
         self._subscription = self._node.create_subscription(
-            kind, self._topic, self._take, QoSProfile(depth=QUEUE_DEPTH, reliability=policy)
+            sent[0], self._topic, self._take, QoSProfile(depth=QUEUE_DEPTH, reliability=policy)
         )
 
     def _take(self, message: Image | CompressedImage) -> None:
+        now_ns = self._node.get_clock().now().nanoseconds
         stamp_ns = message.header.stamp.sec * 1_000_000_000 + message.header.stamp.nanosec
-        stamp_ns = stamp_ns or time.time_ns()
+        late_s = (now_ns - stamp_ns) * 1e-9
+        if stamp_ns and stamp_ns == self._last_stamp_ns:
+            self._live().fault = (
+                f"The images on {self._topic} are all stamped alike; those after the first are left out: check the "
+                "camera driver's stamps."
+            )
+            return
+        if stamp_ns and not -POSSIBLE_LATENCY_S < late_s < POSSIBLE_LATENCY_S:
+            self._live().fault = (
+                f"The images on {self._topic} are stamped {abs(late_s):.4g} s {'before' if late_s > 0 else 'after'} "
+                "they arrive, so their clock is another one than the drive's: set the camera's clock, or use_sim_time."
+            )
+        stamp_ns = stamp_ns or now_ns
         self._first_stamp_ns = self._first_stamp_ns or stamp_ns
         self._count_lost(stamp_ns)
         try:

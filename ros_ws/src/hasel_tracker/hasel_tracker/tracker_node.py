@@ -84,7 +84,7 @@ class TrackerNode(ManagedNode):
             self._camera = PersistentCamera(self._open_camera)
             read = self._camera.read
         elif not source.startswith(TOPIC_PREFIX):
-            read = Playback(open_recorded(source, self._value("frame_rate"))).read
+            read = Playback(open_recorded(source, unsaid_hz=self._value("frame_rate"))).read
         self._live = LiveTracker(
             self._new_tracker({}),
             self._publish,

@@ -178,6 +178,7 @@ def test_the_lifecycle_stops_and_starts_the_tracking(observer, start, long_video
 def test_image_topic_services_and_parameters(observer, start, frames, tmp_path):
     """Images from a topic are tracked; a lost marker is NaN; video is recorded on request; settings are checked."""
     images = observer.create_publisher(Image, "/camera/image_raw", 10)
+    now = int(time.time()) - 5
     process = start("source:=topic:/camera/image_raw", f"video_folder:={tmp_path}")
     observer.wait(lambda: images.get_subscription_count() >= 1)
     observer.wait(lambda: observer.count_publishers("/hasel/bending/measured") >= 1)
@@ -189,17 +190,17 @@ def test_image_topic_services_and_parameters(observer, start, frames, tmp_path):
 
     started_video = observer.call(SetBool, "/hasel/hasel_tracker/record_video", SetBool.Request(data=True))
     assert started_video.success
-    assert show(frames[40].image, 1000).doubt == BendingAngle.STARTING
-    assert not show(frames[40].image, 1001).valid
-    seen = show(frames[40].image, 1002)
+    assert show(frames[40].image, now).doubt == BendingAngle.STARTING
+    assert not show(frames[40].image, now + 1).valid
+    seen = show(frames[40].image, now + 2)
     assert seen.valid
-    assert seen.header.stamp.sec == 1002
+    assert seen.header.stamp.sec == now + 2
     assert [*seen.marker_name] == ["head", "middle", "tail"]
     assert 0.0 < seen.sin_theta_standard_deviation < 0.01
     assert seen.sin_theta == pytest.approx(frames[40].sin_theta, abs=2e-3)
     assert [*seen.marker_x] == pytest.approx(frames[40].markers_px[:, 0], abs=0.2)
 
-    blank = show(np.full_like(frames[0].image, 190), 1003)
+    blank = show(np.full_like(frames[0].image, 190), now + 3)
     assert not blank.valid
     assert np.isnan([blank.sin_theta, blank.theta, *blank.marker_x, *blank.marker_y]).all()
     assert [*blank.marker_quality] == [0.0, 0.0, 0.0]
@@ -208,7 +209,7 @@ def test_image_topic_services_and_parameters(observer, start, frames, tmp_path):
     assert finished.success
     source = VideoSource(Path(started_video.message))
     assert len(list(source)) == 4
-    assert source.start_stamp_ns == 1000 * 10**9
+    assert source.start_stamp_ns == now * 10**9
     assert not observer.call(
         SetBool, "/hasel/hasel_tracker/record_video", SetBool.Request(data=False)
     ).success
@@ -223,11 +224,15 @@ def test_image_topic_services_and_parameters(observer, start, frames, tmp_path):
     assert not set_parameter("width", 640).successful
     assert set_parameter("hue_low", 40).successful
     assert set_parameter("hue_high", 80).successful
-    assert not show(frames[40].image, 1004).valid  # blue markers are not looked for any more
+    assert not show(frames[40].image, now + 4).valid  # blue markers are not looked for any more
     assert set_parameter("hue_high", 130).successful
     assert observer.call(Trigger, "/hasel/hasel_tracker/restart", Trigger.Request()).success
-    assert [show(frames[40].image, stamp_s).valid for stamp_s in (1005, 1006, 1007)] == [False, False, True]
-    show(frames[40].image, 1011)  # three images between the stamps never came
+    assert [show(frames[40].image, stamp_s).valid for stamp_s in (now + 5, now + 6, now + 7)] == [
+        False,
+        False,
+        True,
+    ]
+    show(frames[40].image, now + 11)  # three images between the stamps never came
     lost = "3 frames were dropped"
     observer.wait(lambda: any(lost in report.status[0].message for report in observer.reports))
     assert (

@@ -29,7 +29,7 @@ def timeline(recording: Recording) -> list[ReplayedFrame]:
     is left, RecordingError for a body that the rig's two voltages do not drive.
     """
     recording.check_hasel_pair()
-    drive_time, drive_voltage = recording.drive()
+    drive_time, drive_voltage = recording.recorded_drive()
     start = float(recording.metadata.get("initial_time_s", min(recording.time_s[0], drive_time[0])))
     if start > recording.time_s[-1]:
         raise BringupError(

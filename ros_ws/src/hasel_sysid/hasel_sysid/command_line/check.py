@@ -3,9 +3,10 @@
 import argparse
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 
 from hasel_recording import Recording, RecordingError
-from hasel_recording.reading import drive_of_each, read_recording
+from hasel_recording.reading import distinct_names, drive_of_each, read_recording
 from hasel_sim.model import Model, load_model
 
 from hasel_sysid.command_line.json_file import write_json
@@ -34,11 +35,12 @@ def _check(options: argparse.Namespace, refused: list[str]) -> None:
     drives = drive_of_each(options.recordings, options.drive)
     model = load_model(options.model) if options.model else None
     shown: list[Summary] = []
-    for path, drive in zip(options.recordings, drives, strict=True):
+    names = distinct_names(options.recordings)
+    for path, drive, name in zip(options.recordings, drives, names, strict=True):
         try:
-            recording = read_recording(path, options.map, drive)
+            recording = replace(read_recording(path, options.map, drive), name=name)
         except RecordingError as error:
-            _refuse(path.stem, str(error), refused)
+            _refuse(name, str(error), refused)
             continue
         fits: tuple[str, ...] = ()
         misfit = False

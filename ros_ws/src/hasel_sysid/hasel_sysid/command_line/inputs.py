@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hasel_recording.reading import drive_of_each
+from hasel_recording.reading import distinct_names, drive_of_each
 from hasel_sim.model import Model, load_model
 
 from hasel_sysid.command_line.options import DEFAULT_MODEL
@@ -62,8 +62,9 @@ def load_all(
     """The experiments to fit and the unseen ones. Raises RecordingError when there are none to read."""
     fitted, validated = list(options.recordings), list(options.validate)
     drives = drive_of_each([*fitted, *validated], options.drive)
-    experiments = load_experiments(fitted, options.map, drives[: len(fitted)])
-    unseen = load_experiments(validated, options.map, drives[len(fitted) :]) if validated else []
+    names, count = distinct_names([*fitted, *validated]), len(fitted)
+    experiments = load_experiments(fitted, options.map, drives[:count], names[:count])
+    unseen = load_experiments(validated, options.map, drives[count:], names[count:]) if validated else []
     return experiments, unseen
 
 

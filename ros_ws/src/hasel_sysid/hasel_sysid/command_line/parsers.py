@@ -73,6 +73,11 @@ def workbench_parser() -> argparse.ArgumentParser:
     options.add_argument(
         "--port", type=int, default=8477, help="port; 0: any that is free (default: %(default)s)"
     )
+    options.add_argument("--certificate", metavar="FILE", type=Path, help="serve HTTPS with this certificate")
+    options.add_argument("--key", metavar="FILE", type=Path, help="the certificate's key")
+    options.add_argument(
+        "--unencrypted", action="store_true", help="let others on the network in without a certificate"
+    )
     options.add_argument("--no-browser", dest="browser", action="store_false", help="open no browser")
     options.add_argument("--no-rig", dest="rig", action="store_false", help="do not listen to a running rig")
     options.add_argument("--namespace", default="/hasel", help="of the rig (default: %(default)s)")

@@ -34,9 +34,13 @@ def _serve(options: argparse.Namespace) -> int:
     from hasel_sysid.workbench import Workbench
     from hasel_sysid.workbench.jobs import Jobs
     from hasel_sysid.workbench.live.rig import Rig
-    from hasel_sysid.workbench.page.server import serve
+    from hasel_sysid.workbench.page.server import opening, serve
     from hasel_sysid.workbench.recordings import Reading
 
+    certificate = _certificate(options)
+    told = opening(options.host, certificate, options.unencrypted)
+    if told:
+        print(f"note: {told}", file=sys.stderr)
     paths = [*options.recordings, *options.validate]
     drives = dict(zip(map(str, paths), drive_of_each(paths, options.drive), strict=True))
     reading = Reading(options.map, {path: Path(drive) for path, drive in drives.items() if drive is not None})
@@ -63,8 +67,21 @@ def _serve(options: argparse.Namespace) -> int:
         open_.callback(jobs.cancel)
         visit = _visit if options.bench else None
         browser = options.browser and not options.bench
-        serve(session, jobs, rig, options.host, 0 if options.bench else options.port, browser, visit)
+        port = 0 if options.bench else options.port
+        serve(session, jobs, rig, options.host, port, browser, visit, certificate)
     return 0
+
+
+def _certificate(options: argparse.Namespace) -> tuple[Path, Path] | None:
+    given = (options.certificate, options.key)
+    if given == (None, None):
+        return None
+    if None in given:
+        raise SysidError("a certificate needs its key; give both --certificate FILE and --key FILE")
+    missing = [str(path) for path in given if not path.is_file()]
+    if missing:
+        raise SysidError(f"there is no file {missing[0]}; check the name of the certificate and of its key")
+    return given
 
 
 def _visit(address: str) -> None:

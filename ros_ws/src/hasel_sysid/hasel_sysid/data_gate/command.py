@@ -5,6 +5,7 @@ from hasel_recording import HASEL_PAIR, Recording
 
 from hasel_sysid.data_gate.finding import Finding, error, warning
 from hasel_sysid.where_it_fails.drive_cycle import comparable, drive_cycle, net_drive
+from hasel_sysid.where_it_fails.noise import high_frequency_noise
 
 _LIKELY = {
     "voltage": (20.0, np.inf, "kilovolts"),
@@ -13,6 +14,10 @@ _LIKELY = {
 }
 """Largest magnitudes [SI] between which a drive is in its SI unit, and what it is in otherwise."""
 _FEW_LEVELS = 8
+_WORTH_SAYING = 4.0
+"""A motion within a switch's uncertainty counts where it is this many times the noise."""
+_ROUNDING = 1e-4
+"""Share of the angle's range to which recordings round."""
 _SEEN_AT_FRAMES = 2.05
 """A switch is seen up to one frame late, so regular ones seem to be up to two frames more or less apart."""
 
@@ -128,7 +133,32 @@ def _switching(recording: Recording, time: np.ndarray, values: np.ndarray) -> li
     if asked and abs(1 / cycle.period / asked - 1) > 0.03 + frame / cycle.period:
         evidence = f"the header says {asked:g} Hz and the command switches at {1 / cycle.period:.3g} Hz"
         return [warning("shifted command", 1 / cycle.period, evidence, "correct the header or the clock")]
-    return []
+    return _between_frames(recording, time, values, frame)
+
+
+def _between_frames(
+    recording: Recording, time: np.ndarray, values: np.ndarray, frame: float
+) -> list[Finding]:
+    """Switches that fall between frames, where the drive is known at the frames only and the body moves fast."""
+    changes = time[1 + np.flatnonzero(np.any(np.diff(values, axis=0) != 0, axis=1))]
+    distances = np.diff(changes)
+    if recording.drive_time_s is not None or len(distances) < 2:
+        return []
+    if not 0.5 * frame < np.ptp(distances) < 1.5 * frame:  # all alike: they lie on frames
+        return []
+    sin_theta = recording.sin_theta[recording.valid]
+    moved = float(np.sqrt(np.mean(np.diff(sin_theta) ** 2))) / np.sqrt(12.0)
+    if moved < _WORTH_SAYING * high_frequency_noise(sin_theta):
+        return []
+    evidence = (
+        f"the drive is known at the frames only, {1e3 * frame:.3g} ms apart, and switches between them, in which time "
+        f"the body moves by {moved:.2g} (rms)"
+    )
+    advice = (
+        "no fit can become better than that: give the drive's own recording with --drive, as `track` and `convert` "
+        "write it beside"
+    )
+    return [warning("switches between frames", moved, evidence, advice)]
 
 
 def _recurrences(time: np.ndarray, values: np.ndarray) -> np.ndarray:
@@ -144,6 +174,7 @@ def _recurrences(time: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def _faked(recording: Recording) -> list[Finding]:
+    """An angle that is the command itself, to a rounding: a slow body follows a slow drive closely, but never so."""
     if recording.drive_signal is None:
         return []
     valid = recording.valid
@@ -151,12 +182,12 @@ def _faked(recording: Recording) -> list[Finding]:
     measured = recording.sin_theta[valid]
     if len(measured) < 16 or np.ptp(command) == 0 or np.ptp(measured) == 0:
         return []
-    alike = float(np.corrcoef(command, measured)[0, 1])
-    if abs(alike) < 0.999:
+    apart = float(np.abs(measured - np.polyval(np.polyfit(command, measured, 1), command)).max())
+    if apart > _ROUNDING * np.ptp(measured):
         return []
-    evidence = f"angle and command have a correlation of {alike:.4f}"
+    evidence = f"the angle is the command, scaled, to within {apart:.1g}"
     return [
-        error("command equals measurement", alike, evidence, "check which signal was recorded as the angle")
+        error("command equals measurement", apart, evidence, "check which signal was recorded as the angle")
     ]
 
 

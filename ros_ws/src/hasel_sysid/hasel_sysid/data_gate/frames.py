@@ -9,7 +9,7 @@ _FEWEST_FRAMES = 16
 _MOST_JITTER = 0.2
 _MANY_DROPPED = 0.2
 _LOWEST_RATE_HZ = 25.0
-_LONGEST_STEP_S = 0.5
+_SHORTEST_STEP_S, _LONGEST_STEP_S = 5e-5, 0.5
 _LONGEST_RUN_S = 3600.0
 _SMALLER_UNITS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 _CHANCE = 3.0
@@ -38,6 +38,10 @@ def check_frames(recording: Recording) -> list[Finding]:
 
 def _unit(steps: np.ndarray) -> list[Finding]:
     usual = float(np.median(steps))
+    if usual < _SHORTEST_STEP_S:
+        evidence = f"frames are {usual:.3g} s apart, {1 / usual:.6g} per second, which no camera takes"
+        advice = "is the time in a larger unit? then call its column time_s or time_ms, or give --map time_s=COLUMN"
+        return [error("unit of time", usual, evidence, advice)]
     if usual < _LONGEST_STEP_S:
         return []
     likely = [unit for unit, size in _SMALLER_UNITS.items() if 0.5e-3 <= usual * size < _LONGEST_STEP_S]

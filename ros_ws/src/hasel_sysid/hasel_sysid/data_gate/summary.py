@@ -53,7 +53,7 @@ def summary(recording: Recording, model: Sequence[str] = (), misfit: bool = Fals
     rows = [("frames", _frames(recording)), ("angle", _angle(recording))]
     rows += [("drive", line) for line in _drive(recording)]
     rows += [("markers", _markers(recording)), ("start", _start(recording))]
-    rows += [("read", sentence) for sentence in recording.understood]
+    rows += [("read", sentence) for sentence in (*recording.understood, *recording.ripple)]
     header, made = without_provenance(recording.metadata)
     rows += [("header", f"{key}: {value}") for key, value in header.items()]
     rows += [("recorded", made)] if made else []
@@ -88,7 +88,11 @@ def _drive(recording: Recording) -> list[str]:
         f"{channel}: {_levels(channel, signal)}"
         for channel, signal in zip(recording.channels, values.T, strict=True)
     ]
-    placed = ", instants known apart from the frames" if recording.drive_time_s is not None else ""
+    frame = float(np.median(np.diff(recording.time_s))) if len(recording.time_s) > 1 else 0.0
+    at_frames = (
+        f", each known to a frame ({1e3 * frame:.3g} ms)" if len(np.unique(values, axis=0)) > 1 else ""
+    )
+    placed = ", instants known apart from the frames" if recording.drive_time_s is not None else at_frames
     return [*lines, _switching(recording, time, values) + placed]
 
 

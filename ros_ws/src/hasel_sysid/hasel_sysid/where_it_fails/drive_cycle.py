@@ -7,6 +7,12 @@ import numpy as np
 from hasel_recording import DriveChannel
 from hasel_recording.zero_order_hold import row_in_force
 
+from hasel_sysid.where_it_fails.noise import high_frequency_noise
+
+_FEW, WAVEFORM = 8, 0.5
+"""A drive of more values than few that changes at more than this share of its rows goes through a continuum."""
+_CLEAR_OF_NOISE, _CLEAR_OF_REST = 6.0, 0.02
+
 
 @dataclass(frozen=True)
 class DriveCycle:
@@ -52,12 +58,26 @@ def driven_side(values: np.ndarray) -> np.ndarray:
     return np.sign(net_drive(values)).astype(int)
 
 
+def _turned_side(values: np.ndarray) -> np.ndarray:
+    """driven_side, but a drive that goes through a continuum, as a sensor's, takes a side once it clearly leaves rest.
+
+    What a sensor gives at rest goes up and down about zero: that is no turn.
+    """
+    side, net = driven_side(values), net_drive(values)
+    if len(np.unique(net)) <= _FEW or np.count_nonzero(np.diff(net)) <= WAVEFORM * len(net):
+        return side
+    clear = max(_CLEAR_OF_NOISE * high_frequency_noise(net), _CLEAR_OF_REST * float(np.abs(net).max()))
+    known = (np.abs(net) > clear) | (np.abs(net) < 0.5 * clear)
+    side = np.where(np.abs(net) > clear, side, 0)
+    return np.append(side[:1] * 0, side)[np.maximum.accumulate(np.where(known, 1 + np.arange(len(net)), 0))]
+
+
 def drive_cycle(time: np.ndarray, values: np.ndarray) -> DriveCycle | None:
     """Find the cycle of a drive at times [s] [n] with comparable values [n, channels]; None below two turns.
 
     With several channels a cycle is from one take-over to the next but one; with one from onset to onset.
     """
-    side = driven_side(values)
+    side = _turned_side(values)
     changes = np.flatnonzero(np.diff(side, prepend=0) != 0)
     onset = changes[side[changes] != 0]
     if len(onset) < 2:

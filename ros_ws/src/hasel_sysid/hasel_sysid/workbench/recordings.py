@@ -2,10 +2,11 @@
 
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from hasel_recording import Recording, RecordingError, RecordingWarning, read_recording
+from hasel_recording.reading import distinct_names
 from hasel_sim.model import Model
 
 from hasel_sysid.data_gate import check_recording
@@ -44,19 +45,26 @@ def chosen_name(asked: str | None, recordings: Sequence[Recording]) -> str:
 
 
 def checked(
-    model: Model, recordings: Sequence[Recording], known: Sequence[str]
+    model: Model, recordings: Sequence[Recording], known: Sequence[Experiment]
 ) -> tuple[list[Experiment], list[Banner]]:
     """Those that this model can be compared with, and what the data check finds in them.
 
-    known: names that are taken already; a run of the same name is not loaded twice.
+    known: what is loaded already; no file is loaded twice, and files of one name get names that differ.
     """
     found: list[Experiment] = []
     banners: list[Banner] = []
     for recording in recordings:
-        if recording.name in (*known, *(each.name for each in found)):
-            banners.append(
-                Banner("warning", f"{recording.name} is loaded already; rename the file to load another.")
-            )
+        others = [*known, *found]
+        same = [each for each in others if each.name == recording.name]
+        if (
+            same
+            and recording.path is not None
+            and all(e.recording.path not in (None, recording.path) for e in same)
+        ):
+            paths = [each.recording.path for each in others if each.recording.path is not None]
+            recording = replace(recording, name=distinct_names([*paths, recording.path])[-1])
+        elif same:
+            banners.append(Banner("warning", f"{recording.name} is loaded already."))
             continue
         try:
             with warnings.catch_warnings(record=True) as said:

@@ -178,7 +178,7 @@ class Workbench:
         state = self.state
         name = chosen_name(self._asked, recordings)
         model = load_model(name) if not state.steps else state.current.model
-        found, said = checked(model, recordings, [each.name for each in state.every])
+        found, said = checked(model, recordings, state.every)
         state = replace(state, banners=(*state.banners, *said))
         self._commit(state)
         if not found:

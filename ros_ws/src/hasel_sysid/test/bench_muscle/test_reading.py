@@ -57,7 +57,7 @@ def test_a_held_contraction_is_said_in_the_header(csv):
             "#held: breath\ntime_s,voltage_v,contraction_m,load_n\n0,0,0,1\n",
             "load or contraction was expected",
         ),
-        ("time_s,voltage_v,contraction_m,load_n\n0,0,0,1\n0,0,0,1\n", "does not come after"),
+        ("time_s,voltage_v,contraction_m,load_n\n0,0,0,1\n0,0,0,2\n", "does not come after"),
         ("time_s,voltage_v,contraction_m,load_n\n0,0,0,1\n1,x,0,1\n", "line 3: 'x' in column voltage_v"),
     ],
 )

@@ -34,10 +34,12 @@ def test_errors_are_one_sentence(capsys, error):
     assert said.count("\n") == 1
 
 
-def test_bugs_are_not_hidden():
-    """An error that nobody foresaw is not dressed up as bad input."""
-    with pytest.raises(ZeroDivisionError):
-        run_command(lambda: 1 / 0)
+def test_bugs_are_not_hidden(tmp_path, monkeypatch, capsys):
+    """An error that nobody foresaw is not dressed up as bad input: it has a code of its own, and a file to send."""
+    monkeypatch.chdir(tmp_path)
+    assert run_command(lambda: 1 / 0) == 70
+    assert "ZeroDivisionError" in capsys.readouterr().err
+    assert [path.name[:11] for path in tmp_path.iterdir()] == ["hasel_error"]
 
 
 def test_warnings_are_one_line(capsys):

@@ -349,3 +349,33 @@ def test_header_lines_that_are_not_understood(made_recording, header, said):
     found = check_recording(made_recording(metadata=header))
     assert len(found) == 1
     assert said in str(found[0])
+
+
+def test_a_finger_that_follows_its_pressure_is_no_command():
+    """A soft finger driven slowly follows a measured pressure to 0.05 %: that is how it works, not a faked angle."""
+    time = np.arange(0, 12, 1 / 60)
+    rng = np.random.default_rng(11)
+    pressure = 12000 * (1 - np.cos(2 * np.pi * 0.25 * time)) + 40 * rng.normal(size=len(time))
+    angle = 1e-5 * pressure + 2e-4 * rng.normal(size=len(time))
+    assert np.corrcoef(angle, pressure)[0, 1] > 0.999
+    run = Recording(
+        "finger", time, angle, pressure[:, None], channels=(DriveChannel("chamber", "pressure", "Pa"),)
+    )
+    assert not [f for f in check_recording(run) if f.severity is Severity.ERROR]
+
+
+def test_switches_between_slow_frames_are_said():
+    """At 30 frames/s a 2 Hz drive switches between frames: how far the body moves meanwhile is told; not at 120."""
+    for rate, told in ((30, True), (120, False)):
+        time = np.arange(0, 3, 1 / rate)
+        upper = np.mod(2 * time + 1e-9, 1) < 0.5
+        noise = 0.002 * np.random.default_rng(0).normal(size=len(time))
+        run = Recording(
+            "run",
+            time,
+            0.25 * np.sin(2 * np.pi * 2 * time) + noise,
+            5000.0 * np.column_stack([upper, ~upper]),
+        )
+        found = [f for f in check_recording(run) if f.fault == "switches between frames"]
+        assert bool(found) is told
+        assert not found or "33.3 ms" in found[0].evidence

@@ -44,3 +44,12 @@ def test_alternating_polarity_is_the_same_drive():
     time, voltage = _drive([1, 0], [0, 1])
     signs = np.array([1, -1, -1, 1, 1, -1])[:, None]
     assert drive_cycle(time, voltage * signs).side.tolist() == [1, -1, 1, -1, 1, -1]
+
+
+def test_a_sensor_at_rest_starts_no_cycle():
+    """A pressure that is filled and let out at 0.5 Hz, with a sensor's noise about zero between, repeats at 0.5 Hz."""
+    time = np.arange(0, 10, 1 / 60)
+    filled = 25000 * np.clip(np.sin(2 * np.pi * 0.5 * time), 0, None) ** 2
+    noisy = np.round(filled + np.random.default_rng(8).normal(size=len(time)) * 60, -1)
+    assert drive_cycle(time, noisy[:, None]).period == pytest.approx(2.0, rel=0.03)
+    assert drive_cycle(time, (noisy - filled)[:, None] + 3000 * (time > 5)[:, None]) is None

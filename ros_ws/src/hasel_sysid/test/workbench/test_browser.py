@@ -10,6 +10,7 @@ import time
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import pytest
 from hasel_sysid.workbench.bench.browser import Browser, find_browser
@@ -40,7 +41,7 @@ class Server:
     def _address(self) -> str:
         ready, _, _ = select.select([self._process.stdout], [], [], _PATIENCE_S)
         line = self._process.stdout.readline() if ready else ""
-        found = re.search(r"http://127\.0\.0\.1:\d+/", line)
+        found = re.search(r"http://127\.0\.0\.1:\d+/\?token=\S+", line)
         if not found:
             self._process.kill()
             raise AssertionError(f"{line!r} {self._process.communicate()[1]}")
@@ -144,19 +145,21 @@ def test_played_slowly_in_other_colours_run_by_run(page):
 
 def test_nothing_comes_from_elsewhere(page, server):
     """All that the page loads comes from this machine."""
-    assert all(address.startswith((server.address, "data:")) for address in page.addresses())
+    assert all(
+        address.startswith((server.address.partition("?")[0], "data:")) for address in page.addresses()
+    )
     assert page.errors == []
 
 
 def test_only_this_machine_is_answered(server):
     """It listens at the loopback address alone, and not to a page elsewhere that gives its own name this address."""
-    port = int(server.address.rsplit(":")[-1].strip("/"))
+    port = urlsplit(server.address).port
     rows = [line.split() for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
     listening = [row[1].split(":") for row in rows if row[3] == "0A"]
     assert [host for host, at in listening if int(at, 16) == port] == ["0100007F"]
-    for host, status in (("localhost", 200), ("elsewhere.example", 400)):
+    for host, status in (("localhost", 303), ("elsewhere.example", 400)):
         with closing(http.client.HTTPConnection("127.0.0.1", port, timeout=_PATIENCE_S)) as connection:
-            connection.request("GET", "/", headers={"Host": host})
+            connection.request("GET", f"/?{urlsplit(server.address).query}", headers={"Host": host})
             assert connection.getresponse().status == status
 
 
@@ -286,7 +289,7 @@ def test_export_gives_links(page, server, browser):
     assert page.run("fetch('/export/session.py').then(a => a.text())").startswith(
         '"""What was done in the workbench'
     )
-    report = browser.open(f"{server.address}export/report.html", 390, 800)
+    report = browser.open(server.address.replace("?", "export/report.html?"), 390, 800)
     report.until("document.querySelector('.js-plotly-plot, .main-svg')", _PATIENCE_S)
     assert report.run("document.documentElement.scrollWidth") <= 390  # a phone's
     assert report.errors == []

@@ -1,8 +1,8 @@
 """What every command does alike: errors as one sentence, progress with the time left."""
 
-import sys
 from collections.abc import Callable
 
+from hasel_recording.command_entry import in_a_sentence
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -11,15 +11,7 @@ from hasel_tracker.errors import TrackerError
 
 def run_command(work: Callable[[], None]) -> int:
     """Run a command; returns its exit code: 0, 1 after an error (told on stderr), 130 after Ctrl-C."""
-    try:
-        work()
-    except TrackerError as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        print("Stopped.", file=sys.stderr)
-        return 130
-    return 0
+    return in_a_sentence(work, (TrackerError,), code=1)
 
 
 def progress_bar() -> Progress:

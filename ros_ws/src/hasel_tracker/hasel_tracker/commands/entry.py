@@ -1,8 +1,11 @@
 """Where the executables begin: options are read before anything heavy is imported, so that --help answers at once."""
 
+from hasel_recording.command_entry import command
+
 from hasel_tracker.commands import parsers
 
 
+@command
 def bench() -> int:
     """`bench`."""
     options = parsers.bench_parser().parse_args()
@@ -11,6 +14,7 @@ def bench() -> int:
     return run(options)
 
 
+@command
 def calibrate() -> int:
     """`calibrate colour|body|board|distance`."""
     options = parsers.calibrate_parser().parse_args()
@@ -19,6 +23,7 @@ def calibrate() -> int:
     return run(options)
 
 
+@command
 def render() -> int:
     """`render OUTPUT`."""
     options = parsers.render_parser().parse_args()
@@ -27,6 +32,7 @@ def render() -> int:
     return run(options)
 
 
+@command
 def track() -> int:
     """`track VIDEO`."""
     options = parsers.track_parser().parse_args()

@@ -143,7 +143,12 @@ def track_parser() -> argparse.ArgumentParser:
     options.add_argument(
         "--mirrored", action="store_true", help="the camera looks from below or over a mirror"
     )
-    options.add_argument("--frame-rate", type=float, metavar="HZ", help="of a folder of images")
+    options.add_argument(
+        "--frame-rate",
+        type=float,
+        metavar="HZ",
+        help="how fast the pictures were taken, in place of what a video says; needed for images",
+    )
     options.add_argument("--drive", type=Path, help="the drive's recording (.mcap or .csv), to merge")
     options.add_argument("--merge", choices=("auto", "stamp", "lag"), default="auto",
                          help="by stamp, by the lag found, or stamp if both have it (default)")  # fmt: skip

@@ -26,7 +26,7 @@ from hasel_tracker.offline.fixes import read_fixes
 from hasel_tracker.offline.movement import cut_to_periods
 from hasel_tracker.offline.run_output import write_run
 from hasel_tracker.offline.tracked_run import TrackedRun, track_frames
-from hasel_tracker.sources.folder_source import FolderSource
+from hasel_tracker.sources.folder_source import FolderSource, StackSource
 from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.open_source import open_recorded
 from hasel_tracker.sources.video_source import VideoSource
@@ -66,6 +66,8 @@ def _track(options: argparse.Namespace) -> None:
     lamp: list[float] = []
     run = _follow(source, tracker, options.annotate, placed, options.led, lamp)
     print(f"{options.video}: {run}")
+    for note in source.notes:
+        print(f"{options.video}: {note}.")
     if source.damaged_frames:
         print(f"warning: {source.damaged_frames} frames are damaged and were left out.", file=sys.stderr)
     print(f"Markers: {tracker.note}.")
@@ -86,7 +88,7 @@ def _track(options: argparse.Namespace) -> None:
 
 
 def _follow(
-    source: VideoSource | FolderSource,
+    source: VideoSource | FolderSource | StackSource,
     tracker: BendingTracker,
     annotated: Path | None,
     placed: dict[int, np.ndarray],

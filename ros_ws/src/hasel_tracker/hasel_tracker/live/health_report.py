@@ -6,6 +6,7 @@ from hasel_tracker.live.tracking_statistics import Health
 from hasel_tracker.sources.camera_source import RATE_SHARE
 
 OK, WARN, ERROR = 0, 1, 2  # diagnostic_msgs/DiagnosticStatus
+POSSIBLE_LATENCY_S = 10.0
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,13 @@ def judge(
     """The worst first: no frames, a fault, a slow camera, dropped frames, lost markers, another format."""
     if health.frames == 0:
         return HealthReport(ERROR, fault or "No frame arrived; check the camera or the image topic.")
+    if not -POSSIBLE_LATENCY_S < health.mean_latency_s < POSSIBLE_LATENCY_S:
+        return HealthReport(
+            ERROR,
+            fault
+            or f"Frames are stamped {health.mean_latency_s:.4g} s before their angle is known, which cannot be: set "
+            "the camera's clock.",
+        )
     warnings = [fault] if fault else []
     if asked_rate_hz is not None and health.frame_rate_hz < RATE_SHARE * asked_rate_hz:
         warnings.append(

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 from hasel_recording import HASEL_PAIR, DriveChannel, RecordingError
 from hasel_recording.drive_file import read_drive as read_recorded_drive
+from hasel_recording.reading import SUFFIXES
 from hasel_recording.zero_order_hold import held
 
 from hasel_tracker.errors import TrackerError
@@ -54,7 +55,7 @@ class Alignment:
 
 def read_drive(path: Path) -> Drive:
     """Read the drive of an .mcap recording or a .csv file, as compare and fit do; raises TrackerError."""
-    if Path(path).suffix.lower() not in (".mcap", ".db3", ".csv") and not Path(path).is_dir():
+    if Path(path).suffix.lower() not in SUFFIXES and not Path(path).is_dir():
         raise TrackerError(f"The drive recording {path} is neither .mcap nor .csv; give one of these.")
     try:
         drive = read_recorded_drive(Path(path))

@@ -23,6 +23,7 @@ from hasel_tracker.offline.drive import Alignment, Drive, after_the_drive
 from hasel_tracker.offline.tracked_run import TrackedRun
 from hasel_tracker.tracking.marker_set import marker_names
 
+AT_FRAME_S = 1e-6
 AFTER_S = 2e-9  # what is known still holds at the end itself
 
 
@@ -48,6 +49,7 @@ def write_run(
 def _write_csv(path: Path, run: TrackedRun, drive: Drive | None, metadata: dict[str, str]) -> str:
     time_s = run.time_s - run.time_s[0]
     signal, channels = (None, HASEL_PAIR) if drive is None else (drive.at(time_s), drive.channels)
+    switches = {} if drive is None else _switches(drive, time_s)
     markers, unit = (run.markers_px, "px") if run.markers_m is None else (run.markers_m, "m")
     names = marker_names(markers.shape[1])
     recording = Recording(
@@ -60,11 +62,25 @@ def _write_csv(path: Path, run: TrackedRun, drive: Drive | None, metadata: dict[
         metadata,
         channels=channels,
         marker_names=names,
+        **switches,
     )
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", RecordingWarning)
         write_recording(recording, path)
     return " ".join(str(each.message) for each in caught)
+
+
+def _switches(drive: Drive, time_s: np.ndarray) -> dict[str, np.ndarray]:
+    """When the drive of a Recording changes, where that is not at frames, and to what."""
+    when = _changes(drive, time_s[-1])
+    if np.abs(when[:, None] - time_s).min(axis=1).max() < AT_FRAME_S:
+        return {}
+    return {"drive_time_s": when, "drive_values": drive.at(when)}
+
+
+def _changes(drive: Drive, end_s: float) -> np.ndarray:
+    """The start of the run and every later row of the drive up to its end [s]."""
+    return np.concatenate([[0.0], drive.time_s[(drive.time_s > 0.0) & (drive.time_s <= end_s)]])
 
 
 def _write_mcap(path: Path, run: TrackedRun, drive: Drive | None, metadata: dict[str, str]) -> None:
@@ -93,10 +109,8 @@ def _angle(run: TrackedRun, index: int) -> dict[str, object]:
 
 def _drive_messages(drive: Drive, end_s: float) -> list[tuple[float, str, dict[str, object]]]:
     """The drive at the start, every change of it up to the end of the run, and from where on it is not known."""
-    changes = drive.time_s[(drive.time_s > 0.0) & (drive.time_s <= end_s)]
-    times = np.concatenate(
-        [[0.0], changes, [] if drive.end_s >= end_s else [max(drive.end_s, 0.0) + AFTER_S]]
-    )
+    ends = [] if drive.end_s >= end_s else [max(drive.end_s, 0.0) + AFTER_S]
+    times = np.concatenate([_changes(drive, end_s), ends])
     return [
         (float(when), *_drive_message(drive.channels, values.tolist()))
         for when, values in zip(times, drive.at(times), strict=True)

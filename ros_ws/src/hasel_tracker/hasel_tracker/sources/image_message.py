@@ -7,19 +7,27 @@ import numpy as np
 
 from hasel_tracker.errors import TrackerError
 
-TO_BGR = {
-    "bgr8": None,
-    "rgb8": cv2.COLOR_RGB2BGR,
-    "bgra8": cv2.COLOR_BGRA2BGR,
-    "rgba8": cv2.COLOR_RGBA2BGR,
-    "bayer_rggb8": cv2.COLOR_BayerBG2BGR,
-    "bayer_bggr8": cv2.COLOR_BayerRG2BGR,
-    "bayer_gbrg8": cv2.COLOR_BayerGR2BGR,
-    "bayer_grbg8": cv2.COLOR_BayerGB2BGR,
-    "yuv422_yuy2": cv2.COLOR_YUV2BGR_YUY2,
-    "uyvy": cv2.COLOR_YUV2BGR_UYVY,
+ENCODINGS: dict[str, tuple[int, int | None]] = {
+    "bgr": (3, None),
+    "rgb": (3, cv2.COLOR_RGB2BGR),
+    "bgra": (4, cv2.COLOR_BGRA2BGR),
+    "rgba": (4, cv2.COLOR_RGBA2BGR),
+    "bayer_rggb": (1, cv2.COLOR_BayerBG2BGR),
+    "bayer_bggr": (1, cv2.COLOR_BayerRG2BGR),
+    "bayer_gbrg": (1, cv2.COLOR_BayerGR2BGR),
+    "bayer_grbg": (1, cv2.COLOR_BayerGB2BGR),
 }
-CHANNELS = {"bgr8": 3, "rgb8": 3, "bgra8": 4, "rgba8": 4, "yuv422_yuy2": 2, "uyvy": 2}
+"""Channels and conversion of what sensor_msgs calls so, with 8 or 16 bits after it."""
+TO_BGR = {f"{name}{bits}": (*how, bits // 8) for name, how in ENCODINGS.items() for bits in (8, 16)} | {
+    "yuv422_yuy2": (2, cv2.COLOR_YUV2BGR_YUY2, 1),
+    "yuyv": (2, cv2.COLOR_YUV2BGR_YUY2, 1),
+    "yuv422": (2, cv2.COLOR_YUV2BGR_UYVY, 1),
+    "uyvy": (2, cv2.COLOR_YUV2BGR_UYVY, 1),
+    "nv12": (1, cv2.COLOR_YUV2BGR_NV12, 1),
+    "nv21": (1, cv2.COLOR_YUV2BGR_NV21, 1),
+}
+"""Channels, conversion and bytes per channel of every encoding."""
+HALF_COLOURS = {"nv12", "nv21"}  # half as many rows again hold the colours
 
 
 def image_of(message: Any) -> np.ndarray:
@@ -32,18 +40,19 @@ def _raw(message: Any) -> np.ndarray:
         raise TrackerError(
             f"The image topic sends '{message.encoding}'; expected a colour image: {', '.join(TO_BGR)}."
         )
-    channels = CHANNELS.get(message.encoding, 1)
-    data = np.frombuffer(message.data, np.uint8)
-    if message.step < message.width * channels or data.size < message.step * message.height:
+    channels, conversion, depth = TO_BGR[message.encoding]
+    lines = message.height * 3 // 2 if message.encoding in HALF_COLOURS else message.height
+    data, row = np.frombuffer(message.data, np.uint8), message.width * channels * depth
+    if message.step < row or data.size < message.step * lines:
         raise TrackerError(
             f"The image topic sends {data.size} bytes for {message.width} × {message.height} px "
             f"'{message.encoding}'; check the camera driver."
         )
-    rows = data[: message.step * message.height].reshape(message.height, message.step)
-    pixels = rows[:, : message.width * channels]
-    pixels = pixels if channels == 1 else pixels.reshape(message.height, message.width, channels)
-    conversion = TO_BGR[message.encoding]
-    return np.ascontiguousarray(pixels) if conversion is None else cv2.cvtColor(pixels, conversion)
+    pixels = np.ascontiguousarray(data[: message.step * lines].reshape(lines, message.step)[:, :row])
+    if depth == 2:
+        pixels = (pixels.view(">u2" if message.is_bigendian else "<u2") >> 8).astype(np.uint8)
+    pixels = pixels if channels == 1 else pixels.reshape(lines, message.width, channels)
+    return pixels if conversion is None else cv2.cvtColor(pixels, conversion)
 
 
 def _compressed(message: Any) -> np.ndarray:

@@ -183,3 +183,16 @@ def test_mistakes_get_one_sentence(folder, capsys, command, arguments, message):
     error = capsys.readouterr().err.strip().splitlines()[-1]
     assert error.startswith("error: ")
     assert message in error
+
+
+def test_csv_keeps_switches_that_fall_between_frames(folder):
+    """A drive merged into a CSV file switches when it did, not at the next frame, as in an MCAP file."""
+    assert render(["swim.mp4", *SMALL]) == 0
+    (folder / "drive.csv").write_text(
+        "time_s,voltage_upper_v,voltage_lower_v\n0,0,0\n0.1034,5000,0\n0.353,0,5000\n0.8,0,0\n"
+    )
+    for output in ("run.csv", "run.mcap"):
+        assert track(["swim.mp4", "-o", output, "--drive", "drive.csv", "--lag", "0"]) == 0
+        when, values = read_recording(output).drive()
+        np.testing.assert_allclose(when[1:3], [0.1034, 0.353], atol=1e-9)
+        np.testing.assert_array_equal(values[:3], [[0, 0], [5000, 0], [0, 5000]])

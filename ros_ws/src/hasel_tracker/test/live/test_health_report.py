@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hasel_tracker.live.health_report import ERROR, OK, WARN, judge
@@ -23,6 +25,8 @@ def health(rate_hz: float = 120.0, lost_share: float = 0.0, frames: int = 120) -
         ((health(), 120.0, 0, "Asked for MJPG, it gives YUYV.", ""), WARN, "it gives YUYV"),
         ((health(frames=0), 120.0, 0, "", ""), ERROR, "No frame arrived; check the camera"),
         ((health(frames=0), 120.0, 0, "", "The cable is out."), ERROR, "The cable is out."),
+        ((replace(health(), mean_latency_s=1.8e9), None, 0, "", ""), ERROR, "which cannot be"),
+        ((replace(health(), mean_latency_s=-40.0), None, 0, "", ""), ERROR, "which cannot be"),
     ],
 )
 def test_level_and_sentence(arguments, level, message):

@@ -15,6 +15,7 @@ def message(encoding: str, pixels: np.ndarray, padding: int = 0) -> SimpleNamesp
     padded = np.hstack([rows, np.zeros((len(rows), padding), np.uint8)])
     return SimpleNamespace(
         encoding=encoding,
+        is_bigendian=0,
         width=pixels.shape[1],
         height=len(rows),
         step=padded.shape[1],
@@ -29,6 +30,36 @@ def test_orders_of_the_channels(padding):
     rgb = IMAGE[..., ::-1]
     for encoding, pixels in (("bgr8", IMAGE), ("rgb8", rgb), ("rgba8", np.dstack([rgb, opaque]))):
         assert (image_of(message(encoding, np.ascontiguousarray(pixels), padding)) == IMAGE).all()
+
+
+@pytest.mark.parametrize("name", ["yuyv", "yuv422_yuy2", "uyvy", "yuv422", "nv12", "nv21"])
+def test_yuv_messages_have_their_colours(name):
+    """Every YUV encoding that ROS 2 Jazzy knows gives a plain colour back to a few levels."""
+    colour = np.full((6, 8, 3), (40, 120, 200), np.uint8)
+    planar = cv2.cvtColor(colour, cv2.COLOR_BGR2YUV_I420).ravel()
+    luma, u, v = planar[0], planar[48], planar[60]
+    packed = {
+        "yuyv": [luma, u, luma, v],
+        "uyvy": [u, luma, v, luma],
+        "nv12": [u, v],
+        "nv21": [v, u],
+    }
+    kind = {"yuv422_yuy2": "yuyv", "yuv422": "uyvy"}.get(name, name)
+    if kind.startswith("nv"):
+        rows = np.vstack([np.full((6, 8), luma), np.tile(packed[kind], (3, 4))]).astype(np.uint8)
+        sent = message(name, rows[..., None])
+        sent.height = 6
+    else:
+        sent = message(name, np.tile(packed[kind], (6, 4)).astype(np.uint8).reshape(6, 8, 2))
+    assert np.abs(image_of(sent).astype(int) - colour).max() <= 4
+
+
+@pytest.mark.parametrize("order", ["<u2", ">u2"])
+def test_16_bit_messages(order):
+    """The upper byte of a 16-bit channel is what is seen, whatever the order of its bytes."""
+    sent = message("rgb16", (IMAGE[..., ::-1].astype(np.uint16) * 257).astype(order).view(np.uint8))
+    sent.width, sent.is_bigendian = 8, int(order == ">u2")
+    assert (image_of(sent) == IMAGE).all()
 
 
 def test_bayer_pattern_has_the_colours_right():

@@ -59,4 +59,8 @@ def _times(found: list[float]) -> str:
 
 
 def _local(page: BrowserPage, address: str) -> str:
-    return "yes" if all(each.startswith((address, "data:")) for each in page.addresses()) else "NO"
+    return (
+        "yes"
+        if all(each.startswith((address.partition("?")[0], "data:")) for each in page.addresses())
+        else "NO"
+    )

@@ -1,6 +1,7 @@
 """The web server of the page; it loads nothing from elsewhere."""
 
 import asyncio
+import secrets
 import socket
 from collections.abc import Callable
 from pathlib import Path
@@ -11,6 +12,7 @@ from nicegui import app, background_tasks, run, ui
 from hasel_sysid.errors import SysidError
 from hasel_sysid.workbench.jobs import Jobs
 from hasel_sysid.workbench.live.rig import Rig
+from hasel_sysid.workbench.page.door import Door
 from hasel_sysid.workbench.page.page import Page
 from hasel_sysid.workbench.page.routes import add_routes
 from hasel_sysid.workbench.workbench import Workbench
@@ -18,6 +20,27 @@ from hasel_sysid.workbench.workbench import Workbench
 _STATIC = Path(__file__).with_name("static")
 _SCRIPTS = ("packet.js", "body.js", "curves.js", "tuning.js", "live.js", "bench.js")
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
+
+
+def opening(host: str, certificate: tuple[Path, Path] | None, unencrypted: bool) -> str:
+    """What listening at a host opens, in one sentence; '' for this machine only.
+
+    Raises SysidError where others on the network would be let in without a certificate and without being told so.
+    """
+    if host in LOOPBACK:
+        return ""
+    opens = (
+        f"--host {host} opens the workbench to the network: whoever has its address with the token can run experiments "
+        "on the rig and read recordings and effect files"
+    )
+    if certificate is not None:
+        return f"{opens}."
+    if not unencrypted:
+        raise SysidError(
+            f"{opens}, and without encryption everybody on the way can read the token; give --certificate FILE --key "
+            "FILE, or say --unencrypted where you trust the network"
+        )
+    return f"{opens}; without encryption everybody on the way can read the token."
 
 
 def serve(
@@ -28,8 +51,9 @@ def serve(
     port: int,
     show: bool,
     visit: Callable[[str], None] | None = None,
+    certificate: tuple[Path, Path] | None = None,
 ) -> None:
-    """Serve until interrupted; port 0: any that is free.
+    """Serve until interrupted; port 0: any that is free. certificate: its file and that of its key, for HTTPS.
 
     visit: called with the address, in a thread, once the server answers; after it the server ends. Raises SysidError
     where the port is taken.
@@ -41,6 +65,8 @@ def serve(
     app.add_static_files("/export", session.folder / "export")
     if host in LOOPBACK:  # a page elsewhere cannot reach it by giving its own name this machine's address
         app.add_middleware(TrustedHostMiddleware, allowed_hosts=list(LOOPBACK))
+    token = secrets.token_urlsafe(24)
+    app.add_middleware(Door, token=token, port=port)  # the outermost: nothing answers before it
     head = '<link rel="stylesheet" href="/workbench/workbench.css">'
     head += "".join(f'<script src="/workbench/{name}"></script>' for name in _SCRIPTS)
 
@@ -49,7 +75,8 @@ def serve(
         ui.add_head_html(head)
         Page(session, jobs, rig).build()
 
-    address = f"http://{'127.0.0.1' if host in ('0.0.0.0', '::') else host}:{port}/"
+    shown = "127.0.0.1" if host in ("0.0.0.0", "::") else f"[{host}]" if ":" in host else host
+    address = f"{'http' if certificate is None else 'https'}://{shown}:{port}/?token={token}"
     told = f"The workbench is at {address} (Ctrl-C ends it); what is kept is in {session.folder}."
 
     async def opened() -> None:
@@ -66,11 +93,12 @@ def serve(
         host=host,
         port=port,
         reload=False,
-        show=show,
+        show=f"/?token={token}" if show else False,
         dark=None,
         title="HASEL workbench",
         favicon="〰️",
         show_welcome_message=False,
+        **({} if certificate is None else {"ssl_certfile": certificate[0], "ssl_keyfile": certificate[1]}),
     )
 
 

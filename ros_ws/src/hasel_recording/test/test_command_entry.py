@@ -1,0 +1,121 @@
+"""The machine as it is: every command begins by one function, and no stack trace leaves it."""
+
+import errno
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from hasel_recording.command_entry import command, of_system
+
+CSV = "time_s,sin_theta\n0,0.1\n0.01,0.2\n0.02,0.1\n"
+INFO = [
+    sys.executable,
+    "-c",
+    "import sys; from hasel_recording.command_line import info_main; sys.exit(info_main())",
+]
+
+
+def run(folder: Path, *arguments: str, program: list[str] = INFO, **environment: str):
+    """A command in a folder of its own, with some of its environment changed; '' removes a variable."""
+    (folder / "run.csv").write_text(CSV)
+    surroundings = {**os.environ, **environment}
+    surroundings = {key: value for key, value in surroundings.items() if value}
+    return subprocess.run(
+        [*program, *arguments], cwd=folder, env=surroundings, capture_output=True, timeout=60, check=False
+    )
+
+
+@pytest.mark.parametrize(
+    "environment",
+    [
+        {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+        {"PYTHONIOENCODING": "ascii"},
+        {"PYTHONIOENCODING": "latin-1"},
+        {"HOME": ""},
+        {"HOME": "/nonexistent"},
+        {"MPLBACKEND": "module://matplotlib_inline.backend_inline"},
+    ],
+    ids=["C", "ascii", "latin-1", "unset home", "no home", "notebook"],
+)
+def test_surroundings_change_nothing(tmp_path, environment):
+    """Another locale, no home or a notebook's settings: the command does its work, at worst with a '?'."""
+    done = run(tmp_path, "run.csv", **environment)
+    assert done.returncode == 0, done.stderr
+    assert b"3 frames" in done.stdout
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["run.csv"]
+
+
+def test_a_file_of_the_lab_beside_the_data_is_left_alone(tmp_path):
+    """A signal.py in the working folder is not imported, also not by the workers' server."""
+    (tmp_path / "signal.py").write_text("raise SystemExit('the wrong signal')\n")
+    program = (
+        "import sys, os\nimport multiprocessing as m\n"
+        "from hasel_recording.command_entry import command\n"
+        "@command\ndef main():\n"
+        "    with m.get_context('forkserver').Pool(1) as pool:\n        print(pool.apply(os.getcwd))\n"
+        "if __name__ == '__main__':\n    sys.exit(main())\n"
+    )
+    (tmp_path / "tool").mkdir()
+    (tmp_path / "tool" / "program.py").write_text(program)
+    done = run(tmp_path, program=[sys.executable, str(tmp_path / "tool" / "program.py")])
+    assert done.returncode == 0, done.stderr
+    assert b"wrong signal" not in done.stderr
+
+
+def test_what_nobody_foresaw_is_a_file_to_send(tmp_path, monkeypatch, capsys):
+    """The stack trace goes into a file, its place and the error into one sentence."""
+    monkeypatch.chdir(tmp_path)
+
+    @command
+    def main():
+        raise KeyError("hue")
+
+    assert main() == 70
+    (written,) = tmp_path.glob("hasel_error_*.txt")
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "KeyError: 'hue'" in said and str(written) in said
+    assert "Traceback" in written.read_text()
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "said"),
+    [
+        (KeyboardInterrupt(), 130, "stopped"),
+        (MemoryError(), 2, "the memory is not enough"),
+        (
+            OSError(errno.ENOSPC, "No space left on device", "/data/x.csv"),
+            2,
+            "/data/x.csv: No space left .* free some",
+        ),
+        (
+            OSError(errno.EROFS, "Read-only file system", "/data"),
+            2,
+            "/data: Read-only .* choose another place",
+        ),
+    ],
+)
+def test_every_error_is_a_sentence(error, code, said, capsys):
+    """Ctrl-C, no memory, a full or read-only disk: what failed and what to do."""
+
+    @command
+    def main():
+        raise error
+
+    assert main() == code
+    assert re.search(said, capsys.readouterr().err)
+
+
+def test_no_shared_memory_is_said_as_such():
+    """Where processes cannot work together, no output folder is blamed."""
+    try:
+        exec(
+            compile("raise OSError(38, 'Function not implemented')", "multiprocessing/synchronize.py", "exec")
+        )
+    except OSError as error:
+        assert of_system(error) == (
+            "processes cannot work together here (Function not implemented): try again with --jobs 1"
+        )

@@ -1,0 +1,80 @@
+"""Who may come in: each request and socket shows the printed address' token, and comes from the page itself."""
+
+import secrets
+from collections.abc import Awaitable, Callable, MutableMapping
+from http.cookies import CookieError, SimpleCookie
+from typing import Any
+from urllib.parse import parse_qs, urlencode, urlsplit
+
+from starlette.datastructures import Headers
+from starlette.responses import PlainTextResponse, RedirectResponse
+
+LARGEST_REQUEST = 1 << 30
+"""Bytes that one request, such as an upload, may have."""
+Scope = MutableMapping[str, Any]
+Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
+Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
+
+
+class Door:
+    """ASGI middleware. token: what the address carries once, and a cookie of this port from then on."""
+
+    def __init__(self, app: Callable[[Scope, Receive, Send], Awaitable[None]], token: str, port: int) -> None:
+        self._app, self._token, self._cookie = app, token, f"hasel_workbench_{port}"
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Hand on what may come in; refuse the rest in a sentence."""
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        refusal = self._refusal(scope, headers)
+        if refusal is None and self._shown(scope):
+            refusal = self._with_cookie(scope)
+        if refusal is None:
+            await self._app(scope, receive, send)
+        elif scope["type"] == "websocket":
+            await receive()
+            await send({"type": "websocket.close", "code": 1008})
+        else:
+            await refusal(scope, receive, send)
+
+    def _refusal(self, scope: Scope, headers: Headers) -> PlainTextResponse | None:
+        origin = headers.get("origin")
+        if origin is not None and urlsplit(origin).netloc != headers.get("host"):
+            return PlainTextResponse("A page of another site asks: refused.", 403)
+        if not self._is_token(self._kept(headers)) and not self._shown(scope):
+            return PlainTextResponse("Open the address that the workbench printed, with its token.", 403)
+        length = headers.get("content-length", "0")
+        if "chunked" in headers.get("transfer-encoding", ""):
+            return PlainTextResponse("Say how long the request is.", 411)
+        if not length.isdecimal() or int(length) > LARGEST_REQUEST:
+            return PlainTextResponse(f"A request has at most {LARGEST_REQUEST >> 20} MB.", 413)
+        return None
+
+    def _kept(self, headers: Headers) -> str:
+        """The token that the browser keeps."""
+        try:
+            kept = SimpleCookie(headers.get("cookie", "")).get(self._cookie)
+        except CookieError:
+            return ""
+        return kept.value if kept is not None else ""
+
+    def _shown(self, scope: Scope) -> bool:
+        """Whether the address of a page carries the token."""
+        given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])[0]
+        return scope["type"] == "http" and scope["method"] == "GET" and self._is_token(given)
+
+    def _is_token(self, given: str) -> bool:
+        return secrets.compare_digest(given.encode(), self._token.encode())
+
+    def _with_cookie(self, scope: Scope) -> RedirectResponse:
+        """To the same page without the token, which the browser keeps from now on and shows to no other site."""
+        query = parse_qs(scope["query_string"].decode("latin-1"))
+        query.pop("token")
+        rest = urlencode(query, doseq=True)
+        answer = RedirectResponse("/" + scope["path"].lstrip("/") + (f"?{rest}" if rest else ""), 303)
+        answer.set_cookie(
+            self._cookie, self._token, httponly=True, samesite="strict", secure=scope["scheme"] == "https"
+        )
+        return answer
