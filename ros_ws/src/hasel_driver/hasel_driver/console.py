@@ -12,6 +12,7 @@ from hasel_interfaces.msg import SupplyState
 from hasel_driver.console_link import ConsoleLink
 from hasel_driver.console_options import HELP, parser
 from hasel_driver.errors import DriverError, RefusedError
+from hasel_driver.ground import Ground
 from hasel_driver.keyboard import Keyboard
 from hasel_driver.limits import Voltages
 from hasel_driver.mode import Mode
@@ -48,11 +49,18 @@ def describe(state: SupplyState | None) -> str:
         f"{name} {measured:.0f} of {asked:.0f} V {1e6 * current:.0f} µA"
         for name, (asked, measured, current) in zip(("upper", "lower"), pairs, strict=True)
     ]
-    proof = "grounded" if state.grounded else "NOT proven grounded"
+    proof = GROUND_WORDS[Ground(state.ground)]
     limit = f"limit {state.maximum_voltage:.0f} V"
     held = f"stop held by {', '.join(state.emergency_stop_holders)}" if state.emergency_stop_holders else ""
     words = [Mode(state.mode).name, *muscles, proof, limit, held, state.fault_text]
     return " | ".join(word for word in words if word)
+
+
+GROUND_WORDS = {
+    Ground.NOT: "NOT grounded",
+    Ground.COMMANDED: "commanded to ground, NOT proven",
+    Ground.PROVEN: "grounded",
+}
 
 
 class Console:

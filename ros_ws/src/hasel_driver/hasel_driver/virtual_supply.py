@@ -38,6 +38,13 @@ INPUTS = {
     "unground": "keep the upper muscle's ground contact from closing",
     "tickless": "switch the board's timer interrupt off, its line goes on",
     "mute_reset": "reset the board, and lose its banner",
+    "blind": "take the lead off the upper muscle's voltage divider",
+    "third": "its monitor says a third of what there is",
+    "stick": "its monitor says for good what it says now",
+    "invert": "its monitor has the wrong sign",
+    "unconverted": "the board converts its analogue inputs no more",
+    "leak": "the upper muscle leaks by 100 MΩ",
+    "damage": "change a byte of the calibration in the EEPROM; a reset finds it",
     "miscalibrate": "the upper converter gives 3 % less than asked, its monitor says 4 % more than there is",
     "unplug": "pull the cable",
     "replug": "put it back, under a new path (printed, and linked)",
@@ -163,6 +170,27 @@ class VirtualSupply:
     def _inject_miscalibrate(self) -> None:
         self.board.hardware.set_point_gain[0] = 0.97
         self.board.hardware.monitor_gain[0] = 1.04
+
+    def _inject_blind(self) -> None:
+        self.board.hardware.monitor_gain[0] = 0.0
+
+    def _inject_third(self) -> None:
+        self.board.hardware.monitor_gain[0] = 1 / 3
+
+    def _inject_stick(self) -> None:
+        self.board.hardware.stuck_v = abs(self.board.muscles[0].voltage_v)
+
+    def _inject_invert(self) -> None:
+        self.board.hardware.inverted = True
+
+    def _inject_unconverted(self) -> None:
+        self.board.hardware.unconverted = True
+
+    def _inject_leak(self) -> None:
+        self.board.muscles[0].short_ohm = 1e8
+
+    def _inject_damage(self) -> None:
+        self.board.calibrations_damaged = True
 
     def _inject_unplug(self) -> None:
         self.port.unplug()

@@ -83,8 +83,8 @@ def test_ended_during_an_experiment(start_driver, virtual_rig, ros, tmp_path, gr
 
     client = ActionClient(ros.node, RunExperiment, "/hasel/run_experiment")
     for index in range(rounds):
+        driver = start_driver(virtual_rig.port, recording_directory=tmp_path)
         path = tmp_path / f"{index}.mcap"
-        driver = start_driver(virtual_rig.port)
         driver.arm()
         assert client.wait_for_server(10.0)
         client.send_goal_async(

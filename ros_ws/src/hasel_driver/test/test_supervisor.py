@@ -5,6 +5,7 @@ import math
 import pytest
 from hasel_driver.errors import RefusedError
 from hasel_driver.faults import Fault, FaultCode, SupplyFaultError
+from hasel_driver.ground import Ground
 from hasel_driver.limits import Limits
 from hasel_driver.mode import Mode
 from hasel_driver.supervisor import Supervisor
@@ -38,7 +39,7 @@ class ObedientSupply(Supply):
         self.measured_v = None
         self.heartbeats: list[bool] = []
 
-    def open(self) -> Connection:
+    def open(self, prove: bool = False) -> Connection:
         self.mode, self.voltage_v, self.fault = Mode.STANDBY, ZERO, None
         return Connection("obedient")
 
@@ -56,7 +57,8 @@ class ObedientSupply(Supply):
             return []
         grounded = self.voltage_v == ZERO and not self.ungrounded
         values = (self.voltage_v, self.measured_v or self.voltage_v, ZERO)
-        return [Reading(now_s, self.mode, grounded, self.fault, *values)]
+        ground = Ground.PROVEN if grounded else Ground.NOT
+        return [Reading(now_s, self.mode, ground, self.fault, *values)]
 
     def _become(self, mode: Mode, voltage_v=ZERO) -> None:
         if not self.deaf:
@@ -96,6 +98,7 @@ class Case:
         """And let it happen."""
         self.supervisor.arm()
         self.pass_time(0.02)
+        self.supervisor.command(ZERO)
 
 
 @pytest.fixture
@@ -243,7 +246,7 @@ def test_no_sequence_of_calls_leaves_voltage_where_it_must_not_be(actions):
     case, armed = Case(), False
     supervisor, supply = case.supervisor, case.supply
     calls = {
-        "arm": supervisor.arm,
+        "arm": case.arm,
         "disarm": supervisor.disarm,
         "command": lambda: supervisor.command((9000.0, -100.0)),
         "nan": lambda: supervisor.command((math.nan, 0.0)),
@@ -280,7 +283,7 @@ def test_a_ground_that_is_not_proven_is_a_fault(case):
     """STANDBY without proof is FAULT after 300 ms; until then arming is refused."""
     case.supply.ungrounded = True
     case.pass_time(0.02)
-    with pytest.raises(RefusedError, match="proven grounded"):
+    with pytest.raises(RefusedError, match="discharged output"):
         case.supervisor.arm()
     case.pass_time(0.5)
     assert case.supervisor.fault.code is FaultCode.GROUND_NOT_PROVEN

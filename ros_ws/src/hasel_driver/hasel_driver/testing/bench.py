@@ -53,6 +53,7 @@ class Bench:
         self.await_mode(Mode.STANDBY)
         self.call(self.supervisor.arm)
         self.await_mode(Mode.ARMED)
+        self.call(self.supervisor.command, (0.0, 0.0))  # with which every controller begins
 
     def command_until(
         self,
