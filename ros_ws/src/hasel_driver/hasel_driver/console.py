@@ -3,6 +3,7 @@
 While a voltage is on, ANY KEY STOPS: the output is grounded and the driver is in FAULT.
 """
 
+import signal
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -154,13 +155,14 @@ def _number(word: str) -> float:
 
 def main() -> int:
     """Command line; returns the exit code."""
-    parser().parse_args()
-    return run()
+    return run(parser().parse_args().namespace)
 
 
-def run() -> int:
+def run(namespace: str) -> int:
     """Obey what is typed until the end; returns the exit code."""
-    link = ConsoleLink()
+    link = ConsoleLink(namespace)
+    for number in (signal.SIGTERM, signal.SIGHUP):  # as Ctrl-C: nobody is left who could stop
+        signal.signal(number, signal.default_int_handler)
     try:
         Console(link, Keyboard()).run()
     except DriverError as error:

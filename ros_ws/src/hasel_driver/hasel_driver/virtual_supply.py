@@ -10,11 +10,13 @@ import os
 import random
 import re
 import select
+import signal
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 
+from hasel_driver.errors import PortError
 from hasel_driver.pseudo_terminal import PseudoTerminal
 from hasel_driver.virtual_board import Hardware, VirtualBoard
 from hasel_driver.virtual_muscle import Contact, VirtualMuscle
@@ -227,7 +229,11 @@ def main() -> None:
     own = itertools.takewhile(lambda word: word != "--ros-args", sys.argv[1:])  # launch files add some
     arguments = parser.parse_args(list(own))
     upper, lower = (VirtualMuscle(capacitance_f=arguments.capacitance_nf * 1e-9) for _ in range(2))
-    supply = VirtualSupply(VirtualBoard((upper, lower)), PseudoTerminal(arguments.link), _tell)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        supply = VirtualSupply(VirtualBoard((upper, lower)), PseudoTerminal(arguments.link), _tell)
+    except PortError as error:
+        sys.exit(str(error))
     commands = b""
     listening = True
     try:

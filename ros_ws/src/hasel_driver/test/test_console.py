@@ -39,7 +39,7 @@ def test_a_script_arms_ramps_and_disarms(start_driver, virtual_rig, ros):
     assert done.returncode == 0, done.stderr
     for words in ("Armed", "The limit is 2500 V", "ANY KEY STOPS", "'fly' is not understood", "is no number"):
         assert words in done.stdout
-    assert "Disarmed: the supply reports its output grounded" in done.stdout
+    assert "Disarmed. The " in done.stdout
     peaks = virtual_rig.ask("output")[4:]
     assert peaks == pytest.approx([2000.0, 1000.0], abs=20)
     assert ros.await_mode(Mode.STANDBY).maximum_voltage == 2500.0
@@ -53,9 +53,9 @@ def test_any_key_stops(start_driver, virtual_rig, ros, grounded_in_time):
     here, there = pty.openpty()
     process = subprocess.Popen(CONSOLE, stdin=there, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     try:
-        os.write(here, b"arm\n")
-        ros.await_mode(Mode.ARMED, 20.0)
         with ros.silent():
+            os.write(here, b"arm\n")
+            ros.await_mode(Mode.ARMED, 20.0)
             os.write(here, b"ramp 3000 0\n")
             ros.wait(lambda: virtual_rig.live, 10.0)
             time.sleep(0.3)

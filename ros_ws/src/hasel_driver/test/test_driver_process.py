@@ -163,7 +163,7 @@ def test_the_last_state_is_true(start_driver, virtual_rig, ros):
     driver = start_driver(virtual_rig.port)
     driver.arm()
     with ros.commanding():
-        ros.wait(lambda: virtual_rig.live)
+        ros.wait(lambda: bool(ros.states) and ros.state.measured_voltage[1] < -1900)
         driver.process.terminate()
         assert driver.process.wait(5.0) == 0
     time.sleep(0.2)
@@ -171,23 +171,26 @@ def test_the_last_state_is_true(start_driver, virtual_rig, ros):
 
 
 def test_simulated_time_without_a_clock_watches_all_the_same(start_driver, virtual_rig, ros):
-    """With use_sim_time and nobody who publishes /clock, a second master is a fault as ever."""
+    """With use_sim_time and nobody who publishes /clock, another driver is a fault as ever."""
     driver = start_driver(virtual_rig.port, use_sim_time=True)
     driver.arm()
-    from hasel_driver.testing.ros_client import RosClient
+    from hasel_driver.testing.ros_client import another_node
+    from hasel_interfaces.msg import SupplyState
 
     with ros.commanding():
         ros.wait(lambda: virtual_rig.live)
-        rival = RosClient()
-        try:
-            with rival.commanding((1000.0, 1000.0)):
-                ros.wait(lambda: ros.state.fault_code == FaultCode.TWO_MASTERS, 10.0)
-        finally:
-            rival.close()
+        with another_node("stranger") as node:
+            node.create_publisher(SupplyState, "/hasel/state", 10)
+            ros.wait(lambda: ros.state.fault_code == FaultCode.TWO_DRIVERS, 10.0)
 
 
 STARTS = {
     "did you mean 'maximum_voltage'": {"maximum_voltge": 200.0},
+    "There is no parameter 'voltage_limit'": {"voltage_limit": 200},
+    "maximum_voltage is nan V, 0 to 9800": {"maximum_voltage": ".nan"},
+    "realtime_priority is 99": {"realtime_priority": 99},
+    "use_sim_time": {"use_sim_time": "maybe"},
+    "s in all, less than 0.5 s": {"heartbeat_timeout": 0.45, "dead_time": 0.05, "maximum_voltage": 9800},
     "Did you mean hasel?": {"backend": "Hasel"},
     "0 to 9800 was expected": {"maximum_voltage": 20000},
     "maximum_voltage is 'high', a number was expected": {"maximum_voltage": "high"},
@@ -212,18 +215,20 @@ def test_a_whole_number_is_a_voltage(start_driver, virtual_rig, ros):
 
 
 def test_an_open_interlock_at_the_start_is_told_and_closed_later(start_driver, virtual_rig, ros):
-    """The state tells which channel is open; once both are closed the driver arms."""
+    """The state tells which channel is open; once both were open together the fault is cleared, and the driver arms."""
     virtual_rig.say("interlock_b")
     driver = start_driver(virtual_rig.port)
-    ros.await_mode(STANDBY, 15.0)
+    assert ros.await_mode(FAULT, 15.0).fault_code == FaultCode.DISCREPANCY
     assert ros.state.interlock.tolist() == [2, 1]
-    time.sleep(0.6)
-    assert "interlock is open" in ros.trigger("arm").message
+    assert "interlock is open" in ros.trigger("clear_fault").message
     virtual_rig.say("recover")
-    assert "opened without the other" in ros.trigger("arm").message
+    time.sleep(0.1)
+    assert "disagreed" in ros.trigger("clear_fault").message
     virtual_rig.say("interlock")
-    time.sleep(0.05)
+    time.sleep(0.1)
     virtual_rig.say("recover")
+    time.sleep(0.1)
+    assert ros.trigger("clear_fault").success
     driver.arm()
 
 

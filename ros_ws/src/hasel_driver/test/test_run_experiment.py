@@ -8,6 +8,7 @@ import resource
 import subprocess
 import sys
 import time
+import uuid
 from itertools import pairwise
 from pathlib import Path
 
@@ -24,7 +25,7 @@ SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
 
 
 @pytest.fixture
-def run(ros, tmp_path):
+def run(ros):
     """Sends a goal; returns a function that waits for its end."""
     client = ActionClient(ros.node, RunExperiment, "/hasel/run_experiment")
     numbers = itertools.count()
@@ -39,7 +40,7 @@ def run(ros, tmp_path):
             "duty": 1.0,
             "muscles": "both",
             "rest_time": 0.3,
-            "output": str(tmp_path / f"run_{next(numbers)}.mcap"),
+            "output": f"{uuid.uuid4().hex}_{next(numbers)}",
         } | changes
         assert client.wait_for_server(10.0)
         feedback = []

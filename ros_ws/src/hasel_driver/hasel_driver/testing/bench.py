@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from hasel_driver import protocol
+from hasel_driver.ground import Ground
 from hasel_driver.hasel_supply import HaselSupply
 from hasel_driver.limits import Limits, Voltages
 from hasel_driver.mode import Mode
@@ -84,7 +85,7 @@ class Bench:
         return [
             str(status)
             for status in list(self.statuses)
-            if (status.grounded or status.mode in (Mode.STANDBY, Mode.ARMED))
+            if (status.ground is Ground.PROVEN or status.mode in (Mode.STANDBY, Mode.ARMED))
             and self.rig.refutes_dead_at(status.time_s)
         ]
 
