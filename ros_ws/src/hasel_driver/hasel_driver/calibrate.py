@@ -2,8 +2,8 @@
 
 End the driver's node first; connect a calibrated high-voltage probe to the muscle's terminals. Each voltage is put on
 only after a `yes`, and what the probe shows is asked for: without an answer for 10 s the output is grounded. An empty
-answer stops, as do Ctrl-C, the interlock, and the driver's emergency stop by topic or service. The table is printed, and
-stored on the board only after another `yes`. Run it once more to verify.
+answer stops, as do Ctrl-C, the interlock, and the driver's emergency stop by topic or service. The table is printed,
+and stored on the board only after another `yes`. Run it once more to verify.
 """
 
 import argparse
@@ -114,7 +114,9 @@ def measure(
     """
     for voltage_v in voltages_v:
         if not 0.0 < voltage_v <= maximum_v:
-            raise RefusedError(f"{voltage_v:g} V were asked for, more than 0 and at most {maximum_v:g} V were expected.")
+            raise RefusedError(
+                f"{voltage_v:g} V were asked for, more than 0 and at most {maximum_v:g} V were expected."
+            )
     limits = Limits(maximum_voltage_v=maximum_v)
     present = converse(port, limits, "GET", "CALIBRATION", channel)
     bench = CalibrationBench(port, limits)
@@ -180,7 +182,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--voltages", default=VOLTAGES_V, help=f"in V, at least three (default: {VOLTAGES_V})"
     )
     parser.add_argument(
-        "--maximum-voltage", type=float, default=6000.0, help="in V: nothing above it is put on (default: 6000)"
+        "--maximum-voltage",
+        type=float,
+        default=6000.0,
+        help="in V: nothing above it is put on (default: 6000)",
     )
     parser.add_argument(
         "--forget", action="store_true", help="store no correction for the channel, as after a damaged EEPROM"

@@ -83,7 +83,12 @@ def _over_current(sight: Sight) -> str | None:
 
 def _open_interlock(sight: Sight) -> str | None:
     reading = sight.reading
-    if not sight.armed or reading is None or reading.interlock_closed is None or all(reading.interlock_closed):
+    if (
+        not sight.armed
+        or reading is None
+        or reading.interlock_closed is None
+        or all(reading.interlock_closed)
+    ):
         return None
     return "the board reports it open, and stays armed"
 

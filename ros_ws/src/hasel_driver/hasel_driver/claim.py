@@ -15,7 +15,10 @@ class _Holder:
 
 
 class Claim:
-    """Publishers are told apart by their identifier in the middleware, a node that comes back by its name. Any thread."""
+    """Publishers are told apart by their identifier in the middleware, a node that comes back by its name.
+
+    For any thread.
+    """
 
     def __init__(self, clock: Callable[[], float]) -> None:
         self._clock, self._lock = clock, threading.Lock()

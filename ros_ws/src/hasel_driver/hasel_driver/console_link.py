@@ -76,7 +76,9 @@ class ConsoleLink:
             end_s = time.monotonic() + ANSWER_S
             while (holder := self._holder()) != self._node.get_fully_qualified_name():
                 if time.monotonic() > end_s:
-                    raise RefusedError(f"The driver obeys {holder or 'nobody'}: end that node, or disarm and arm again.")
+                    raise RefusedError(
+                        f"The driver obeys {holder or 'nobody'}: end that node, or disarm and arm again."
+                    )
                 self.command((0.0, 0.0))  # with which every controller begins
                 time.sleep(CLAIM_PERIOD_S)
             yield
@@ -110,8 +112,8 @@ class ConsoleLink:
             answering = self._node.count_services(client.srv_name)
             if answering > 1:
                 raise RefusedError(
-                    f"{answering} nodes answer {client.srv_name}, and one answer would stand for all: stop each supply by its"
-                    " switch, and end all but one."
+                    f"{answering} nodes answer {client.srv_name}, and one answer would stand for all: stop each supply"
+                    " by its switch, and end all but one."
                 )
             done = threading.Event()
             future = client.call_async(request)

@@ -27,13 +27,15 @@ from hasel_driver.errors import DriverError, PortError, PortInUseError, RefusedE
 from hasel_driver.experiment_server import ExperimentServer
 from hasel_driver.fault_store import FaultStore
 from hasel_driver.faults import Fault, FaultCode
+from hasel_driver.graph_names import UNNAMED
 from hasel_driver.limits import Limits
 from hasel_driver.messages import to_diagnostics, to_supply_state
 from hasel_driver.middleware import prepare, reach
 from hasel_driver.node_parameters import declare, values
-from hasel_driver.parent import end_with_parent
 from hasel_driver.parameter_files import check_files
+from hasel_driver.parent import end_with_parent
 from hasel_driver.realtime import middleware_threads, request_realtime
+from hasel_driver.rivals import NOT_TOLD
 from hasel_driver.status import Status
 from hasel_driver.supervisor import Supervisor
 from hasel_driver.supply_history import SupplyHistory
@@ -43,6 +45,7 @@ from hasel_driver.urgent_inputs import ALIVE_PERIOD_S, STEADY, UrgentInputs
 THREAD_SWITCH_S = 0.0005  # Python's 5 ms would let the executor hold up the supply's thread
 RETRY_PERIOD_S = 2.0  # between attempts to open a port that could not be opened at the start
 DISCOVERY_S = 1.0  # for which a new publisher may be known and not yet connected
+NAMING_S = 0.3  # within which another driver's name and host are learnt
 REFUSED_LOG_S = 2.0
 LAST_STATE_S = 0.2  # for which the end waits until the last state has been heard
 
@@ -59,6 +62,7 @@ class DriverNode(LifecycleNode):
         self._last_problem = ""
         self._configured_s = 0.0
         self._unheard_s: float | None = None
+        self._rival_s: float | None = None  # since when there is another driver
         self._last_limits: Limits | None = None
         self._claim = Claim(time.monotonic)
         self.end_reason: str | None = None  # why the process must end
@@ -265,10 +269,18 @@ class DriverNode(LifecycleNode):
         if not thread.is_alive():
             self._publish(thread.supervisor.status())
         thread.host_is_alive("services")
-        rivals = self._inputs.rivals.found() if thread.supervisor.armed else []
-        if rivals and thread.supervisor.armed:
-            self.fail(Fault(FaultCode.TWO_DRIVERS, ", ".join(rivals)))
+        self._watch_rivals(thread)
         self._watch_stop_publishers(thread)
+
+    def _watch_rivals(self, thread: SupplyThread) -> None:
+        rivals, now_s = self._inputs.rivals.found() if thread.supervisor.armed else [], time.monotonic()
+        if not rivals:
+            self._rival_s = None
+            return
+        self._rival_s = now_s if self._rival_s is None else self._rival_s
+        named = not any(NOT_TOLD in words or UNNAMED in words for words in rivals)
+        if named or now_s - self._rival_s > NAMING_S:
+            self.fail(Fault(FaultCode.TWO_DRIVERS, ", ".join(rivals)))
 
     def _watch_stop_publishers(self, thread: SupplyThread) -> None:
         unheard, now_s = self._inputs.stop_topic.unheard(), time.monotonic()
@@ -321,7 +333,8 @@ class DriverNode(LifecycleNode):
         if not rivals.known or rivals.found():
             others = ", ".join(rivals.found()) or "perhaps one that is not known yet"
             raise RefusedError(
-                f"Another driver answers to the names of this one: {others}. End it, or give each a namespace of its own."
+                f"Another driver answers to the names of this one: {others}."
+                " End it, or give each a namespace of its own."
             )
         commanders = self._inputs.commanders()
         if len(commanders) > 1:

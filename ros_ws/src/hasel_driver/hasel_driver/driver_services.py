@@ -1,4 +1,4 @@
-"""The services that arm, stop and clear: each answers success only for what the supply reports, and as the only driver."""
+"""The services that arm, stop and clear: each answers for what the supply reports, and only as the only driver."""
 
 from collections.abc import Callable
 from concurrent.futures import Future

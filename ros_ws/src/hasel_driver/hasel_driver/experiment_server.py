@@ -191,7 +191,9 @@ def plan_of(goal: RunExperiment.Goal, waveforms: Path) -> ExperimentPlan:
             f"The goal names the preset {goal.preset!r} and the file {goal.waveform_file!r}: give one of the two."
         )
     if goal.waveform_file:
-        return ExperimentPlan(read_waveform(below(waveforms, goal.waveform_file, "waveform_file")), goal.rest_time)
+        return ExperimentPlan(
+            read_waveform(below(waveforms, goal.waveform_file, "waveform_file")), goal.rest_time
+        )
     if goal.preset:
         chosen = preset(goal.preset)
         muscle = "upper" if goal.muscles == RunExperiment.Goal.BOTH else goal.muscles

@@ -54,5 +54,6 @@ class FaultStore:
 
     def _unreadable(self) -> PortError:
         return PortError(
-            f"{self._path} cannot be read, so it is not known whether a fault was left: see to the supply, then remove it."
+            f"{self._path} cannot be read, so it is not known whether a fault was left:"
+            " see to the supply, then remove it."
         )

@@ -46,7 +46,7 @@ EXPLANATIONS: dict[FaultCode, str] = {
     FaultCode.SEQUENCE: "the board missed a command, or a second master speaks on the port",
     FaultCode.GARBAGE: "the board received a garbled line",
     FaultCode.OVERVOLTAGE: "the measured voltage exceeded the maximum, or its monitor's range",
-    FaultCode.NOT_GROUNDED: "the ground contact should be closed, but the board measures voltage, or its test pulse did not discharge",
+    FaultCode.NOT_GROUNDED: "the ground contact should be closed, but there is voltage, or its proof failed",
     FaultCode.MONITOR: "the measured voltage does not follow the asked one, or is not measured at all",
     FaultCode.EEPROM: "the calibration in the board's EEPROM is damaged",
     FaultCode.DISCREPANCY: "the two channels of the interlock disagreed",

@@ -28,7 +28,11 @@ def to_time(monotonic_s: float) -> Time:
 
 
 def to_supply_state(
-    status: Status, limits: Limits | None = None, holders: Sequence[str] = (), frame_id: str = "", commander: str = ""
+    status: Status,
+    limits: Limits | None = None,
+    holders: Sequence[str] = (),
+    frame_id: str = "",
+    commander: str = "",
 ) -> SupplyState:
     """`/hasel/state`; in FAULT its text also tells whether the output is proven grounded."""
     message = SupplyState()

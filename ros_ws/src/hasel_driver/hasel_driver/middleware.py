@@ -12,7 +12,10 @@ from pathlib import Path
 from rclpy.utilities import get_rmw_implementation_identifier
 
 RANGE, PROFILES = "ROS_AUTOMATIC_DISCOVERY_RANGE", "FASTRTPS_DEFAULT_PROFILES_FILE"
-LOCALHOST_ONLY, PEERS = "ROS_LOCALHOST_ONLY", "ROS_STATIC_PEERS"  # the former is older, and goes before the range
+LOCALHOST_ONLY, PEERS = (
+    "ROS_LOCALHOST_ONLY",
+    "ROS_STATIC_PEERS",
+)  # the former is older, and goes before the range
 LOOPBACK = Path(__file__).with_name("loopback.xml")
 
 

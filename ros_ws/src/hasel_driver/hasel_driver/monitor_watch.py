@@ -65,7 +65,9 @@ class OutputWatch:
         """What is wrong with the monitors by the reports so far."""
         last_s, self._time_s = self._time_s, reading.time_s
         duration_s = 0.0 if last_s is None else min(max(reading.time_s - last_s, 0.0), LONGEST_STEP_S)
-        found = [self._step(channel, reading, slew_v_per_ms * 1e3 * duration_s, duration_s) for channel in range(2)]
+        found = [
+            self._step(channel, reading, slew_v_per_ms * 1e3 * duration_s, duration_s) for channel in range(2)
+        ]
         return next((text for text in found if text), None)
 
     def _step(self, channel: int, reading: Reading, rise_v: float, duration_s: float) -> str | None:

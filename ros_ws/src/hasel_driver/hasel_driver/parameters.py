@@ -81,14 +81,18 @@ PARAMETERS: tuple[Parameter, ...] = (
         1e-8,
     ),
     Parameter("contacts_read_back", False, "auxiliary contacts of the ground relays are wired to the board"),
-    Parameter("idle_disarm", 60.0, "armed without a command or an experiment for so long: disarm", "s", 1.0, 3600.0),
+    Parameter(
+        "idle_disarm", 60.0, "armed without a command or an experiment for so long: disarm", "s", 1.0, 3600.0
+    ),
     Parameter(
         "state_folder", "~/.ros/hasel_driver", "where faults that outlive a restart are kept; empty: nowhere"
     ),
     Parameter("discovery_time", 1.0, "arming waits this long for a latched emergency stop", "s", 0.0, 60.0),
     Parameter("accept_no_deadman", False, "allow arming a supply that stays live when its host dies (shvps)"),
     Parameter("recording_directory", "recordings", "below which RunExperiment writes, and nowhere else"),
-    Parameter("waveform_directory", "waveforms", "below which the waveform files of goals lie, and nowhere else"),
+    Parameter(
+        "waveform_directory", "waveforms", "below which the waveform files of goals lie, and nowhere else"
+    ),
     Parameter(
         "history_file",
         "~/.ros/hasel_supply_history.jsonl",

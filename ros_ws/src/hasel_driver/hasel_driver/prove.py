@@ -1,7 +1,7 @@
 """`ros2 run hasel_driver prove`: breaks the simulated supply's hardware, kind by kind, and judges what the driver says.
 
-The truth is the simulated contacts and voltages, never the driver's word. With `--firmware` (firmware/build) the sketch in
-simavr is tried instead of the virtual supply. The table is printed, and the exit code is 0 where nothing was wrong.
+The truth is the simulated contacts and voltages, never the driver's word. With `--firmware` (firmware/build) the sketch
+in simavr is tried instead of the virtual supply. The table is printed, and the exit code is 0 where nothing was wrong.
 """
 
 import argparse
@@ -26,7 +26,9 @@ def prove(command: list[str], kinds: Sequence[Kind], rounds: int) -> list[tuple[
         finally:
             bench.close()
             rig.close()
-        slowest_s = max((trial.found_s for trial in trials if trial.found_s is not None), default=float("nan"))
+        slowest_s = max(
+            (trial.found_s for trial in trials if trial.found_s is not None), default=float("nan")
+        )
         rows.append((kind.name, slowest_s, [text for trial in trials for text in trial.wrong]))
     return rows
 
@@ -37,7 +39,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         prog="prove", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--rounds", type=int, default=5, help="of each kind (default: 5)")
-    parser.add_argument("--firmware", type=Path, help="folder with the simulated firmware, from `make simulator`")
+    parser.add_argument(
+        "--firmware", type=Path, help="folder with the simulated firmware, from `make simulator`"
+    )
     options = parser.parse_args(arguments)
     command, kinds = VIRTUAL_SUPPLY, [*KINDS, *UNSEEN]
     if options.firmware is not None:

@@ -19,13 +19,17 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from std_msgs.msg import String
 
-from hasel_driver.graph_names import full_name
+from hasel_driver.graph_names import UNNAMED, full_name
 from hasel_driver.identified_subscription import IdentifiedSubscription
 
-PRESENCE = "driver_presence"
+DRIVER, PRESENCE = "hasel_driver", "driver_presence"
+NOT_TOLD = "on a host that it does not tell"
 SILENT_S = 1.0  # a driver that lives has been heard within that time
 PARTICIPANT_BYTES = 12  # of an identifier: those that all endpoints of a process share
-HOST, PROCESS = slice(2, 4), slice(4, 6)  # in Fast DDS: a hash of the host, the lower half of the process's number
+HOST, PROCESS = (
+    slice(2, 4),
+    slice(4, 6),
+)  # in Fast DDS: a hash of the host, the lower half of the process's number
 
 
 class Rivals:
@@ -33,7 +37,8 @@ class Rivals:
 
     def __init__(self, node: Node, services: Callable[[], list[str]]) -> None:
         self._node, self._services = node, services
-        self.own_words = f"{node.get_namespace().rstrip('/')}/hasel_driver on {socket.gethostname()} (process {os.getpid()})"
+        name = f"{node.get_namespace().rstrip('/')}/{DRIVER}"
+        self.own_words = f"{name} on {socket.gethostname()} (process {os.getpid()})"
         self._token = uuid.uuid4().hex
         self._own: bytes | None = None  # this process, as the middleware calls it
         self._words: dict[bytes, str] = {}  # of each process
@@ -65,7 +70,7 @@ class Rivals:
             if self._is_gone(participant):
                 gone += 1
             else:
-                name = self._words.get(participant, f"{full_name(info)} on a host that it does not tell")
+                name = self._words.get(participant, f"{full_name(info)} {NOT_TOLD}")
                 others.append(name)
         servers = max(self._node.count_services(name) for name in self._services())
         if servers > 1 + gone + len(others):
@@ -90,17 +95,20 @@ class Rivals:
     def _is_gone(self, participant: bytes) -> bool:
         """Whether the middleware only has not noticed yet that a process of this machine has ended."""
         now_s = time.monotonic()
-        if participant[HOST] != self._own[HOST] or now_s - self._seen_s.setdefault(participant, now_s) < SILENT_S:
+        if (
+            participant[HOST] != self._own[HOST]
+            or now_s - self._seen_s.setdefault(participant, now_s) < SILENT_S
+        ):
             return False
         number = int.from_bytes(participant[PROCESS], "little")
         return not any(int(each.name) & 0xFFFF == number for each in Path("/proc").glob("[0-9]*"))
 
     def _other_server(self) -> str:
-        own = (self._node.get_namespace().rstrip("/") or "/", "hasel_driver")
+        own = (self._node.get_namespace().rstrip("/") or "/", DRIVER)
         for name, namespace in self._node.get_node_names_and_namespaces():
             if (namespace, name) != own:
                 with suppress(NodeNameNonExistentError):
                     served = self._node.get_service_names_and_types_by_node(name, namespace)
                     if {service for service, _ in served} & set(self._services()):
                         return f"{namespace.rstrip('/')}/{name}, which answers to its services"
-        return "a node that answers to its services"
+        return f"{UNNAMED} that answers to its services"

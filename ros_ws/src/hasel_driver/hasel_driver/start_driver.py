@@ -16,7 +16,9 @@ def main() -> int:
         [each.usage for each in PARAMETERS],
     )
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.SIG_DFL)  # until the node takes them over, nothing is open that must be grounded
+        signal.signal(
+            number, signal.SIG_DFL
+        )  # until the node takes them over, nothing is open that must be grounded
     from hasel_driver.driver_node import main as run
 
     return run()

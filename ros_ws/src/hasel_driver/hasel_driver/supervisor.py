@@ -146,8 +146,8 @@ class Supervisor:
     def clear_fault(self) -> None:
         """Connect anew, which proves board and limits, and forget the fault; a lost port is opened again.
 
-        A fault that needs it is forgotten only with a proof of the ground contacts. Raises RefusedError while the output
-        is live or the interlock open, or PortError; then the fault stays.
+        A fault that needs it is forgotten only with a proof of the ground contacts. Raises RefusedError while the
+        output is live or the interlock open, or PortError; then the fault stays.
         """
         if self.fault is None:
             raise RefusedError(f"There is no fault to clear: the state is {self.status()}.")

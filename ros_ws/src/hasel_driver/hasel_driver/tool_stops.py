@@ -23,12 +23,17 @@ def stops_of_ros(stop: Callable[[str], None]) -> Iterator[None]:
 
     def serve(_: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         stop("by service")
-        response.success, response.message = False, "Stopped; a calibration proves nothing: treat the output as live."
+        response.success, response.message = (
+            False,
+            "Stopped; a calibration proves nothing: treat the output as live.",
+        )
         return response
 
     prepare()
     node = node_alone("hasel_calibrate", namespace=NAMESPACE)
-    topic = StopTopic(node, StopHolders(), lambda asserted, who: stop(f"by topic, from {who}") if asserted else None)
+    topic = StopTopic(
+        node, StopHolders(), lambda asserted, who: stop(f"by topic, from {who}") if asserted else None
+    )
     node.create_service(Trigger, EMERGENCY_STOP, serve)
     spin = BackgroundSpin(node, "stops", owns_context=True)
     try:

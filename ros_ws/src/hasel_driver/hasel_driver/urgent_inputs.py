@@ -25,7 +25,9 @@ STEADY = Clock(clock_type=ClockType.STEADY_TIME)  # no /clock, and no hand on th
 
 
 class UrgentInputs:
-    """Calls `on_command(publisher, its node, voltage [V], age [s])`, `on_stop(asserted, who)` and `on_alive()` from a thread of its own.
+    """Calls `on_command(publisher, its node, voltage [V], age [s])`, `on_stop(asserted, who)` and `on_alive()`.
+
+    From a thread of its own, which also watches for other drivers; `services()`: those that nobody else may serve.
 
     Their quality of service cannot be overridden by parameters: what makes the driver safe is no setting.
     """

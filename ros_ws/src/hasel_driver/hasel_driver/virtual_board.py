@@ -97,7 +97,10 @@ class VirtualBoard:
         self._sequence = 0
         self._lines = LineBuffer()
         self._send("!BOOT " + " ".join(protocol.IDENTITY) + f" reset={cause}")
-        for latch, code in ((Latch.UNPROVEN, FaultCode.NOT_GROUNDED), (Latch.DISAGREED, FaultCode.DISCREPANCY)):
+        for latch, code in (
+            (Latch.UNPROVEN, FaultCode.NOT_GROUNDED),
+            (Latch.DISAGREED, FaultCode.DISCREPANCY),
+        ):
             if latch in self.latches:
                 self.fail(code)
         if self.calibrations_damaged:

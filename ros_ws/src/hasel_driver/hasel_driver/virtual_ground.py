@@ -69,9 +69,7 @@ class GroundProof:
         """What both channels are to have [V]."""
         return self.pulse_v if self._phase == "charge" else 0.0
 
-    def step(
-        self, measured_v: Sequence[float], closed: bool, evidence: Sequence[GroundEvidence]
-    ) -> Verdict:
+    def step(self, measured_v: Sequence[float], closed: bool, evidence: Sequence[GroundEvidence]) -> Verdict:
         """One millisecond; `closed`: both ground contacts. The leakage that is seen goes into `evidence`."""
         self._phase_ms += 1
         if self._phase == "charge":

@@ -10,7 +10,11 @@ ENCLAVE = "/hasel/driver"  # of security/policy.xml
 
 def _driver(context: LaunchContext) -> list:
     keys = LaunchConfiguration("security").perform(context)
-    protected = {"ROS_SECURITY_KEYSTORE": keys, "ROS_SECURITY_ENABLE": "true", "ROS_SECURITY_STRATEGY": "Enforce"}
+    protected = {
+        "ROS_SECURITY_KEYSTORE": keys,
+        "ROS_SECURITY_ENABLE": "true",
+        "ROS_SECURITY_STRATEGY": "Enforce",
+    }
     files = LaunchConfiguration("config").perform(context)
     return [
         *(SetEnvironmentVariable(name, value) for name, value in protected.items() if keys),
@@ -30,10 +34,14 @@ def generate_launch_description() -> LaunchDescription:
     return LaunchDescription(
         [
             DeclareLaunchArgument("namespace", default_value="hasel", description="of topics and services"),
-            DeclareLaunchArgument("port", default_value="/dev/ttyACM0", description="serial port of the supply"),
+            DeclareLaunchArgument(
+                "port", default_value="/dev/ttyACM0", description="serial port of the supply"
+            ),
             DeclareLaunchArgument("config", default_value="", description="a file of parameters"),
             DeclareLaunchArgument(
-                "security", default_value="", description="a key store made of security/policy.xml; empty: no keys"
+                "security",
+                default_value="",
+                description="a key store made of security/policy.xml; empty: no keys",
             ),
             OpaqueFunction(function=_driver),
         ]

@@ -40,7 +40,12 @@ def test_settings_answer_with_the_value_applied(board, name):
     """SET clips to the documented range, GET repeats the value; the heartbeat can be neither off nor above 2 s."""
     least, most, initial = SETTINGS[name]
     assert board.ask("GET", name) == (True, f"{name} {6000 if name == 'MAXIMUM' else initial}")
-    for asked, applied in ((least - 1, least), (most + 1, most), (min(least + 3, most),) * 2, (-99999, least)):
+    for asked, applied in (
+        (least - 1, least),
+        (most + 1, most),
+        (min(least + 3, most),) * 2,
+        (-99999, least),
+    ):
         assert board.ask("SET", name, asked) == (True, f"{name} {applied}")
         assert board.ask("GET", name) == (True, f"{name} {applied}")
 
@@ -112,7 +117,10 @@ def test_a_skipped_sequence_number_is_a_fault_while_armed(board, rig):
     board.arm()
     board.ask("SET", "VOLTAGE", 3000, 3000)
     rig.await_live(True)
-    assert board.ask("SET", "VOLTAGE", 4000, 4000, sequence=board.after(2)) == (False, "SEQUENCE SET VOLTAGE 4000 4000")
+    assert board.ask("SET", "VOLTAGE", 4000, 4000, sequence=board.after(2)) == (
+        False,
+        "SEQUENCE SET VOLTAGE 4000 4000",
+    )
     rig.await_live(False)
     assert board.report().fault_code == 5
 

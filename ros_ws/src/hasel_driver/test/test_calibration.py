@@ -43,7 +43,9 @@ def test_the_procedure_makes_board_and_probe_agree(rig, monkeypatch):
     voltages_v = (1000.0, 3000.0, 5000.0)
 
     def run() -> CalibrationTable:
-        return calibrate.measure(rig.port, "upper", voltages_v, lambda _: rig.ask("output")[0], lambda _: True)
+        return calibrate.measure(
+            rig.port, "upper", voltages_v, lambda _: rig.ask("output")[0], lambda _: True
+        )
 
     before = run()
     assert abs(before.points[-1].probe_v - 5000.0) > 100

@@ -23,7 +23,7 @@ def test_a_kind_is_found_and_nothing_untrue_is_said(bench, request, kind, rounds
 
 @pytest.mark.parametrize("how", ["weld", "unground"])
 def test_a_failed_contact_stays_failed(rig, how):
-    """When the muscle has leaked empty, when the port is opened anew, when the board is reset: only a proof clears it."""
+    """When the muscle has leaked empty, the port is opened anew, the board is reset: only a proof clears it."""
     bench = Bench(rig)
     try:
         bench.arm()

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from hasel_driver import protocol
 from hasel_driver.errors import ProtocolError
-from hasel_driver.line_buffer import LineBuffer
 from hasel_driver.ground import Ground
+from hasel_driver.line_buffer import LineBuffer
 from hasel_driver.mode import Mode
 from hypothesis import given
 from hypothesis import strategies as st

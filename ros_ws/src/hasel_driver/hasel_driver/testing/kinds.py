@@ -41,8 +41,14 @@ KINDS: tuple[Kind, ...] = (
     _kind("divider stuck as the voltage changes", "stick", {F.MONITOR}, act="change"),
     _kind("divider off before arming", "blind", {F.MONITOR, F.NOT_GROUNDED}, act="arm"),
     _kind("inputs no longer converted", "unconverted", {F.MONITOR, F.DEVICE_RESET}),
-    _kind("inputs not converted, muscle shorted", "unconverted overcurrent", {F.MONITOR, F.DEVICE_RESET, F.OVERCURRENT}),
-    _kind("timer interrupt off", "tickless", {F.DEVICE_RESET, F.NO_REPLY, F.UNEXPECTED_STATE}),
+    _kind(
+        "inputs not converted, muscle shorted",
+        "unconverted overcurrent",
+        {F.MONITOR, F.DEVICE_RESET, F.OVERCURRENT},
+    ),
+    _kind(
+        "timer interrupt off", "tickless", {F.DEVICE_RESET, F.NO_REPLY, F.NO_TELEMETRY, F.UNEXPECTED_STATE}
+    ),
     _kind("contact welded, disarmed", "weld", CONTACT, act="disarm"),
     _kind("contact welded, leaking load, disarmed", "weld leak", CONTACT, act="disarm"),
     _kind("contact welded before arming", "weld", CONTACT, act="arm"),
@@ -134,7 +140,9 @@ def _watch(bench: Bench, trial: Trial, kind: Kind, began_s: float) -> None:
 def _judge(bench: Bench, trial: Trial, kind: Kind) -> None:
     fault = bench.supervisor.fault
     if fault is None or fault.code not in kind.expected:
-        trial.wrong.append(f"{fault or 'nothing'} was found, {', '.join(sorted(c.name for c in kind.expected))} expected")
+        trial.wrong.append(
+            f"{fault or 'nothing'} was found, {', '.join(sorted(c.name for c in kind.expected))} expected"
+        )
     elif trial.found_s is None or trial.found_s > WITHIN_S:
         trial.wrong.append(f"it was found after {trial.found_s} s")
     if _succeeds(lambda: bench.call(bench.supervisor.arm)):
@@ -147,5 +155,3 @@ def _succeeds(call: Callable[[], object]) -> bool:
     except DriverError:
         return False
     return True
-
-
