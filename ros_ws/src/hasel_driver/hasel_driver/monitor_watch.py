@@ -12,6 +12,7 @@ LEAST_FOLLOWED_V = 400.0  # of what is asked for, below which a monitor tells to
 LOW_S = 0.2  # below half of what is asked for, or of the wrong sign, for so long
 STUCK_S = 0.35  # at one value for so long, while what is asked for has changed by MOVED_V
 STUCK_V, MOVED_V = 20.0, 500.0
+FOLLOWED_SHARE = 0.85  # a monitor that is out by more is refused by `calibrate`, too
 REVERSAL_S = 0.2  # dead times and discharge of a change of polarity
 LONGEST_STEP_S = 0.05  # what lies between two reports further apart is not known
 
@@ -21,29 +22,30 @@ class MonitorWatch:
     """Fed with magnitudes, in the sign of what is asked for, while the source is connected; as in the firmware."""
 
     _low_s: float = 0.0
-    _stuck_s: float = 0.0
     _stuck_v: float = 0.0
-    _least_asked_v: float = 0.0
-    _most_asked_v: float = 0.0
+    _anchor_v: float = 0.0  # asked for when the measured voltage moved last
+    _risen_s: float = 0.0  # for which it should have risen
+    _fallen_s: float = (
+        0.0  # and fallen, without a break: a converter cannot sink, so a ripple need not be followed
+    )
 
-    def step(self, asked_v: float, measured_v: float, duration_s: float) -> str | None:
-        """What is wrong with `measured_v`, when `asked_v` >= 0 has been in force for `duration_s`; or None."""
-        if asked_v >= LEAST_FOLLOWED_V:
-            self._low_s = self._low_s + duration_s if measured_v < asked_v / 2 else 0.0
+    def step(self, asked_v: float, reached_v: float, measured_v: float, duration_s: float) -> str | None:
+        """What is wrong with `measured_v`, when `asked_v` was in force for `duration_s`; or None.
+
+        reached_v: at least so much the output must have by now, through slew limit and reversals.
+        """
+        if reached_v >= LEAST_FOLLOWED_V:
+            self._low_s = self._low_s + duration_s if measured_v < reached_v / 2 else 0.0
         if abs(measured_v - self._stuck_v) > STUCK_V:
-            self._stuck_v, self._stuck_s = measured_v, 0.0
-            self._least_asked_v = self._most_asked_v = asked_v
-        self._least_asked_v = min(self._least_asked_v, asked_v)
-        self._most_asked_v = max(self._most_asked_v, asked_v)
-        if self._most_asked_v - self._least_asked_v >= MOVED_V:
-            self._stuck_s += duration_s
+            self._stuck_v, self._anchor_v = measured_v, asked_v
+            self._risen_s = self._fallen_s = 0.0
+        if asked_v >= self._anchor_v + MOVED_V and self._stuck_v <= FOLLOWED_SHARE * asked_v:
+            self._risen_s += duration_s
+        self._fallen_s = self._fallen_s + duration_s if asked_v <= self._anchor_v - MOVED_V else 0.0
         if self._low_s >= LOW_S:
             return f"{measured_v:.0f} V are measured where {asked_v:.0f} V are asked for"
-        if self._stuck_s >= STUCK_S:
-            return (
-                f"{measured_v:.0f} V are measured, whatever is asked for:"
-                f" {self._least_asked_v:.0f} to {self._most_asked_v:.0f} V"
-            )
+        if max(self._risen_s, self._fallen_s) >= STUCK_S:
+            return f"{measured_v:.0f} V are measured still, {self._anchor_v:.0f} V became {asked_v:.0f} V"
         return None
 
 
@@ -58,7 +60,7 @@ class OutputWatch:
         """The output begins at 0 V again, as after the maximum was lowered."""
         self._watches = (MonitorWatch(), MonitorWatch())
         self._signs = [0, 0]
-        self._expected_v = [0.0, 0.0]
+        self._reached_v = [0.0, 0.0]
         self._pauses_s = [0.0, 0.0]
 
     def take(self, reading: Reading, slew_v_per_ms: float) -> str | None:
@@ -74,13 +76,13 @@ class OutputWatch:
         asked_v, measured_v = reading.commanded_v[channel], reading.measured_v[channel]
         sign = (asked_v > 0) - (asked_v < 0) if reading.mode is Mode.ACTIVE else 0
         if sign != self._signs[channel] or (reading.ground or Ground.NOT) is not Ground.NOT:
-            self._signs[channel], self._expected_v[channel] = sign, 0.0
+            self._signs[channel], self._reached_v[channel] = sign, 0.0
             self._pauses_s[channel] = REVERSAL_S
         if not sign or math.isnan(measured_v):
             return None
         self._pauses_s[channel] -= duration_s
-        if self._pauses_s[channel] > 0:
-            return None
-        self._expected_v[channel] = min(abs(asked_v), self._expected_v[channel] + rise_v)
-        wrong = self._watches[channel].step(self._expected_v[channel], sign * measured_v, duration_s)
+        if self._pauses_s[channel] <= 0:
+            self._reached_v[channel] = min(abs(asked_v), self._reached_v[channel] + rise_v)
+        reached_v = self._reached_v[channel]
+        wrong = self._watches[channel].step(abs(asked_v), reached_v, sign * measured_v, duration_s)
         return wrong and f"{MUSCLE_NAMES[channel]} muscle: {wrong}"

@@ -253,7 +253,7 @@ class VirtualBoard:
                 self.fail(code)
         for bridge, monitor, volts in zip(self.bridges, self.monitors, self.measured_v, strict=True):
             sign = bridge.contact.sign
-            if sign and monitor.step(bridge.set_point_v, abs(volts), 1e-3):
+            if sign and monitor.step(bridge.set_point_v, bridge.set_point_v, abs(volts), 1e-3):
                 self.fail(FaultCode.MONITOR)
 
     def _wanted(self) -> tuple[int, int]:

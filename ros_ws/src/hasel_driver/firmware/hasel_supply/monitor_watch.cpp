@@ -7,11 +7,12 @@ bool MonitorWatch::step(uint16_t asked_v, uint16_t measured_v) {
   const uint16_t moved_v = measured_v > stuck_v_ ? measured_v - stuck_v_ : stuck_v_ - measured_v;
   if (moved_v > STUCK_V) {
     stuck_v_ = measured_v;
-    least_asked_v_ = most_asked_v_ = asked_v;
-    stuck_ms_ = 0;
+    anchor_v_ = asked_v;
+    risen_ms_ = fallen_ms_ = 0;
   }
-  least_asked_v_ = min(least_asked_v_, asked_v);
-  most_asked_v_ = max(most_asked_v_, asked_v);
-  if (most_asked_v_ - least_asked_v_ >= MOVED_V) ++stuck_ms_;
-  return low_ms_ >= LOW_MS || stuck_ms_ >= STUCK_MS;
+  const uint16_t followed_v = asked_v - asked_v / 20 * 3;  // a monitor that is out by more is refused by `calibrate`, too
+  if (asked_v >= anchor_v_ + MOVED_V && stuck_v_ <= followed_v) ++risen_ms_;
+  // Without a break: a converter cannot sink, so a ripple need not be followed.
+  fallen_ms_ = asked_v + MOVED_V <= anchor_v_ ? fallen_ms_ + 1 : 0;
+  return low_ms_ >= LOW_MS || risen_ms_ >= STUCK_MS || fallen_ms_ >= STUCK_MS;
 }

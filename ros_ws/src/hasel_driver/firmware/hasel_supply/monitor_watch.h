@@ -10,6 +10,6 @@ class MonitorWatch {
   bool step(uint16_t asked_v, uint16_t measured_v);
 
  private:
-  uint16_t low_ms_ = 0, stuck_ms_ = 0;
-  uint16_t stuck_v_ = 0, least_asked_v_ = 0, most_asked_v_ = 0;
+  uint16_t low_ms_ = 0, risen_ms_ = 0, fallen_ms_ = 0;
+  uint16_t stuck_v_ = 0, anchor_v_ = 0;  // measured, and asked for, when the measured voltage moved last
 };

@@ -28,12 +28,13 @@ void Supply::begin() {
 void Supply::set(const Settings& settings) {
   const uint16_t trip_raw = raw(settings.trip_ua, FULL_SCALE_UA);
   const uint16_t most_v = max(settings.maximum_v * 105UL / 100, settings.maximum_v + 100UL);
-  uint16_t overvoltage_raw[CHANNELS], discharged_raw[CHANNELS];
+  uint16_t overvoltage_raw[CHANNELS], discharged_raw[CHANNELS], monitor_scale[CHANNELS];
   for (uint8_t channel = 0; channel < CHANNELS; ++channel) {
     const Calibration& calibration = calibrations_[channel];
     // A monitor at the end of its range cannot tell how much there is: that too is more than allowed.
     overvoltage_raw[channel] = min(raw(calibration.monitored(most_v), FULL_SCALE_V), (uint16_t)(ADC_MOST - 1));
     discharged_raw[channel] = raw(calibration.monitored(DISCHARGED_V), FULL_SCALE_V);
+    monitor_scale[channel] = FULL_SCALE_V * 256UL / ADC_MOST * calibration.read_gain / Calibration::UNITY;
   }
   ATOMIC_BLOCK(ATOMIC_RESTORESTATE) {
     settings_ = settings;
@@ -41,6 +42,7 @@ void Supply::set(const Settings& settings) {
     for (uint8_t channel = 0; channel < CHANNELS; ++channel) {
       overvoltage_raw_[channel] = overvoltage_raw[channel];
       discharged_raw_[channel] = discharged_raw[channel];
+      monitor_scale_[channel] = monitor_scale[channel];
     }
   }
 }
@@ -166,8 +168,10 @@ bool Supply::discharged(const uint16_t analogue[ANALOGUE_INPUTS]) const {
   return analogue[0] < discharged_raw_[0] && analogue[1] < discharged_raw_[1];
 }
 
+// Within some volts of what report() tells, without its divisions, which take too long for every tick.
 uint16_t Supply::measured_v(uint8_t channel, uint16_t analogue) const {
-  return calibrations_[channel].measured((uint32_t)analogue * FULL_SCALE_V / ADC_MOST);
+  const int32_t volts = ((uint32_t)analogue * monitor_scale_[channel] >> 8) + calibrations_[channel].read_offset_v;
+  return volts < 0 ? 0 : volts;
 }
 
 // By what was commanded, and by the auxiliary contact where it is wired.
@@ -207,7 +211,7 @@ Report Supply::report() {
   report.ground = !(contacts && fresh && discharged(analogue)) ? NOT_GROUND : proven && !needs_proof() ? PROVEN : COMMANDED;
   if (report.mode == ARMED && !contacts) report.mode = ACTIVE;
   for (uint8_t channel = 0; channel < CHANNELS; ++channel) {
-    const int16_t volts = measured_v(channel, analogue[channel]);
+    const int16_t volts = calibrations_[channel].measured((uint32_t)analogue[channel] * FULL_SCALE_V / ADC_MOST);
     report.measured_v[channel] = bridges_[channel].sign() < 0 ? -volts : volts;
     report.current_ua[channel] = (uint32_t)analogue[CHANNELS + channel] * FULL_SCALE_UA / ADC_MOST;
     report.interlock_closed[channel] = digitalRead(PIN_INTERLOCK[channel]) == LOW;

@@ -110,6 +110,7 @@ class Supply {
   uint16_t trip_raw_ = 0;
   uint16_t overvoltage_raw_[CHANNELS] = {0};
   uint16_t discharged_raw_[CHANNELS] = {0};
+  uint16_t monitor_scale_[CHANNELS] = {0};  // V per step of the converter, times 256
   Calibration calibrations_[CHANNELS];
   bool calibrations_damaged_ = false;
   GroundEvidence evidence_[CHANNELS];

@@ -33,6 +33,7 @@ def _kind(name: str, inject: str, codes: set[FaultCode], **options) -> Kind:
     return Kind(name, tuple(inject.split()), frozenset(codes), **options)
 
 
+RESET = {F.DEVICE_RESET, F.GARBAGE_RECEIVED}  # its banner may cut a line in two
 CONTACT = {F.NOT_GROUNDED, F.GROUND_NOT_PROVEN}
 KINDS: tuple[Kind, ...] = (
     _kind("divider off", "blind", {F.MONITOR}),
@@ -40,15 +41,13 @@ KINDS: tuple[Kind, ...] = (
     _kind("divider of the wrong sign", "invert", {F.MONITOR}, virtual_only=True),
     _kind("divider stuck as the voltage changes", "stick", {F.MONITOR}, act="change"),
     _kind("divider off before arming", "blind", {F.MONITOR, F.NOT_GROUNDED}, act="arm"),
-    _kind("inputs no longer converted", "unconverted", {F.MONITOR, F.DEVICE_RESET}),
+    _kind("inputs no longer converted", "unconverted", RESET | {F.MONITOR}),
     _kind(
         "inputs not converted, muscle shorted",
         "unconverted overcurrent",
-        {F.MONITOR, F.DEVICE_RESET, F.OVERCURRENT},
+        RESET | {F.MONITOR, F.OVERCURRENT},
     ),
-    _kind(
-        "timer interrupt off", "tickless", {F.DEVICE_RESET, F.NO_REPLY, F.NO_TELEMETRY, F.UNEXPECTED_STATE}
-    ),
+    _kind("timer interrupt off", "tickless", RESET | {F.NO_REPLY, F.NO_TELEMETRY, F.UNEXPECTED_STATE}),
     _kind("contact welded, disarmed", "weld", CONTACT, act="disarm"),
     _kind("contact welded, leaking load, disarmed", "weld leak", CONTACT, act="disarm"),
     _kind("contact welded before arming", "weld", CONTACT, act="arm"),

@@ -18,5 +18,7 @@ def within(folder: str, name: str) -> str:
     root = Path(folder).expanduser().resolve()
     file = (root / Path(path)).resolve()
     if root not in file.parents:
-        raise ModelError(f"'{name}' is not below {root}; expected a file there: it was given at the start as own_files")
+        raise ModelError(
+            f"'{name}' is not below {root}; expected a file there: it was given at the start as own_files"
+        )
     return f"{file}{colon}{kind}"
