@@ -25,7 +25,7 @@ class ExperimentPlan:
             raise LimitError(f"rest_time is {self.rest_s} s, 0 to {LONGEST_REST_S:g} s was expected.")
         if self.waveform.duration_s > LONGEST_S:
             raise LimitError(
-                f"The waveform lasts {self.waveform.duration_s:g} s, at most {LONGEST_S:g} s was expected: fewer periods."
+                f"The waveform lasts {self.waveform.duration_s:g} s, at most {LONGEST_S:g} s: ask for less."
             )
 
     @property

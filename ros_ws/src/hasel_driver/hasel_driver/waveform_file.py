@@ -80,7 +80,8 @@ def read_waveform(path: Path) -> FileWaveform:
     closest_s = float(np.diff(time_s).min())
     if closest_s < SHORTEST_ROW_S:
         raise LimitError(
-            f"{path} has rows {closest_s * 1e3:.3g} ms apart, and the driver sends one in 10 ms: at least that was expected."
+            f"{path} has rows {closest_s * 1e3:.3g} ms apart, and the driver sends one in 10 ms:"
+            " at least that was expected."
         )
     if not np.isfinite(voltages_v).all() or np.abs(voltages_v).max() > HARDWARE_MAXIMUM_V:
         raise LimitError(f"{path} holds a voltage that is no number, or above {HARDWARE_MAXIMUM_V:g} V.")

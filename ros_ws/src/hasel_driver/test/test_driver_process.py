@@ -3,6 +3,8 @@
 import math
 import random
 import signal
+import subprocess
+import sys
 import time
 
 import pytest
@@ -253,3 +255,67 @@ def test_topic_is_obeyed_by_a_driver_that_starts_later(start_driver, virtual_rig
         assert not ros.trigger("clear_fault").success
         driver.close()
     assert virtual_rig.changes == []
+
+
+PARENT = """
+import subprocess, sys, time
+subprocess.Popen([sys.executable, "-m", "hasel_driver.driver_node", "--ros-args", *sys.argv[1:]])
+time.sleep(1000)
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+def test_the_driver_ends_grounded_with_its_parent(virtual_rig, ros, tmp_path, grounded_in_time, number):
+    """As when a launch is killed, which leaves its nodes behind: grounded, and nobody holds the port any more."""
+    words = [f"port:={virtual_rig.port}", "discovery_time:=0.2", f"state_folder:={tmp_path}"]
+    words.append(f"history_file:={tmp_path}/history.jsonl")
+    ros.states.clear()
+    given = [each for word in words for each in ("-p", word)]
+    parent = subprocess.Popen([sys.executable, "-c", PARENT, *given])
+    try:
+        ros.await_mode(STANDBY, 20.0)
+        ros.wait(lambda: ros.trigger("arm").success, 10.0)
+        with ros.commanding():
+            ros.wait(lambda: virtual_rig.live)
+            ended_s = time.monotonic()
+            parent.send_signal(number)
+            grounded_in_time(virtual_rig, ended_s)
+    finally:
+        parent.kill()
+        parent.wait()
+    ros.states.clear()
+    time.sleep(1.5)
+    assert ros.states == []
+
+
+def test_a_stop_by_service_outlives_a_restart(start_driver, virtual_rig, ros, tmp_path):
+    """The next node on the port is in FAULT until somebody clears it."""
+    first = start_driver(virtual_rig.port, state_folder=tmp_path)
+    ros.await_mode(STANDBY)
+    ros.trigger("emergency_stop")
+    first.close()
+    start_driver(virtual_rig.port, state_folder=tmp_path)
+    assert ros.await_mode(FAULT).fault_code == FaultCode.EMERGENCY_STOP
+    assert not ros.trigger("arm").success
+    ros.wait(lambda: ros.trigger("clear_fault").success)
+
+
+def test_a_list_of_no_topics_is_none(start_driver, virtual_rig, ros):
+    """`-p recorded_topics:=[]` records the state alone, and does not have the node reset its board for ever."""
+    driver = start_driver(virtual_rig.port, recorded_topics="[]")
+    ros.await_mode(STANDBY)
+    driver.arm()
+
+
+def test_a_parameter_file_that_is_not_there_is_one_sentence():
+    """Before anything is opened."""
+    command = [
+        sys.executable,
+        "-m",
+        "hasel_driver.driver_node",
+        "--ros-args",
+        "--params-file",
+        "/no/such.yaml",
+    ]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, "Traceback" in done.stderr, "/no/such.yaml" in done.stderr) == (1, False, True)

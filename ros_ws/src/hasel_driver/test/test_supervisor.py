@@ -304,7 +304,7 @@ def test_a_measured_voltage_above_the_maximum_is_a_fault(case):
 
 
 def test_live_output_begins_at_zero(case):
-    """A voltage that is commanded as the supply is armed waits for a command of 0 V, and so does another commander's."""
+    """A voltage that is commanded as the supply is armed waits for 0 V, and so does that of another commander."""
     case.supervisor.arm()
     case.pass_time(0.02)
     case.supervisor.command((1000.0, 0.0))

@@ -1,4 +1,4 @@
-"""Files that a request names, which may come from any node of the network: only those of a folder given at the start."""
+"""Files that a request names, which may come from any node of the network: those of one folder only."""
 
 from pathlib import Path
 
