@@ -36,6 +36,8 @@ def test_two_rigs_do_not_hear_each_other(tmp_path, environment, listener):
             check()
             if states["rig2"][-1].mode == SupplyState.FAULT:
                 listener.arm("/rig2", states["rig2"], check)
+            if states["rig2"][-1].mode == SupplyState.ARMED:
+                command.publish(Actuation(voltage=[0.0, 0.0]))  # with which every controller begins
             command.publish(Actuation(voltage=[4000.0, 0.0]))
 
         listener.until(lambda: angles["rig2"][-1].sin_theta > 0.1, 60.0, drive)

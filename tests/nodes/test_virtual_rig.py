@@ -29,6 +29,8 @@ def test_an_armed_virtual_rig_bends_what_the_camera_sees(tmp_path, environment, 
             processes.check()
             if listener.states and listener.states[-1].mode == SupplyState.FAULT:
                 listener.arm("/hasel", listener.states, processes.check)
+            if listener.states and listener.states[-1].mode == SupplyState.ARMED:
+                command.publish(Actuation(voltage=[0.0, 0.0]))  # with which every controller begins
             command.publish(Actuation(voltage=[4000.0, 0.0]))
 
         listener.forget()

@@ -10,6 +10,9 @@ setup(
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml", "README.md", "CHANGELOG.rst"]),
+        (f"share/{PACKAGE}/launch", ["launch/driver.launch.py"]),
+        (f"share/{PACKAGE}/security", ["security/policy.xml"]),
+        (f"share/{PACKAGE}/docs", ["docs/hardware.md", "docs/network.md", "docs/safety.md"]),
     ],
     install_requires=["setuptools", "numpy>=1.26", "pyserial>=3.5", "PyYAML"],
     extras_require={"test": ["hypothesis", "pytest", "pytest-timeout"]},
@@ -24,6 +27,7 @@ setup(
             "console = hasel_driver.start_console:main",
             "calibrate = hasel_driver.calibrate:main",
             "driver_node = hasel_driver.start_driver:main",
+            "prove = hasel_driver.prove:main",
             "stored_charge = hasel_driver.stored_charge:main",
             "virtual_shvps = hasel_driver.virtual_shvps:main",
             "virtual_supply = hasel_driver.virtual_supply:main",

@@ -40,7 +40,8 @@ def generate_launch_description() -> LaunchDescription:
         ),
     ]
     port = str(Path(tempfile.gettempdir()) / f"hasel_supply_{os.getpid()}")
-    history = {"port": port, "history_file": f"{port}_history.jsonl", "recorded_topics": [""]}
+    own = {"history_file": f"{port}_history.jsonl", "state_folder": f"{port}_state"}
+    supply = {"port": port, "recorded_topics": [""], **own}
     folder = {"folder": PathJoinSubstitution([output, "recordings"])}
 
     def node(package: str, executable: str, *parameters: dict, **options) -> Node:
@@ -63,7 +64,7 @@ def generate_launch_description() -> LaunchDescription:
         [
             *arguments,
             node("hasel_driver", "virtual_supply", arguments=["--link", port]),
-            node("hasel_driver", "driver_node", history),
+            node("hasel_driver", "driver_node", supply),
             node("hasel_bringup", "virtual_camera", {"hidden": hidden}, prefix=_LATER),
             node("hasel_tracker", "tracker_node", TRACKER, prefix=_LATER),
             node("hasel_sim", "simulator", prefix=_LATER),

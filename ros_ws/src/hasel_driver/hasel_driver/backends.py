@@ -20,7 +20,10 @@ def make_supply(parameters: Mapping[str, Any]) -> Supply:
         trip_current_a=parameters["trip_current"],
         heartbeat_s=parameters["heartbeat_timeout"],
         dead_time_s=parameters["dead_time"],
+        contacts_read=parameters["contacts_read_back"],
+        load_f=parameters["load_capacitance"],
     )
+    limits.check_sum()
     if parameters["backend"] == "hasel":
         return HaselSupply(SerialPort(parameters["port"], protocol.BAUD), limits)
     if not parameters["second_port"]:

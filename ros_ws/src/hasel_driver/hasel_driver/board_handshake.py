@@ -7,6 +7,7 @@ from typing import TypeVar
 from hasel_driver import protocol
 from hasel_driver.errors import PortError, ProtocolError
 from hasel_driver.faults import Fault, FaultCode
+from hasel_driver.ground import Ground
 from hasel_driver.limits import Limits
 from hasel_driver.line_buffer import LineBuffer
 from hasel_driver.mode import Mode
@@ -16,7 +17,9 @@ BOOT_TIMEOUT_S = 2.5  # an Arduino's boot loader takes up to 2 s after the port 
 RESET_S = 0.3  # a reset at opening has begun by then: telemetry after it comes from a running board
 ANSWER_TIMEOUT_S = 1.0
 GROUND_TIMEOUT_S = 0.5  # for a muscle that was charged when the port was opened
-KEEPS_FAULT = {"INTERLOCK", "DISCREPANCY", "UNPROVEN"}
+PROOF_TIMEOUT_S = 1.0  # for the board's test pulse
+PING_PERIOD_S = 0.05
+KEEPS_FAULT = {"INTERLOCK", "DISCREPANCY", "EEPROM", "MAXIMUM", "UNPROVEN"}
 _Message = TypeVar("_Message", protocol.Reply, protocol.Event, protocol.Telemetry)
 
 
@@ -27,10 +30,11 @@ class BoardHandshake:
         self._port, self._lines, self._clock = port, lines, clock
         self._sequence = 0
 
-    def perform(self, limits: Limits) -> tuple[str, Fault | None]:
+    def perform(self, limits: Limits, prove: bool = False) -> tuple[str, Fault | None]:
         """The board's name, and the fault it had kept; afterwards it is disarmed, with `limits` applied.
 
-        It is in STANDBY, or still in FAULT where it may not forget one: an open interlock, a charged output.
+        It is in STANDBY, or still in FAULT where it may not forget one: an open interlock, a charged output, a ground
+        contact that its test pulse did not find closed. With `prove`, that pulse is made whatever the fault.
 
         Raises:
             PortError: no board, another program on it, or a limit it does not accept.
@@ -45,9 +49,12 @@ class BoardHandshake:
             )
         self.transact("DISARM")
         fault = self._inherited_fault()
-        if fault is not None:
-            self._clear()
         self._apply(limits)
+        if fault is not None and self._clear():
+            self._await_proof()
+        if prove and self._report().ground is Ground.COMMANDED and self._ask("ARM").accepted:
+            self._await_proof()
+            self.transact("DISARM")
         return name, fault
 
     def _await_boot(self) -> None:
@@ -60,19 +67,34 @@ class BoardHandshake:
                 if booted or running:
                     return
 
-    def _clear(self) -> None:
+    def _clear(self) -> bool:
         deadline_s = self._clock() + GROUND_TIMEOUT_S
         while True:
             reply = self._ask("CLEAR")
-            if reply.accepted or reply.words[0] == "STATE" or reply.words[0] in KEEPS_FAULT - {"UNPROVEN"}:
-                return
+            if reply.accepted:
+                return True
+            if reply.words[0] == "STATE" or reply.words[0] in KEEPS_FAULT - {"UNPROVEN"}:
+                return False
             if reply.words[0] not in KEEPS_FAULT:
                 raise self._refused(reply, "CLEAR")
             if self._clock() > deadline_s:
-                return
+                return False
+
+    def _await_proof(self) -> None:
+        """Until the board's test pulse has ended, one way or the other."""
+        deadline_s = self._clock() + PROOF_TIMEOUT_S
+        while self._report().mode is Mode.ACTIVE and self._clock() < deadline_s:
+            self.transact("PING")
+            time.sleep(PING_PERIOD_S)
+
+    def _report(self) -> protocol.Telemetry:
+        """One that was made after the last answer."""
+        self._messages()
+        self._await(protocol.Telemetry, lambda message: True, "telemetry")
+        return self._await(protocol.Telemetry, lambda message: True, "telemetry")
 
     def _inherited_fault(self) -> Fault | None:
-        report = self._await(protocol.Telemetry, lambda message: True, "telemetry")
+        report = self._report()
         return Fault(board_fault(report.fault_code)) if report.mode is Mode.FAULT else None
 
     def _apply(self, limits: Limits) -> None:
@@ -82,6 +104,7 @@ class BoardHandshake:
             ("TRIP", limits.trip_current_a * 1e6),
             ("HEARTBEAT", limits.heartbeat_s * 1e3),
             ("DEADTIME", limits.dead_time_s * 1e3),
+            ("CONTACTS", limits.contacts_read),
         ):
             applied = self.transact("SET", quantity, round(value))
             if applied != (quantity, str(round(value))):

@@ -1,42 +1,48 @@
 """`ros2 run hasel_driver calibrate`: compares output and read-back with a probe, and corrects both on the board.
 
-End the driver's node first; connect a calibrated high-voltage probe to the muscle's terminals. The voltages are put on
-one after the other, and what the probe shows is asked for; an empty answer stops. The table is printed, and stored on
-the board only after a `yes`. Run it once more to verify.
+End the driver's node first; connect a calibrated high-voltage probe to the muscle's terminals. Each voltage is put on
+only after a `yes`, and what the probe shows is asked for: without an answer for 10 s the output is grounded. An empty
+answer stops, as do Ctrl-C, the interlock, and the driver's emergency stop by topic or service. The table is printed,
+and stored on the board only after another `yes`. Run it once more to verify.
 """
 
 import argparse
+import math
 import sys
 import time
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 
 from hasel_driver import protocol
 from hasel_driver.board_handshake import BoardHandshake
 from hasel_driver.calibration import Calibration
 from hasel_driver.calibration_table import CalibrationTable, Point
 from hasel_driver.errors import DriverError, RefusedError
-from hasel_driver.faults import SupplyFaultError
+from hasel_driver.faults import Fault, FaultCode, SupplyFaultError
 from hasel_driver.hasel_supply import HaselSupply
-from hasel_driver.limits import Limits
+from hasel_driver.limits import HARDWARE_MAXIMUM_V, Limits
 from hasel_driver.line_buffer import LineBuffer
 from hasel_driver.mode import Mode
 from hasel_driver.serial_port import SerialPort
 from hasel_driver.supervisor import Supervisor
 from hasel_driver.supply_thread import SupplyThread
+from hasel_driver.tool_stops import stops_of_ros
 
 CHANNELS = ("upper", "lower")
 SETTLING_S = 1.0
+PATIENCE_S = 10.0  # without an answer, after which the output is grounded
 VOLTAGES_V = "1000,2000,3000,4000,5000"
 
 
 class CalibrationBench:
-    """One supply, driven without ROS; a voltage is held until the next is asked for."""
+    """One supply, driven without the node; a voltage is held for as long as somebody answers."""
 
     def __init__(self, port: str, limits: Limits) -> None:
         supply = HaselSupply(SerialPort(port, protocol.BAUD), limits)
         self._supervisor = Supervisor(supply, time.monotonic)
         self._supervisor.connect()
         self._voltage_v: tuple[float, float] | None = None
+        self._until_s = 0.0  # that it is held
         self._thread = SupplyThread(self._supervisor, supply, lambda _: None, self._hold)
         self._thread.start()
 
@@ -45,15 +51,33 @@ class CalibrationBench:
         self._await(Mode.STANDBY)
         self._thread.call(self._supervisor.arm).result(timeout=5.0)
         self._await(Mode.ARMED)
+        self._thread.call(lambda: self._supervisor.command((0.0, 0.0))).result(timeout=5.0)
+
+    def stop(self, who: str) -> None:
+        """An emergency stop."""
+        self._voltage_v = None
+        self._thread.call(lambda: self._supervisor.fail(Fault(FaultCode.EMERGENCY_STOP, who)))
 
     def monitor(self, channel: int, voltage_v: float) -> float:
-        """Put a voltage [V] on a channel, and hold it; what the monitor says [V] once it has settled."""
+        """Put a voltage [V] on a channel, and hold it for PATIENCE_S; what the monitor says [V] once it has settled."""
+        self._until_s = time.monotonic() + SETTLING_S + PATIENCE_S
         self._voltage_v = (voltage_v, 0.0) if channel == 0 else (0.0, voltage_v)
         time.sleep(SETTLING_S)
+        self.require_held()
+        return abs(self._supervisor.status().measured_v[channel])
+
+    def require_held(self) -> None:
+        """Raises RefusedError where the voltage that was asked for is on no more."""
+        if time.monotonic() > self._until_s:
+            raise RefusedError(f"Nobody answered for {PATIENCE_S:g} s: grounded, nothing was stored.")
         status = self._supervisor.status()
         if status.mode is not Mode.ACTIVE:
             raise RefusedError(f"The supply left the voltage that was asked for: {status}.")
-        return abs(status.measured_v[channel])
+
+    def ground(self) -> None:
+        """0 V, still armed."""
+        self._voltage_v = None
+        self._thread.call(lambda: self._supervisor.command((0.0, 0.0))).result(timeout=5.0)
 
     def close(self) -> None:
         """Ground the output and close the port."""
@@ -62,8 +86,9 @@ class CalibrationBench:
         self._thread.stop()
 
     def _hold(self) -> None:
-        if self._voltage_v is not None:
-            self._supervisor.command(self._voltage_v)
+        voltage_v = self._voltage_v
+        if voltage_v is not None and time.monotonic() < self._until_s:
+            self._supervisor.command(voltage_v)
 
     def _await(self, mode: Mode) -> None:
         reached = self._thread.expect(lambda: self._supervisor.status().mode is mode, 1.0)
@@ -72,18 +97,41 @@ class CalibrationBench:
 
 
 def measure(
-    port: str, channel: str, voltages_v: Sequence[float], probe: Callable[[float], float]
+    port: str,
+    channel: str,
+    voltages_v: Sequence[float],
+    probe: Callable[[float], float],
+    agree: Callable[[float], bool],
+    maximum_v: float = Limits().maximum_voltage_v,
+    listen: Callable[[Callable[[str], None]], AbstractContextManager] = nullcontext,
 ) -> CalibrationTable:
-    """Put each voltage [V] on the channel, and ask `probe(asked)` for what is there in truth [V]."""
-    limits = Limits(maximum_voltage_v=max(voltages_v))
+    """Put each voltage [V] on the channel if `agree(asked)`, and ask `probe(asked)` for what is there in truth [V].
+
+    listen: gives a context in which the stop handed to it is called whenever somebody asks for one.
+
+    Raises:
+        RefusedError: a voltage above `maximum_v`, or one that makes no sense; a stop, or no answer.
+    """
+    for voltage_v in voltages_v:
+        if not 0.0 < voltage_v <= maximum_v:
+            raise RefusedError(
+                f"{voltage_v:g} V were asked for, more than 0 and at most {maximum_v:g} V were expected."
+            )
+    limits = Limits(maximum_voltage_v=maximum_v)
     present = converse(port, limits, "GET", "CALIBRATION", channel)
     bench = CalibrationBench(port, limits)
     points = []
     try:
-        bench.arm()
-        for voltage_v in voltages_v:
-            monitor_v = bench.monitor(CHANNELS.index(channel), voltage_v)
-            points.append(Point(voltage_v, monitor_v, abs(probe(voltage_v))))
+        with listen(bench.stop):
+            bench.arm()
+            for voltage_v in voltages_v:
+                if not agree(voltage_v):
+                    raise RefusedError("Stopped, nothing was stored.")
+                monitor_v = bench.monitor(CHANNELS.index(channel), voltage_v)
+                probe_v = probe(voltage_v)
+                bench.require_held()
+                points.append(Point(voltage_v, monitor_v, abs(probe_v)))
+                bench.ground()
     finally:
         bench.close()
     return CalibrationTable(tuple(points), present)
@@ -111,9 +159,16 @@ def converse(port: str, limits: Limits, *words: str) -> Calibration:
 def _ask_probe(asked_v: float) -> float:
     answer = input(f"{asked_v:g} V are asked for. What does the probe show [V]? ")
     try:
-        return float(answer)
-    except ValueError as error:
-        raise RefusedError(f"{answer!r} is no number: stopped, nothing was stored.") from error
+        value = float(answer)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise RefusedError(f"{answer!r} is no number: stopped, nothing was stored.")
+    return value
+
+
+def _ask_leave(voltage_v: float) -> bool:
+    return input(f"{voltage_v:g} V come next. Hands off, and type yes: ").strip() == "yes"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -126,13 +181,35 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--voltages", default=VOLTAGES_V, help=f"in V, at least three (default: {VOLTAGES_V})"
     )
+    parser.add_argument(
+        "--maximum-voltage",
+        type=float,
+        default=6000.0,
+        help="in V: nothing above it is put on (default: 6000)",
+    )
+    parser.add_argument(
+        "--forget", action="store_true", help="store no correction for the channel, as after a damaged EEPROM"
+    )
     options = parser.parse_args(arguments)
     try:
         voltages_v = [float(word) for word in options.voltages.split(",")]
     except ValueError:
         parser.error(f"--voltages is {options.voltages!r}, numbers in V with commas between were expected")
+    if not all(map(math.isfinite, (options.maximum_voltage, *voltages_v))):
+        parser.error("--voltages and --maximum-voltage are finite numbers in V")
     try:
-        table = measure(options.port, options.channel, voltages_v, _ask_probe)
+        if options.forget:
+            print(f"stored: {store(options.port, options.channel, Calibration()).words()}")
+            return 0
+        table = measure(
+            options.port,
+            options.channel,
+            voltages_v,
+            _ask_probe,
+            _ask_leave,
+            min(options.maximum_voltage, HARDWARE_MAXIMUM_V),
+            stops_of_ros,
+        )
         print(table)
         corrections = table.corrections()
         print(f"corrections: {corrections.words()} (set gain, set offset, read gain, read offset)")

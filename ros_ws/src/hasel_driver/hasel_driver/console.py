@@ -3,6 +3,7 @@
 While a voltage is on, ANY KEY STOPS: the output is grounded and the driver is in FAULT.
 """
 
+import signal
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -12,6 +13,7 @@ from hasel_interfaces.msg import SupplyState
 from hasel_driver.console_link import ConsoleLink
 from hasel_driver.console_options import HELP, parser
 from hasel_driver.errors import DriverError, RefusedError
+from hasel_driver.ground import Ground
 from hasel_driver.keyboard import Keyboard
 from hasel_driver.limits import Voltages
 from hasel_driver.mode import Mode
@@ -48,11 +50,18 @@ def describe(state: SupplyState | None) -> str:
         f"{name} {measured:.0f} of {asked:.0f} V {1e6 * current:.0f} µA"
         for name, (asked, measured, current) in zip(("upper", "lower"), pairs, strict=True)
     ]
-    proof = "grounded" if state.grounded else "NOT proven grounded"
+    proof = GROUND_WORDS[Ground(state.ground)]
     limit = f"limit {state.maximum_voltage:.0f} V"
     held = f"stop held by {', '.join(state.emergency_stop_holders)}" if state.emergency_stop_holders else ""
     words = [Mode(state.mode).name, *muscles, proof, limit, held, state.fault_text]
     return " | ".join(word for word in words if word)
+
+
+GROUND_WORDS = {
+    Ground.NOT: "NOT grounded",
+    Ground.COMMANDED: "commanded to ground, NOT proven",
+    Ground.PROVEN: "grounded",
+}
 
 
 class Console:
@@ -146,13 +155,14 @@ def _number(word: str) -> float:
 
 def main() -> int:
     """Command line; returns the exit code."""
-    parser().parse_args()
-    return run()
+    return run(parser().parse_args().namespace)
 
 
-def run() -> int:
+def run(namespace: str) -> int:
     """Obey what is typed until the end; returns the exit code."""
-    link = ConsoleLink()
+    link = ConsoleLink(namespace)
+    for number in (signal.SIGTERM, signal.SIGHUP):  # as Ctrl-C: nobody is left who could stop
+        signal.signal(number, signal.default_int_handler)
     try:
         Console(link, Keyboard()).run()
     except DriverError as error:

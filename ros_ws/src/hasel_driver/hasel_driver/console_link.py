@@ -1,5 +1,6 @@
 """What the console says to the driver's node and hears of it."""
 
+import os
 import threading
 import time
 from collections.abc import Iterator
@@ -21,14 +22,15 @@ from hasel_driver.limits import Voltages
 
 ANSWER_S = 5.0
 FRESH_S = 0.5
+CLAIM_PERIOD_S = 0.02
 
 
 class ConsoleLink:
     """A node of its own, spun in the background; `command` publishes only within `commanding`."""
 
-    def __init__(self) -> None:
+    def __init__(self, namespace: str = NAMESPACE) -> None:
         rclpy.init()
-        self._node = rclpy.create_node("hasel_console", namespace=NAMESPACE)
+        self._node = rclpy.create_node(f"hasel_console_{os.getpid()}", namespace=namespace)
         self._state: SupplyState | None = None
         self._heard_s = 0.0
         self._commands: Publisher | None = None
@@ -65,14 +67,20 @@ class ConsoleLink:
 
     @contextmanager
     def commanding(self) -> Iterator[None]:
-        """The driver allows one publisher of commands: this one is there only as long as it is needed."""
+        """The driver obeys one publisher of commands: this one is there only as long as it is needed.
+
+        Raises RefusedError where that is another.
+        """
         self._commands = publisher(self._node, Actuation, COMMAND, Role.COMMANDS)
         try:
             end_s = time.monotonic() + ANSWER_S
-            while not self._commands.get_subscription_count():
+            while (holder := self._holder()) != self._node.get_fully_qualified_name():
                 if time.monotonic() > end_s:
-                    raise RefusedError("Nobody takes commands: start the driver's node.")
-                time.sleep(0.01)
+                    raise RefusedError(
+                        f"The driver obeys {holder or 'nobody'}: end that node, or disarm and arm again."
+                    )
+                self.command((0.0, 0.0))  # with which every controller begins
+                time.sleep(CLAIM_PERIOD_S)
             yield
         finally:
             self._node.destroy_publisher(self._commands)
@@ -89,6 +97,10 @@ class ConsoleLink:
         """Leave."""
         self._spin.close()
 
+    def _holder(self) -> str:
+        state = self.state()
+        return state.commander if state else ""
+
     def _take(self, state: SupplyState) -> None:
         self._state, self._heard_s = state, time.monotonic()
 
@@ -97,6 +109,12 @@ class ConsoleLink:
             self._clients[name] = self._node.create_client(kind, name)
         client = self._clients[name]
         if client.wait_for_service(ANSWER_S):
+            answering = self._node.count_services(client.srv_name)
+            if answering > 1:
+                raise RefusedError(
+                    f"{answering} nodes answer {client.srv_name}, and one answer would stand for all: stop each supply"
+                    " by its switch, and end all but one."
+                )
             done = threading.Event()
             future = client.call_async(request)
             future.add_done_callback(lambda _: done.set())

@@ -18,10 +18,12 @@ HELP = """  arm                    STANDBY to ARMED
 
 
 def parser() -> argparse.ArgumentParser:
-    """The command's options: only --help."""
-    return argparse.ArgumentParser(
+    """The command's options."""
+    options = argparse.ArgumentParser(
         prog="console",
         description=DESCRIPTION,
         epilog=HELP,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+    options.add_argument("--namespace", default="/hasel", help="of the driver (default: /hasel)")
+    return options

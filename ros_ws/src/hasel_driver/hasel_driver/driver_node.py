@@ -12,23 +12,30 @@ from hasel_interfaces.msg import SupplyState
 from hasel_recording.endpoints import Role, frame_of, publisher
 from hasel_recording.spinning import quiet_at_shutdown, spin
 from hasel_recording.topics import DIAGNOSTICS, NAMESPACE, STATE
+from rclpy._rclpy_pybind11 import RCLError, RCLInvalidROSArgsError
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.duration import Duration
+from rclpy.exceptions import ParameterException
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.signals import SignalHandlerOptions
 
 from hasel_driver.backends import make_supply
-from hasel_driver.driver_services import DriverServices
-from hasel_driver.errors import DriverError, PortInUseError, RefusedError
+from hasel_driver.claim import Claim
+from hasel_driver.driver_services import SERVICES, DriverServices
+from hasel_driver.errors import DriverError, PortError, PortInUseError, RefusedError
 from hasel_driver.experiment_server import ExperimentServer
+from hasel_driver.fault_store import FaultStore
 from hasel_driver.faults import Fault, FaultCode
+from hasel_driver.graph_names import UNNAMED
 from hasel_driver.limits import Limits
 from hasel_driver.messages import to_diagnostics, to_supply_state
-from hasel_driver.middleware import avoid_shared_memory
+from hasel_driver.middleware import prepare, reach
 from hasel_driver.node_parameters import declare, values
 from hasel_driver.parameter_files import check_files
+from hasel_driver.parent import end_with_parent
 from hasel_driver.realtime import middleware_threads, request_realtime
+from hasel_driver.rivals import NOT_TOLD
 from hasel_driver.status import Status
 from hasel_driver.supervisor import Supervisor
 from hasel_driver.supply_history import SupplyHistory
@@ -38,6 +45,8 @@ from hasel_driver.urgent_inputs import ALIVE_PERIOD_S, STEADY, UrgentInputs
 THREAD_SWITCH_S = 0.0005  # Python's 5 ms would let the executor hold up the supply's thread
 RETRY_PERIOD_S = 2.0  # between attempts to open a port that could not be opened at the start
 DISCOVERY_S = 1.0  # for which a new publisher may be known and not yet connected
+NAMING_S = 0.3  # within which another driver's name and host are learnt
+REFUSED_LOG_S = 2.0
 LAST_STATE_S = 0.2  # for which the end waits until the last state has been heard
 
 
@@ -48,11 +57,14 @@ class DriverNode(LifecycleNode):
         super().__init__("hasel_driver", **{"namespace": NAMESPACE, **options})
         self._thread: SupplyThread | None = None
         self._lifecycle_active = False
-        self._retrying = False
+        self._retrying = self._port_missing = False
+        self._store: FaultStore | None = None
         self._last_problem = ""
         self._configured_s = 0.0
         self._unheard_s: float | None = None
+        self._rival_s: float | None = None  # since when there is another driver
         self._last_limits: Limits | None = None
+        self._claim = Claim(time.monotonic)
         self.end_reason: str | None = None  # why the process must end
         check_files(self.get_name(), self.get_fully_qualified_name(), sys.argv)
         declare(self, lambda: self._thread is not None, self._lower_maximum)
@@ -63,6 +75,7 @@ class DriverNode(LifecycleNode):
         self.history = SupplyHistory(values(self)["history_file"], self.get_logger().warning)
         self._inputs = UrgentInputs(
             self.get_namespace(),
+            lambda: [self.resolve_service_name(name) for name in SERVICES],
             self._on_command,
             self._on_stop_topic,
             self._on_inputs_alive,
@@ -75,6 +88,8 @@ class DriverNode(LifecycleNode):
             self._check_arming,
             self._check_clearing,
             self._inputs.holders.release,
+            lambda: self._claim.hand_out(self._inputs.commanders()),
+            self._inputs.rivals.found,
         )
         alone = MutuallyExclusiveCallbackGroup
         self.create_timer(ALIVE_PERIOD_S, self._on_heartbeat, callback_group=alone(), clock=STEADY)
@@ -89,18 +104,26 @@ class DriverNode(LifecycleNode):
         chosen = values(self)
         try:
             supply = make_supply(chosen)
-            supervisor = Supervisor(supply, time.monotonic)
+            store = FaultStore(chosen["state_folder"], chosen["port"])
+            supervisor = Supervisor(supply, time.monotonic, chosen["idle_disarm"])
+            supervisor.fault = store.load()
             supervisor.connect()
         except PortInUseError as error:
             self.end_reason = f"{error} This node ends, so that its services do not answer for the other's."
             rclpy.try_shutdown()
             return TransitionCallbackReturn.FAILURE
-        except DriverError as error:
+        except PortError as error:
             if str(error) != self._last_problem:  # once, not with every attempt
                 self.get_logger().error(str(error))
             self._last_problem = str(error)
+            self._port_missing = True
+            return TransitionCallbackReturn.FAILURE
+        except DriverError as error:
+            self.get_logger().error(str(error))
+            self._last_problem = str(error)
             return TransitionCallbackReturn.FAILURE
         self._last_problem = ""
+        self._store = store
         self._thread = SupplyThread(
             supervisor,
             supply,
@@ -113,7 +136,7 @@ class DriverNode(LifecycleNode):
             self.fail(Fault(FaultCode.EMERGENCY_STOP, "by topic, before the port was opened"))
         self._configured_s = time.monotonic()
         self.experiments.watch_topics(chosen["recorded_topics"])
-        self.get_logger().info(f"{supervisor.name} on {chosen['port']}, disarmed.")
+        self.get_logger().info(f"{supervisor.name} on {chosen['port']}, disarmed; commanded by {reach()}.")
         return TransitionCallbackReturn.SUCCESS
 
     def _begin_realtime(self, priority: int) -> None:
@@ -126,12 +149,16 @@ class DriverNode(LifecycleNode):
             self.get_logger().info(f"Commands are sent without real-time priority ({problem}).")
 
     def begin(self) -> None:
-        """Configure and activate, as far as it goes; what failed is tried again until it succeeds."""
+        """Configure and activate; a port that is not there is waited for, anything else that is wrong ends the node."""
+        self._port_missing = False
         if self.trigger_configure() == TransitionCallbackReturn.SUCCESS:
             self._retrying = False
             self.trigger_activate()
-        else:
+        elif self._port_missing:
             self._retrying = True
+        elif self.end_reason is None:
+            self.end_reason = self._last_problem or "It could not be configured: see above."
+            rclpy.try_shutdown()
 
     def _retry(self) -> None:
         if self._retrying and self._thread is None and self.end_reason is None:
@@ -186,10 +213,20 @@ class DriverNode(LifecycleNode):
 
     # Topics
 
-    def _on_command(self, voltage_v: tuple[float, ...], age_s: float) -> None:
+    def _on_command(self, publisher: bytes, name: str, voltage_v: tuple[float, ...], age_s: float) -> None:
         thread = self._thread
-        if thread is not None and self._lifecycle_active:
-            thread.call(lambda: thread.supervisor.command(voltage_v, age_s))
+        if thread is None or not self._lifecycle_active:
+            return
+        obeyed, new = self._claim.take(publisher, name) if thread.supervisor.armed else (True, False)
+        if not obeyed:
+            self.get_logger().warning(
+                f"Commands of {name} are refused: {self._claim.holder} holds the claim. End that one, or arm anew.",
+                throttle_duration_sec=REFUSED_LOG_S,
+            )
+            return
+        if new:
+            thread.call(thread.supervisor.await_zero)
+        thread.call(lambda: thread.supervisor.command(voltage_v, age_s))
 
     def _on_stop_topic(self, asserted: bool, who: str) -> None:
         if asserted:
@@ -205,10 +242,20 @@ class DriverNode(LifecycleNode):
         with quiet_at_shutdown():
             holders = inputs.holders.names(inputs.stop_topic.present()) if inputs.holders else []
             limits = thread.supervisor.limits if thread is not None else self._last_limits
-            message = to_supply_state(status, limits, holders, self._frame_id)
+            commander = self._claim.holder if thread is not None and thread.supervisor.armed else ""
+            message = to_supply_state(status, limits, holders, self._frame_id, commander)
             self._state.publish(message)
             self.experiments.record_state(message)
         self.history.take(status)
+        self._keep(status.fault)
+
+    def _keep(self, fault: Fault | None) -> None:
+        store = self._store
+        try:
+            if store is not None:
+                store.keep(fault)
+        except (OSError, DriverError) as error:
+            self.get_logger().error(f"A restarted node will not know of {fault}: {error}")
 
     def _lower_maximum(self, voltage_v: float) -> None:
         thread = self._thread
@@ -222,10 +269,18 @@ class DriverNode(LifecycleNode):
         if not thread.is_alive():
             self._publish(thread.supervisor.status())
         thread.host_is_alive("services")
-        masters = self._inputs.masters()
-        if masters > 1 and thread.supervisor.armed:
-            self.fail(Fault(FaultCode.TWO_MASTERS, f"{masters} publishers of {self._inputs.command_topic}"))
+        self._watch_rivals(thread)
         self._watch_stop_publishers(thread)
+
+    def _watch_rivals(self, thread: SupplyThread) -> None:
+        rivals, now_s = self._inputs.rivals.found() if thread.supervisor.armed else [], time.monotonic()
+        if not rivals:
+            self._rival_s = None
+            return
+        self._rival_s = now_s if self._rival_s is None else self._rival_s
+        named = not any(NOT_TOLD in words or UNNAMED in words for words in rivals)
+        if named or now_s - self._rival_s > NAMING_S:
+            self.fail(Fault(FaultCode.TWO_DRIVERS, ", ".join(rivals)))
 
     def _watch_stop_publishers(self, thread: SupplyThread) -> None:
         unheard, now_s = self._inputs.stop_topic.unheard(), time.monotonic()
@@ -274,9 +329,18 @@ class DriverNode(LifecycleNode):
                 "An emergency stop sent before may still arrive:"
                 f" wait {discovery_s - waited_s:.1f} s and arm again."
             )
-        if self._inputs.masters() > 1:
+        rivals = self._inputs.rivals
+        if not rivals.known or rivals.found():
+            others = ", ".join(rivals.found()) or "perhaps one that is not known yet"
             raise RefusedError(
-                f"More than one node publishes {self._inputs.command_topic}: stop all but one, then arm."
+                f"Another driver answers to the names of this one: {others}."
+                " End it, or give each a namespace of its own."
+            )
+        commanders = self._inputs.commanders()
+        if len(commanders) > 1:
+            raise RefusedError(
+                f"More than one node publishes {self._inputs.command_topic}: {', '.join(sorted(commanders.values()))}."
+                " End all but one, then arm."
             )
         if not thread.supervisor.capabilities.deadman and not self.get_parameter("accept_no_deadman").value:
             raise RefusedError(
@@ -329,13 +393,14 @@ def end_at_signal(node: DriverNode, signals: int) -> None:
 def main() -> int:
     """Spin until shut down; the supply is disarmed on the way out."""
     sys.setswitchinterval(THREAD_SWITCH_S)
-    avoid_shared_memory()
+    prepare()
     signals = catch_signals()
-    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+    end_with_parent()
     try:
+        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         node = DriverNode()
-    except DriverError as error:
-        print(f"hasel_driver: {error}", file=sys.stderr)
+    except (DriverError, ParameterException, OSError, RCLError, RCLInvalidROSArgsError) as error:
+        print(f"hasel_driver: {' '.join(str(error).split())}", file=sys.stderr)
         rclpy.try_shutdown()
         return 1
     threading.Thread(target=end_at_signal, args=(node, signals), name="signals", daemon=True).start()

@@ -1,4 +1,4 @@
-"""The services that arm, stop and clear: each answers success only with proof."""
+"""The services that arm, stop and clear: each answers for what the supply reports, and only as the only driver."""
 
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -11,10 +11,12 @@ from std_srvs.srv import Trigger
 
 from hasel_driver.errors import DriverError, RefusedError
 from hasel_driver.faults import Fault, FaultCode
+from hasel_driver.messages import OUTPUT_WORDS
 from hasel_driver.mode import Mode
 from hasel_driver.supply_thread import SupplyThread
 
 PROOF_TIMEOUT_S = 0.4
+ARMING_TIMEOUT_S = 1.0  # with the test pulse
 SERVICES = ("arm", "disarm", "emergency_stop", "release_emergency_stop", "clear_fault")
 
 
@@ -29,10 +31,12 @@ class DriverServices:
         check_arming: Callable[[], None],
         check_clearing: Callable[[], None],
         release_stop: Callable[[], list[str]],
+        armed: Callable[[], None],
+        rivals: Callable[[], list[str]],
     ) -> None:
         self._node, self._thread = node, thread
         self._check_arming, self._check_clearing = check_arming, check_clearing
-        self._release_stop = release_stop
+        self._release_stop, self._armed, self._rivals = release_stop, armed, rivals
         for name in SERVICES:
             handler = partial(self._serve, getattr(self, name))
             node.create_service(Trigger, name, handler, callback_group=group)
@@ -56,10 +60,11 @@ class DriverServices:
         def arm_if_allowed() -> None:  # in the thread, so that no stop or deactivation comes between
             self._check_arming()
             supervisor.arm()
+            self._armed()
 
         _result(thread.call(arm_if_allowed))
         decided = thread.expect(
-            lambda: supervisor.status().mode is Mode.ARMED or not supervisor.armed, PROOF_TIMEOUT_S
+            lambda: supervisor.status().mode is Mode.ARMED or not supervisor.armed, ARMING_TIMEOUT_S
         )
         if not _result(decided) or not supervisor.armed:
             thread.call(supervisor.disarm)
@@ -84,7 +89,7 @@ class DriverServices:
         thread = self._require_thread()
         self._check_clearing()
         supervisor = thread.supervisor
-        _result(thread.expect(lambda: supervisor.status().grounded is not False, PROOF_TIMEOUT_S))
+        _result(thread.expect(lambda: supervisor.status().quiet is not False, PROOF_TIMEOUT_S))
         _result(thread.call(supervisor.clear_fault))
         return "Cleared: STANDBY, disarmed."
 
@@ -100,18 +105,27 @@ class DriverServices:
 
         def off() -> bool:
             status = supervisor.status()
-            return status.grounded is True and not status.mode.may_be_live
+            return status.quiet is True and not status.mode.may_be_live
 
         if _result(thread.expect(off, PROOF_TIMEOUT_S)):
-            return (
-                f"{done}: the supply reports its output grounded, by contacts and measured voltage."
-                " Stored charge needs its bleeder's time."
-            )
+            return self._for_all(f"{done}. {OUTPUT_WORDS[supervisor.status().output]}")
         if not supervisor.capabilities.proves_grounded and supervisor.connected:
-            return f"{done}: the supply was switched off, but this kind cannot prove its output grounded."
+            return self._for_all(
+                f"{done}: the supply was switched off, but this kind cannot prove its output grounded."
+            )
         unproven = Fault(FaultCode.GROUND_NOT_PROVEN, f"{done.lower()} {PROOF_TIMEOUT_S} s ago")
         _result(thread.call(lambda: supervisor.fail(unproven)))
         raise RefusedError(f"{done}, but NOT proven: {supervisor.status()}. Treat the output as live.")
+
+    def _for_all(self, answer: str) -> str:
+        """The answer, where this driver is the only one; else it would stand for supplies that it does not know."""
+        rivals = self._rivals()
+        if rivals:
+            raise RefusedError(
+                f"{answer} That is true of this supply only: {1 + len(rivals)} drivers answer to this name,"
+                f" also {', '.join(rivals)}. Treat every output as live, stop each, and end all but one."
+            )
+        return answer
 
     def _require_thread(self) -> SupplyThread:
         thread = self._thread()

@@ -8,7 +8,7 @@ from hasel_driver.limits import Voltages
 from hasel_driver.mode import Mode
 from hasel_driver.supervisor import Supervisor
 from hasel_driver.waveform import Waveform
-from hasel_driver.waveform_file import FileWaveform
+from hasel_driver.waveform_file import LONGEST_S, FileWaveform
 
 LONGEST_REST_S = 600.0
 
@@ -23,6 +23,10 @@ class ExperimentPlan:
     def __post_init__(self) -> None:
         if not 0.0 <= self.rest_s <= LONGEST_REST_S:
             raise LimitError(f"rest_time is {self.rest_s} s, 0 to {LONGEST_REST_S:g} s was expected.")
+        if self.waveform.duration_s > LONGEST_S:
+            raise LimitError(
+                f"The waveform lasts {self.waveform.duration_s:g} s, at most {LONGEST_S:g} s: ask for less."
+            )
 
     @property
     def duration_s(self) -> float:

@@ -25,7 +25,7 @@ from hasel_driver.experiment_recording import ExperimentRecording
 from hasel_driver.node_parameters import values
 from hasel_driver.one_at_a_time import OneAtATime
 from hasel_driver.presets import preset
-from hasel_driver.recording_path import chosen_path, reserve, reserve_unique
+from hasel_driver.recording_path import below, chosen_path, reserve, reserve_unique
 from hasel_driver.supply_thread import SupplyThread
 from hasel_driver.waveform import Waveform
 from hasel_driver.waveform_file import read_waveform
@@ -98,7 +98,8 @@ class ExperimentServer:
         result = RunExperiment.Result()
         try:
             with self._place.taken(), self._cleared_at_its_end():
-                plan = plan_of(goal_handle.request)
+                folder = Path(self._node.get_parameter("waveform_directory").value).expanduser()
+                plan = plan_of(goal_handle.request, folder)
                 problems = self._run(plan, goal_handle, result)
         except (DriverError, RecordingError, OSError) as error:
             problems = [str(error)]
@@ -162,9 +163,9 @@ class ExperimentServer:
         return provenance(node, ("hasel_driver", "hasel_recording"), {"supply": supply, **values(self._node)})
 
     def _reserve(self, goal: RunExperiment.Goal, plan: ExperimentPlan) -> Path:
-        if goal.output:
-            return reserve(chosen_path(goal.output))
         folder = Path(self._node.get_parameter("recording_directory").value).expanduser()
+        if goal.output:
+            return reserve(chosen_path(folder, goal.output))
         rate = "file" if goal.waveform_file else goal.preset or f"{goal.frequency:g}Hz"
         return reserve_unique(folder, f"{plan.waveform.voltage_v:.0f}V_{rate}")
 
@@ -183,14 +184,16 @@ def _conclude(goal_handle, success: bool) -> None:
         goal_handle.abort()
 
 
-def plan_of(goal: RunExperiment.Goal) -> ExperimentPlan:
-    """What a goal asks for. Raises LimitError or RecordingError."""
+def plan_of(goal: RunExperiment.Goal, waveforms: Path) -> ExperimentPlan:
+    """What a goal asks for, its waveform files below `waveforms`. Raises LimitError or RecordingError."""
     if goal.preset and goal.waveform_file:
         raise LimitError(
             f"The goal names the preset {goal.preset!r} and the file {goal.waveform_file!r}: give one of the two."
         )
     if goal.waveform_file:
-        return ExperimentPlan(read_waveform(Path(goal.waveform_file).expanduser()), goal.rest_time)
+        return ExperimentPlan(
+            read_waveform(below(waveforms, goal.waveform_file, "waveform_file")), goal.rest_time
+        )
     if goal.preset:
         chosen = preset(goal.preset)
         muscle = "upper" if goal.muscles == RunExperiment.Goal.BOTH else goal.muscles

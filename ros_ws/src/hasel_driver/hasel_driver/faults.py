@@ -16,6 +16,9 @@ class FaultCode(IntEnum):
     GARBAGE = 6
     OVERVOLTAGE = 7
     NOT_GROUNDED = 8
+    MONITOR = 9
+    EEPROM = 10
+    DISCREPANCY = 11
     EMERGENCY_STOP = 100
     LINK_LOST = 101
     NO_TELEMETRY = 102
@@ -31,6 +34,7 @@ class FaultCode(IntEnum):
     GROUND_NOT_PROVEN = 112
     ABOVE_MAXIMUM = 113
     STOP_NOT_HEARD = 114
+    TWO_DRIVERS = 115
 
 
 EXPLANATIONS: dict[FaultCode, str] = {
@@ -42,7 +46,10 @@ EXPLANATIONS: dict[FaultCode, str] = {
     FaultCode.SEQUENCE: "the board missed a command, or a second master speaks on the port",
     FaultCode.GARBAGE: "the board received a garbled line",
     FaultCode.OVERVOLTAGE: "the measured voltage exceeded the maximum, or its monitor's range",
-    FaultCode.NOT_GROUNDED: "the ground contact should be closed, but the board measures voltage",
+    FaultCode.NOT_GROUNDED: "the ground contact should be closed, but there is voltage, or its proof failed",
+    FaultCode.MONITOR: "the measured voltage does not follow the asked one, or is not measured at all",
+    FaultCode.EEPROM: "the calibration in the board's EEPROM is damaged",
+    FaultCode.DISCREPANCY: "the two channels of the interlock disagreed",
     FaultCode.EMERGENCY_STOP: "emergency stop",
     FaultCode.LINK_LOST: "the serial port is gone",
     FaultCode.NO_TELEMETRY: "the board's telemetry ceased",
@@ -58,6 +65,7 @@ EXPLANATIONS: dict[FaultCode, str] = {
     FaultCode.GROUND_NOT_PROVEN: "the output should be grounded, and is not proven to be",
     FaultCode.ABOVE_MAXIMUM: "the driver read more than the maximum voltage",
     FaultCode.STOP_NOT_HEARD: "an emergency stop's publisher cannot be heard",
+    FaultCode.TWO_DRIVERS: "another driver answers to the same names",
 }
 
 
@@ -71,6 +79,12 @@ class Fault:
     def __str__(self) -> str:
         words = EXPLANATIONS[self.code]
         return f"{words}: {self.detail}" if self.detail else words
+
+
+# Only a proof of the ground contacts, or of the monitors, takes these away.
+NEED_PROOF = {FaultCode.NOT_GROUNDED, FaultCode.GROUND_NOT_PROVEN, FaultCode.MONITOR}
+# These a restarted node has still.
+OUTLIVE_RESTART = NEED_PROOF | {FaultCode.EMERGENCY_STOP, FaultCode.DISCREPANCY}
 
 
 class SupplyFaultError(Exception):

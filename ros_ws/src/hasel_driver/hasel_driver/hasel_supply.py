@@ -10,7 +10,8 @@ from hasel_driver.board_handshake import BoardHandshake, board_fault
 from hasel_driver.device_clock import DeviceClock
 from hasel_driver.errors import PortError, ProtocolError
 from hasel_driver.faults import Fault, FaultCode, SupplyFaultError
-from hasel_driver.limits import DISCHARGED_V, Limits, Voltages
+from hasel_driver.ground import Ground
+from hasel_driver.limits import DISCHARGED_V, LEAST_PULSE_V, Limits, Voltages
 from hasel_driver.line_buffer import LineBuffer
 from hasel_driver.mode import Mode
 from hasel_driver.serial_port import SerialPort
@@ -23,7 +24,9 @@ CLOCK_MODULUS_US = 2**32
 REFUSALS = {
     "INTERLOCK": "its interlock is open",
     "DISCREPANCY": "one channel of its interlock opened without the other: open both, and close them",
-    "UNPROVEN": "its output is not proven grounded",
+    "UNPROVEN": "its output is not grounded",
+    "EEPROM": "the calibration in its EEPROM is damaged: store it again, with `calibrate`",
+    "MAXIMUM": f"maximum_voltage is below {LEAST_PULSE_V:g} V, too little for the pulse that proves its ground",
 }
 MOST_UNANSWERED = 2  # two commands fit into the board's receive buffer
 
@@ -55,11 +58,11 @@ class HaselSupply(Supply):
         self._device_us: int | None = None  # the board's clock in its last report
         self._maxima_v = {round(self.limits.maximum_voltage_v)}  # that the board may report
 
-    def open(self) -> Connection:
+    def open(self, prove: bool = False) -> Connection:
         self._forget_link()
         self._port.open()
         try:
-            name, fault = BoardHandshake(self._port, self._lines, self._clock).perform(self.limits)
+            name, fault = BoardHandshake(self._port, self._lines, self._clock).perform(self.limits, prove)
         except SupplyFaultError as problem:
             self._port.close()
             raise PortError(
@@ -180,7 +183,7 @@ class HaselSupply(Supply):
         return Reading(
             time_s=self._device_clock.host_time(report.time_us, now_s),
             mode=report.mode,
-            grounded=report.grounded and discharged,
+            ground=report.ground if discharged else Ground.NOT,
             fault=fault,
             commanded_v=(float(report.voltage[0]), float(report.voltage[1])),
             measured_v=(float(report.measured[0]), float(report.measured[1])),

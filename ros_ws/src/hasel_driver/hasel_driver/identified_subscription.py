@@ -1,21 +1,23 @@
-"""A subscription to Bool messages that tells who published each: rclpy gives no publisher's identifier with a message.
+"""A subscription that tells who published each message: rclpy gives no publisher's identifier with a message.
 
-So `rcl_take` of ROS 2's own C library is called for it; its structures are those of ROS 2 Jazzy (rmw/types.h).
+So `rcl_take_serialized_message` of ROS 2's own C library is called for it; its structures are those of ROS 2 Jazzy
+(rmw/types.h, rcutils/types/uint8_array.h).
 """
 
 import ctypes
 from collections.abc import Callable
+from typing import Any
 
 from rclpy._rclpy_pybind11 import Subscription
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
+from rclpy.serialization import deserialize_message
 from rclpy.type_support import check_is_valid_msg_type
 from rclpy.waitable import NumberOfEntities, Waitable
-from std_msgs.msg import Bool
 
 IDENTIFIER_BYTES = 16
-_TAKEN = 0  # RCL_RET_OK
+_OK = 0  # RCL_RET_OK
 
 
 class _Identifier(ctypes.Structure):
@@ -33,27 +35,58 @@ class _MessageInfo(ctypes.Structure):
     ]
 
 
-_rcl = ctypes.CDLL("librcl.so")
-_rcl.rcl_take.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.POINTER(_MessageInfo), ctypes.c_void_p]
-_rcl.rcl_take.restype = ctypes.c_int
+class _Allocator(ctypes.Structure):
+    _fields_ = [(name, ctypes.c_void_p) for name in ("allocate", "free", "grow", "zero_allocate", "state")]
+
+
+class _Bytes(ctypes.Structure):
+    _fields_ = [
+        ("buffer", ctypes.c_void_p),
+        ("length", ctypes.c_size_t),
+        ("capacity", ctypes.c_size_t),
+        ("allocator", _Allocator),
+    ]
+
+
+_rcl, _rcutils = ctypes.CDLL("librcl.so"), ctypes.CDLL("librcutils.so")
+_rcutils.rcutils_get_default_allocator.restype = _Allocator
+_rcutils.rcutils_uint8_array_init.argtypes = [
+    ctypes.POINTER(_Bytes),
+    ctypes.c_size_t,
+    ctypes.POINTER(_Allocator),
+]
+_rcl.rcl_take_serialized_message.argtypes = [
+    ctypes.c_void_p,
+    ctypes.POINTER(_Bytes),
+    ctypes.POINTER(_MessageInfo),
+    ctypes.c_void_p,
+]
 
 
 class IdentifiedSubscription(Waitable):
-    """Calls `on_message(publisher, sequence number, value)` in the node's executor."""
+    """Calls `on_message(publisher, sequence number, message)` in the node's executor; raw: the message as bytes."""
 
     def __init__(
         self,
         node: Node,
+        kind: type,
         topic: str,
-        on_message: Callable[[bytes, int, bool], None],
+        on_message: Callable[[bytes, int, Any], None],
         quality: QoSProfile,
         group: CallbackGroup,
+        raw: bool = False,
     ) -> None:
         super().__init__(group)
+        self._read = (lambda data: data) if raw else (lambda data: deserialize_message(data, kind))
         self._on_message = on_message
-        check_is_valid_msg_type(Bool)  # loads what rcl needs of it
+        check_is_valid_msg_type(kind)  # loads what rcl needs of it
+        self._allocator = _rcutils.rcutils_get_default_allocator()
+        self._bytes = _Bytes()
+        _rcutils.rcutils_uint8_array_init(
+            ctypes.byref(self._bytes), 256, ctypes.byref(self._allocator)
+        )  # kept, and grown by the middleware
         with node.handle:
-            self._subscription = Subscription(node.handle, Bool, topic, quality.get_c_qos_profile())
+            self._subscription = Subscription(node.handle, kind, topic, quality.get_c_qos_profile())
         self._index: int | None = None
         node.add_waitable(self)
 
@@ -85,21 +118,23 @@ class IdentifiedSubscription(Waitable):
         """Called by the executor."""
         return wait_set.is_ready("subscription", self._index)
 
-    def take_data(self) -> tuple[bytes, int, bool] | None:
+    def take_data(self) -> tuple[bytes, int, bytes] | None:
         """Called by the executor."""
-        message, info = ctypes.c_bool(), _MessageInfo()
+        info = _MessageInfo()
         with self._subscription:
-            result = _rcl.rcl_take(
-                self._subscription.pointer, ctypes.byref(message), ctypes.byref(info), None
+            result = _rcl.rcl_take_serialized_message(
+                self._subscription.pointer, ctypes.byref(self._bytes), ctypes.byref(info), None
             )
-        if result != _TAKEN:
+        if result != _OK:
             return None
-        return bytes(info.publisher.data), info.publication_sequence_number, message.value
+        data = ctypes.string_at(self._bytes.buffer, self._bytes.length)
+        return bytes(info.publisher.data), info.publication_sequence_number, data
 
-    async def execute(self, taken_data: tuple[bytes, int, bool] | None) -> None:
+    async def execute(self, taken_data: tuple[bytes, int, bytes] | None) -> None:
         """Called by the executor."""
         if taken_data is not None:
-            self._on_message(*taken_data)
+            publisher, sequence, data = taken_data
+            self._on_message(publisher, sequence, self._read(data))
 
     def __enter__(self) -> None:
         self._subscription.__enter__()

@@ -9,7 +9,12 @@ from hasel_driver.errors import LimitError
 HARDWARE_MAXIMUM_V = 9_800.0  # the monitors end at 10 kV: above this they could not tell too much from enough
 MOST_TRIP_A = 980e-6  # of 1 mA, for the same reason
 DISCHARGED_V = 200.0  # below it a muscle counts as discharged
+PULSE_V = 500.0  # of the test that proves the ground contacts, or the maximum where that is less
+LEAST_PULSE_V = 100.0  # below it the monitors tell too little
 LONGEST_HEARTBEAT_S = 2.0
+GROUND_OHM = 2e6  # of the path that discharges a muscle
+TOUCHABLE_V = 50.0
+GROUNDED_WITHIN_S = 0.5  # of the host's death, whatever the load
 
 MUSCLE_NAMES = ("upper", "lower")
 Voltages = tuple[float, float]  # V, in the order of MUSCLE_NAMES
@@ -24,6 +29,24 @@ class Limits:
     trip_current_a: float = 450e-6
     heartbeat_s: float = 0.3
     dead_time_s: float = 0.005
+    contacts_read: bool = False  # auxiliary contacts of the ground relays are wired
+    load_f: float = 1.5e-9  # of the largest muscle
+
+    @property
+    def silence_to_ground_s(self) -> float:
+        """Time from the host's last word to less than 50 V on the largest muscle [s]."""
+        fall = math.log(max(1.0, self.maximum_voltage_v / TOUCHABLE_V))
+        return self.heartbeat_s + self.dead_time_s + GROUND_OHM * self.load_f * fall
+
+    def check_sum(self) -> None:
+        """Raises LimitError where the limits, each allowed by itself, do not ground the output in time."""
+        if self.silence_to_ground_s >= GROUNDED_WITHIN_S:
+            raise LimitError(
+                f"heartbeat_timeout {self.heartbeat_s:g} s, dead_time {self.dead_time_s:g} s and the discharge of"
+                f" load_capacitance {self.load_f * 1e9:g} nF from {self.maximum_voltage_v:g} V take"
+                f" {self.silence_to_ground_s:.3f} s in all, less than {GROUNDED_WITHIN_S:g} s was expected:"
+                " lower heartbeat_timeout first."
+            )
 
 
 def clip(requested: Sequence[float], maximum_v: float, bipolar: bool = True) -> Voltages:

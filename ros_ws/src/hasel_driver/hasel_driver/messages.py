@@ -8,12 +8,14 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from hasel_interfaces.msg import SupplyState
 
+from hasel_driver.ground import Ground
 from hasel_driver.limits import MUSCLE_NAMES, Limits
 from hasel_driver.mode import Mode
 from hasel_driver.status import Status
 
 OUTPUT_WORDS = {
-    "grounded": "The supply reports its output grounded.",
+    "grounded": "The supply reports its output grounded, and has proven it; stored charge needs its bleeder's time.",
+    "commanded": "The output is commanded to ground, not proven: treat it as live.",
     "live": "The supply does not report its output grounded: treat it as live.",
     "unknown": "Nothing proves the output grounded: treat it as live.",
 }
@@ -26,7 +28,11 @@ def to_time(monotonic_s: float) -> Time:
 
 
 def to_supply_state(
-    status: Status, limits: Limits | None = None, holders: Sequence[str] = (), frame_id: str = ""
+    status: Status,
+    limits: Limits | None = None,
+    holders: Sequence[str] = (),
+    frame_id: str = "",
+    commander: str = "",
 ) -> SupplyState:
     """`/hasel/state`; in FAULT its text also tells whether the output is proven grounded."""
     message = SupplyState()
@@ -37,13 +43,15 @@ def to_supply_state(
     message.current = list(status.current_a)
     message.mode = int(status.mode)
     message.fault_code = int(status.fault.code) if status.fault else 0
-    message.grounded = status.grounded is True
+    message.grounded = status.ground is Ground.PROVEN
+    message.ground = int(status.ground or Ground.NOT)
     message.interlock = _interlock(status.interlock_closed)
     message.emergency_stop_holders = list(holders)
     message.maximum_voltage = limits.maximum_voltage_v if limits else math.nan
     message.slew_rate = limits.slew_v_per_ms * 1e3 if limits else math.nan
     message.trip_current = limits.trip_current_a if limits else math.nan
     message.heartbeat_timeout = limits.heartbeat_s if limits else math.nan
+    message.commander = commander
     if status.mode is Mode.FAULT:
         sentence = str(status.fault) if status.fault else "The supply is not connected, or does not report"
         message.fault_text = f"{sentence[:1].upper()}{sentence[1:]}. {OUTPUT_WORDS[status.output]}"

@@ -11,6 +11,7 @@ from rclpy.node import Node
 from hasel_driver.errors import DriverError, LimitError
 from hasel_driver.parameters import LOWERABLE, PARAMETERS, Parameter
 
+OF_ROS = {"use_sim_time", "start_type_description_service"}
 TABLE = {parameter.name: parameter for parameter in PARAMETERS}
 
 
@@ -20,7 +21,7 @@ def declare(node: Node, in_use: Callable[[], bool], lower: Callable[[float], Non
     Raises:
         LimitError: a value given at the start is out of range, or a name is misspelt.
     """
-    _check_names(node)
+    _check_overrides(node)
     for parameter in PARAMETERS:
         node.declare_parameter(
             parameter.name, parameter.default, descriptor(parameter, checked_elsewhere=True)
@@ -56,9 +57,12 @@ def _check_change(parameter: Parameter, value: Any, in_use: bool, lower: Callabl
     lower(float(value))
 
 
-def _check_names(node: Node) -> None:
+def _check_overrides(node: Node) -> None:
     """A misspelt parameter would be ignored without a word, and its default used."""
-    for name in node._parameter_overrides:
-        nearest = difflib.get_close_matches(name, TABLE, n=1, cutoff=0.8)
-        if name not in TABLE and nearest:
-            raise LimitError(f"There is no parameter {name!r}: did you mean {nearest[0]!r}?")
+    for name, given in node._parameter_overrides.items():
+        if name in TABLE:
+            TABLE[name].check(given.value)
+        elif name not in OF_ROS and not name.startswith("qos_overrides."):
+            nearest = difflib.get_close_matches(name, TABLE, n=1, cutoff=0.4)
+            hint = f": did you mean {nearest[0]!r}?" if nearest else f", only {', '.join(TABLE)}."
+            raise LimitError(f"There is no parameter {name!r}{hint}")

@@ -21,7 +21,7 @@ class Parameter(NodeParameter):
             "number",
         ):
             raise LimitError(f"{self.name} is {value!r}, a {self._kind(self.default)} was expected.")
-        if self.low is not None and not self.low <= float(value) <= self.high:
+        if self.low is not None and not self.low <= float(value) <= self.high:  # nor NaN
             raise LimitError(
                 f"{self.name} is {value} {self.unit}, {self.low:g} to {self.high:g} was expected."
             )
@@ -34,6 +34,8 @@ class Parameter(NodeParameter):
 
     def convert(self, value: Any) -> Any:
         """A whole number as a float where a float is meant."""
+        if isinstance(self.default, list):
+            return list(value or [])  # ROS cannot tell the type of an empty list
         return float(value) if isinstance(self.default, float) else value
 
     @staticmethod
@@ -70,9 +72,27 @@ PARAMETERS: tuple[Parameter, ...] = (
         0.002,
         0.05,
     ),
+    Parameter(
+        "load_capacitance",
+        4.5e-9,
+        "of the largest muscle with its cable, whose discharge counts in the half second to ground",
+        "F",
+        0.0,
+        1e-8,
+    ),
+    Parameter("contacts_read_back", False, "auxiliary contacts of the ground relays are wired to the board"),
+    Parameter(
+        "idle_disarm", 60.0, "armed without a command or an experiment for so long: disarm", "s", 1.0, 3600.0
+    ),
+    Parameter(
+        "state_folder", "~/.ros/hasel_driver", "where faults that outlive a restart are kept; empty: nowhere"
+    ),
     Parameter("discovery_time", 1.0, "arming waits this long for a latched emergency stop", "s", 0.0, 60.0),
     Parameter("accept_no_deadman", False, "allow arming a supply that stays live when its host dies (shvps)"),
-    Parameter("recording_directory", "recordings", "where RunExperiment writes when its goal names no file"),
+    Parameter("recording_directory", "recordings", "below which RunExperiment writes, and nowhere else"),
+    Parameter(
+        "waveform_directory", "waveforms", "below which the waveform files of goals lie, and nowhere else"
+    ),
     Parameter(
         "history_file",
         "~/.ros/hasel_supply_history.jsonl",

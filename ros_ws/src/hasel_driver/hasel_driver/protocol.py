@@ -5,19 +5,20 @@ import re
 from dataclasses import dataclass
 
 from hasel_driver.errors import ProtocolError
+from hasel_driver.ground import Ground
 from hasel_driver.mode import Mode
 
-PROTOCOL_VERSION = 2
+PROTOCOL_VERSION = 3
 BAUD = 500_000
 MAXIMUM_LINE_LENGTH = 96
 MOST_WORDS = 10  # of a command
 SEQUENCE_MODULUS = 256
-IDENTITY = ("hasel-supply", "2.0", "protocol", str(PROTOCOL_VERSION))
+IDENTITY = ("hasel-supply", "3.0", "protocol", str(PROTOCOL_VERSION))
 
 _COMMAND = re.compile(r">(\d{3}) (.*\S.*)")
 _REPLY = re.compile(r"<(\d{3}|---) (OK|ERR) (.*\S.*)")
 _TELEMETRY = re.compile(
-    r"#t=(\d{1,10}) s=([A-Z]+) g=([01]) f=(\d{1,3})"
+    r"#t=(\d{1,10}) s=([A-Z]+) g=([012]) f=(\d{1,3})"
     r" v=(-?\d{1,5}),(-?\d{1,5}) m=(-?\d{1,5}),(-?\d{1,5}) i=(\d{1,5}),(\d{1,5}) k=([01])([01]) x=(\d{1,5})"
 )
 
@@ -52,7 +53,7 @@ class Telemetry:
 
     time_us: int
     mode: Mode
-    grounded: bool  # by contacts and measured voltages
+    ground: Ground
     fault_code: int
     voltage: tuple[int, int]  # V, asked for
     measured: tuple[int, int]  # V
@@ -128,7 +129,7 @@ def _parse_telemetry(text: str) -> Telemetry:
     return Telemetry(
         time_us=int(match[1]),
         mode=Mode[match[2]],
-        grounded=match[3] == "1",
+        ground=Ground(int(match[3])),
         fault_code=numbers[0],
         voltage=(numbers[1], numbers[2]),
         measured=(numbers[3], numbers[4]),
@@ -141,7 +142,7 @@ def _parse_telemetry(text: str) -> Telemetry:
 def encode_telemetry(report: Telemetry) -> bytes:
     """Telemetry as the board sends it."""
     return encode(
-        f"#t={report.time_us % 2**32} s={report.mode.name} g={int(report.grounded)} f={report.fault_code}"
+        f"#t={report.time_us % 2**32} s={report.mode.name} g={int(report.ground)} f={report.fault_code}"
         f" v={report.voltage[0]},{report.voltage[1]} m={report.measured[0]},{report.measured[1]}"
         f" i={report.current[0]},{report.current[1]}"
         f" k={int(report.interlock[0])}{int(report.interlock[1])} x={report.maximum}"

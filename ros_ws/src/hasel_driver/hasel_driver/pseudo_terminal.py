@@ -8,9 +8,13 @@ import select
 import tty
 from pathlib import Path
 
+from hasel_driver.errors import PortError
+
+TERMINALS = Path("/dev/pts")
+
 
 class PseudoTerminal:
-    """A serial port to be opened by a host at `path`; with `link`, also under that name."""
+    """A serial port to be opened by a host at `path`; with `link`, also under that name, where nothing else has it."""
 
     def __init__(self, link: Path | None = None) -> None:
         self._link = link
@@ -25,8 +29,18 @@ class PseudoTerminal:
         os.set_blocking(self._master, False)
         self._plugged = True
         if self._link is not None:
-            self._link.unlink(missing_ok=True)
-            self._link.symlink_to(self.path)
+            self._make_link(self._link)
+
+    def _make_link(self, link: Path) -> None:
+        left_over = link.is_symlink() and link.readlink().parent == TERMINALS and not link.exists()
+        if left_over:  # by one that was killed
+            link.unlink()
+        try:
+            link.symlink_to(self.path)
+        except OSError as error:
+            raise PortError(
+                f"{link} cannot be made a link to the port ({error.strerror}): name one where nothing is, or remove it."
+            ) from error
 
     def unplug(self) -> None:
         """Make the port vanish, as a pulled cable does."""
@@ -34,8 +48,8 @@ class PseudoTerminal:
             return
         self._plugged = False
         os.close(self._master)
-        if self._link is not None:
-            self._link.unlink(missing_ok=True)
+        if self._link is not None and self._link.is_symlink() and str(self._link.readlink()) == self.path:
+            self._link.unlink()
 
     def fileno(self) -> int | None:
         """File descriptor to wait on; None while unplugged."""

@@ -9,10 +9,24 @@ from hasel_driver.errors import LimitError
 SUFFIX = ".mcap"
 
 
-def chosen_path(output: str) -> Path:
-    """The path that a goal names, with its suffix. Raises LimitError for a name that can be no file."""
+def below(folder: Path, given: str, what: str) -> Path:
+    """The path that a goal names, which may come from anywhere: below `folder` only. Raises LimitError."""
     try:
-        path = Path(output).expanduser()
+        path = (folder / Path(given).expanduser()).resolve()
+    except (ValueError, RuntimeError, OSError) as error:
+        raise LimitError(f"{what} is {given!r}, the path of a file was expected ({error}).") from error
+    if folder.resolve() not in path.parents:
+        raise LimitError(
+            f"{what} is {given!r}, a file below {folder.resolve()} was expected: name one there, or start the node with"
+            " another folder."
+        )
+    return path
+
+
+def chosen_path(folder: Path, output: str) -> Path:
+    """The path that a goal names, with its suffix. Raises LimitError for a name that can be no file below `folder`."""
+    try:
+        path = below(folder, output, "output")
         path = path if path.suffix == SUFFIX else path.with_name(path.name + SUFFIX)
     except (ValueError, RuntimeError) as error:
         raise LimitError(f"output is {output!r}, the path of a file was expected ({error}).") from error

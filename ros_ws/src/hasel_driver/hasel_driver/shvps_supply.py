@@ -34,7 +34,7 @@ class ShvpsSupply(Supply):
         self._clock = clock
         self._rounds = (0, 0)
 
-    def open(self) -> Connection:
+    def open(self, prove: bool = False) -> Connection:
         self._rounds = (0, 0)
         names = []
         try:
@@ -91,7 +91,7 @@ class ShvpsSupply(Supply):
         return Reading(
             time_s=now_s,
             mode=mode,
-            grounded=None,
+            ground=None,
             fault=None,
             commanded_v=commanded,
             measured_v=(values[0]["QVnow"], values[1]["QVnow"]),

@@ -7,10 +7,10 @@ from hasel_driver.console_options import parser
 
 def main() -> int:
     """Run the console until it is left; returns the exit code."""
-    parser().parse_args()
+    options = parser().parse_args()
     from hasel_driver.console import run
 
-    return run()
+    return run(options.namespace)
 
 
 if __name__ == "__main__":

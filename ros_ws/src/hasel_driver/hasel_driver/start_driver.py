@@ -1,5 +1,6 @@
 """`ros2 run hasel_driver driver_node`: where the executable begins; --help is answered before a port is opened."""
 
+import signal
 import sys
 
 from hasel_recording.node_usage import answer_help
@@ -14,6 +15,10 @@ def main() -> int:
         "Drives the high-voltage supply at a serial port: opens the port when it starts, arms nothing by itself.",
         [each.usage for each in PARAMETERS],
     )
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(
+            number, signal.SIG_DFL
+        )  # until the node takes them over, nothing is open that must be grounded
     from hasel_driver.driver_node import main as run
 
     return run()

@@ -4,10 +4,19 @@ import math
 from dataclasses import dataclass
 
 from hasel_driver.faults import Fault
+from hasel_driver.ground import Ground
 from hasel_driver.limits import Voltages
 from hasel_driver.mode import Mode
 
 UNKNOWN: Voltages = (math.nan, math.nan)
+
+
+WORDS = {
+    "grounded": "output grounded",
+    "commanded": "output commanded to ground, not proven",
+    "live": "output live",
+    "unknown": "output unknown",
+}
 
 
 @dataclass(frozen=True)
@@ -17,7 +26,7 @@ class Status:
     time_s: float
     mode: Mode
     fault: Fault | None
-    grounded: bool | None
+    ground: Ground | None  # None: not known
     commanded_v: Voltages
     measured_v: Voltages
     current_a: Voltages
@@ -25,9 +34,16 @@ class Status:
 
     @property
     def output(self) -> str:
-        """`grounded` only where the supply itself reports it, else `live` or `unknown`."""
-        return {True: "grounded", False: "live", None: "unknown"}[self.grounded]
+        """`grounded` only where it is proven; else `commanded` to ground, `live` or `unknown`."""
+        if self.ground is None:
+            return "unknown"
+        return {Ground.PROVEN: "grounded", Ground.COMMANDED: "commanded", Ground.NOT: "live"}[self.ground]
+
+    @property
+    def quiet(self) -> bool | None:
+        """Whether the ground contacts are commanded and little is measured, proven or not; None: not known."""
+        return None if self.ground is None else self.ground is not Ground.NOT
 
     def __str__(self) -> str:
         fault = f" ({self.fault})" if self.fault else ""
-        return f"{self.mode.name}{fault}, output {self.output}"
+        return f"{self.mode.name}{fault}, {WORDS[self.output]}"

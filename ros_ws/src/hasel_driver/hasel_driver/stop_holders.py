@@ -3,7 +3,7 @@
 import threading
 from collections.abc import Mapping
 
-UNNAMED = "a node whose name is not known yet"
+from hasel_driver.graph_names import UNNAMED
 
 
 class StopHolders:
@@ -13,12 +13,20 @@ class StopHolders:
         self._lock = threading.Lock()
         self._holding: dict[bytes, str] = {}
         self._last_sequence: dict[bytes, int] = {}
+        self._stops: dict[bytes, set[int]] = {}  # sequence numbers of those that were heard
 
     def take(self, publisher: bytes, sequence: int, name: str, asserted: bool) -> bool:
-        """Note a message; False for one that was heard already, by another of our subscriptions."""
+        """Note a message; False for one that was heard already, by another of our subscriptions.
+
+        A stop that arrives after its own release holds nothing any more, and still is one.
+        """
         with self._lock:
+            stops = self._stops.setdefault(publisher, set())
+            known = sequence != 0 and sequence in stops
+            if asserted:
+                stops.add(sequence)
             if sequence and sequence <= self._last_sequence.get(publisher, 0):
-                return False
+                return asserted and not known
             self._last_sequence[publisher] = sequence
             if asserted:
                 self._note(publisher, name)

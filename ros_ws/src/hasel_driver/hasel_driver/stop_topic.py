@@ -7,13 +7,14 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.topic_endpoint_info import TopicEndpointInfo
+from std_msgs.msg import Bool
 
+from hasel_driver.graph_names import full_name
 from hasel_driver.identified_subscription import IDENTIFIER_BYTES, IdentifiedSubscription
-from hasel_driver.stop_holders import UNNAMED, StopHolders
+from hasel_driver.stop_holders import StopHolders
 
 TYPE = TOPIC_TYPES[EMERGENCY_STOP]
 DEPTH = 100
-NOT_KNOWN_YET = "_NODE_NAME_UNKNOWN_"
 # A subscription is not matched by a publisher that offers less than it asks for, and is not given more than it asks
 # for: the last of these hears everybody, the others hear whoever offers more better.
 QUALITIES = tuple(
@@ -33,24 +34,24 @@ class StopTopic:
         self._node, self._holders, self._on_change = node, holders, on_change
         group = MutuallyExclusiveCallbackGroup()
         self._subscriptions = [
-            IdentifiedSubscription(node, relative(EMERGENCY_STOP), self._take, quality, group)
+            IdentifiedSubscription(node, Bool, relative(EMERGENCY_STOP), self._take, quality, group)
             for quality in QUALITIES
         ]
         self.topic = self._subscriptions[0].topic_name
 
     def present(self) -> dict[bytes, str]:
         """Names of the publishers that exist, by identifier."""
-        return {bytes(info.endpoint_gid[:IDENTIFIER_BYTES]): _name(info) for info in self._publishers()}
+        return {bytes(info.endpoint_gid[:IDENTIFIER_BYTES]): full_name(info) for info in self._publishers()}
 
     def unheard(self) -> str | None:
         """Why a publisher that exists cannot be heard; None if all can."""
         publishers = self._publishers()
         for info in publishers:
             if info.topic_type != TYPE:
-                return f"{_name(info)} publishes {info.topic_type} on {self.topic}, {TYPE} is expected"
+                return f"{full_name(info)} publishes {info.topic_type} on {self.topic}, {TYPE} is expected"
         heard = self._subscriptions[-1].publishers
         if heard < len(publishers):
-            names = ", ".join(map(_name, publishers))
+            names = ", ".join(map(full_name, publishers))
             return f"of {len(publishers)} publishers of {self.topic} ({names}) only {heard} are connected"
         return None
 
@@ -62,13 +63,7 @@ class StopTopic:
     def _publishers(self) -> list[TopicEndpointInfo]:
         return self._node.get_publishers_info_by_topic(relative(EMERGENCY_STOP))
 
-    def _take(self, publisher: bytes, sequence: int, asserted: bool) -> None:
+    def _take(self, publisher: bytes, sequence: int, message: Bool) -> None:
         name = self.present().get(publisher, "an unknown node")
-        if self._holders.take(publisher, sequence, name, asserted):
-            self._on_change(asserted, name)
-
-
-def _name(info: TopicEndpointInfo) -> str:
-    if info.node_name == NOT_KNOWN_YET:
-        return UNNAMED
-    return f"{info.node_namespace.rstrip('/')}/{info.node_name}"
+        if self._holders.take(publisher, sequence, name, message.data):
+            self._on_change(message.data, name)

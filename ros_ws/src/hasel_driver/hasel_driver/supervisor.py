@@ -7,32 +7,34 @@ import math
 import time
 from collections.abc import Callable, Sequence
 
+from hasel_driver.checks import STALE_S, Sight, Watch, volts
 from hasel_driver.errors import LimitError, PortError, RefusedError
-from hasel_driver.faults import Fault, FaultCode, SupplyFaultError
+from hasel_driver.faults import NEED_PROOF, Fault, FaultCode, SupplyFaultError
+from hasel_driver.ground import Ground
 from hasel_driver.limits import Limits, Voltages, clip
 from hasel_driver.mode import Mode
+from hasel_driver.monitor_watch import OutputWatch
 from hasel_driver.status import UNKNOWN, Status
-from hasel_driver.supply import Capabilities, Connection, Reading, Supply
+from hasel_driver.supply import Capabilities, Reading, Supply
 from hasel_driver.waveform import Waveform
 
 COMMAND_TIMEOUT_S = 0.2
-STALE_S = 0.2
-TRANSITION_S = 0.3  # time the board has to follow a request
 STOP_REPEAT_S = 0.05
+IDLE_DISARM_S = 60.0
 FIRST_READING_S = 0.5
 SETTLING_S = 0.05  # after which a report tells what a voltage asked for has done
-GROUND_PROOF_S = 0.3  # a supply that should be grounded, and is not, is a fault after that
-ABOVE_MAXIMUM_S = (
-    0.2  # so long may more than the maximum be read: after it was lowered, muscles discharge first
-)
 REOPEN_S = 0.03  # lets the other end notice that the port was closed
 
 
 class Supervisor:
     """One supply, one master. Every method is called by the same thread."""
 
-    def __init__(self, supply: Supply, clock: Callable[[], float]) -> None:
+    def __init__(
+        self, supply: Supply, clock: Callable[[], float], idle_disarm_s: float = IDLE_DISARM_S
+    ) -> None:
         self._supply, self._clock = supply, clock
+        self.idle_disarm_s = idle_disarm_s  # armed and unused for so long, it is disarmed
+        self._inherited: Fault | None = None
         self.name: str | None = None  # of the device; None while not connected
         self.fault: Fault | None = None
         self.rejected_commands = 0
@@ -42,8 +44,10 @@ class Supervisor:
         self._stop_sent_s = -math.inf
         self._command_expires_s: float | None = None
         self._experiment_running = False
-        self._ungrounded_s: float | None = None  # since when there is no proof of a ground that should be
-        self._above_s: float | None = None  # since when more than the maximum is read
+        self._proving = self._zero_seen = False  # since the last arming
+        self._used_s = -math.inf  # when somebody last made use of being armed
+        self._watch, self._outputs = Watch(), OutputWatch()
+        self._unfollowed: str | None = None
         self._driven_s = -math.inf  # when a voltage was last asked for; infinite while a waveform runs
 
     @property
@@ -63,8 +67,8 @@ class Supervisor:
 
     def connect(self) -> None:
         """Open the supply, disarmed; a fault the board had kept is latched here. Raises PortError."""
-        connection = self._open()
-        self.fault = self.fault or connection.fault
+        self._open()
+        self.fault = self.fault or self._inherited
 
     def disconnect(self) -> None:
         """Disarm and close the port."""
@@ -93,27 +97,31 @@ class Supervisor:
         now_s = self._clock()
         reading = self._fresh_reading(now_s)
         if reading is None:
-            return Status(now_s, Mode.FAULT, self.fault, None, UNKNOWN, UNKNOWN, UNKNOWN)
-        grounded = self._grounded(reading)
-        mode = Mode.ACTIVE if grounded is False and reading.mode is not Mode.FAULT else reading.mode
+            borne = self.connected and self.fault is None and not self._armed_wanted
+            mode = Mode.STANDBY if borne else Mode.FAULT
+            return Status(now_s, mode, self.fault, None, UNKNOWN, UNKNOWN, UNKNOWN)
+        ground = self._ground(reading)
+        mode = Mode.ACTIVE if ground is Ground.NOT and reading.mode is not Mode.FAULT else reading.mode
         mode = Mode.FAULT if self.fault else mode
         values = (reading.commanded_v, reading.measured_v, reading.current_a)
-        return Status(reading.time_s, mode, self.fault, grounded, *values, reading.interlock_closed)
+        return Status(reading.time_s, mode, self.fault, ground, *values, reading.interlock_closed)
 
     def arm(self) -> None:
-        """Ask the supply to arm. Raises RefusedError unless STANDBY is proven."""
+        """Ask the supply to arm, which begins with the proof of its ground. Raises RefusedError unless in STANDBY."""
         status = self.status()
-        unproven = self.capabilities.proves_grounded and status.grounded is False
+        unproven = self.capabilities.proves_grounded and status.quiet is False
         if status.mode is not Mode.STANDBY and not (unproven and status.mode is Mode.ACTIVE):
             raise RefusedError(f"Arming needs the state STANDBY, it is {status}: see to that first.")
         if unproven:
             raise RefusedError(
-                f"Arming needs an output proven grounded, it is {status}, {_volts(status.measured_v)} measured:"
+                f"Arming needs a discharged output, it is {status}, {volts(status.measured_v)} measured:"
                 " treat it as live, find out why, and use the ground stick."
             )
         self._command_expires_s = None
-        self._armed_wanted = True
-        self._requested_s = self._clock()
+        self._armed_wanted, self._zero_seen = True, False
+        self._proving = self.capabilities.proves_grounded
+        self._requested_s = self._used_s = self._clock()
+        self._outputs.restart()
         self._guard(self._supply.arm)
 
     def disarm(self) -> None:
@@ -138,20 +146,27 @@ class Supervisor:
     def clear_fault(self) -> None:
         """Connect anew, which proves board and limits, and forget the fault; a lost port is opened again.
 
-        Raises RefusedError while the output is live, or PortError; then the fault stays.
+        A fault that needs it is forgotten only with a proof of the ground contacts. Raises RefusedError while the
+        output is live or the interlock open, or PortError; then the fault stays.
         """
         if self.fault is None:
             raise RefusedError(f"There is no fault to clear: the state is {self.status()}.")
-        if self.status().grounded is False:
+        status = self.status()
+        if status.quiet is False:
             raise RefusedError("The supply does not report its output grounded: wait, or cut its power.")
+        if status.interlock_closed and not all(status.interlock_closed):
+            raise RefusedError("The interlock is open: close both of its channels first.")
+        prove = self.fault.code in NEED_PROOF and self.capabilities.proves_grounded
         self.disconnect()
         time.sleep(REOPEN_S)
-        self._open()
-        self.fault = self._reading.fault
-        if self.fault is None and self._grounded(self._reading) is False:
-            self.fault = Fault(FaultCode.GROUND_NOT_PROVEN, f"{_volts(self._reading.measured_v)} measured")
-        if self.fault is not None:
-            raise RefusedError(f"The fault came back at once: {self.fault}.")
+        reading = self._open(prove)
+        ground = self._ground(reading)
+        found = reading.fault
+        if found is None and (ground is Ground.NOT or (prove and ground is not Ground.PROVEN)):
+            found = Fault(FaultCode.GROUND_NOT_PROVEN, f"{volts(reading.measured_v)} measured")
+        self.fault = found
+        if found is not None:
+            raise RefusedError(f"The fault came back at once: {found}.")
 
     def command(self, voltage_v: Sequence[float], age_s: float = 0.0) -> None:
         """A voltage from outside [V], `age_s` old; clipped, held for 200 ms from its making, else ignored."""
@@ -168,8 +183,17 @@ class Supervisor:
         if not self._armed_wanted or not abs(age_s) < COMMAND_TIMEOUT_S or not self.status().mode.may_be_live:
             self.rejected_commands += 1
             return
-        self._command_expires_s = self._clock() + COMMAND_TIMEOUT_S - max(age_s, 0.0)
+        if self._proving or not (self._zero_seen or not any(applied)):
+            self.rejected_commands += 1  # who commands must begin at 0 V
+            return
+        self._zero_seen = True
+        self._used_s = self._clock()
+        self._command_expires_s = self._used_s + COMMAND_TIMEOUT_S - max(age_s, 0.0)
         self._drive(applied)
+
+    def await_zero(self) -> None:
+        """Another commander: it must begin at 0 V."""
+        self._zero_seen = False
 
     def lower_maximum(self, voltage_v: float) -> None:
         """From now on a lower limit [V], in any state; raises RefusedError for a higher one."""
@@ -178,7 +202,8 @@ class Supervisor:
                 f"The limit is {self.maximum_voltage_v:g} V and can only be lowered while the port is open,"
                 f" not set to {voltage_v:g} V: deactivate and clean up the node to raise it."
             )
-        self._above_s = None
+        self._watch.forget()
+        self._outputs.restart()
         self._guard(lambda: self._supply.lower_maximum(voltage_v))
 
     def begin_experiment(self) -> None:
@@ -206,6 +231,7 @@ class Supervisor:
 
     def end_experiment(self) -> None:
         """0 V now, without waiting for the slew limit; still armed."""
+        self._used_s = self._clock()
         self._end_drive()
         if self._armed_wanted:
             self._guard(self._supply.ground)
@@ -219,22 +245,24 @@ class Supervisor:
         self._guard(lambda: readings.extend(self._supply.service(now_s, self._may_keep_alive())))
         for reading in readings:
             self._reading = reading
-            self._judge(reading, now_s)
-        self._watch(now_s)
+            self._judge(reading)
+        self._look(now_s)
         return bool(readings)
 
-    def _open(self) -> Connection:
-        connection = self._supply.open()
+    def _open(self, prove: bool = False) -> Reading:
+        connection = self._supply.open(prove)
         try:
-            self._reading = self._first_reading(connection.name)
+            reading = self._reading = self._first_reading(connection.name)
         except PortError:
             self._supply.close()
             raise
         self.name = connection.name
-        self._ungrounded_s = self._above_s = None
-        self._armed_wanted = False
+        self._inherited = connection.fault
+        self._watch.forget()
+        self._outputs, self._unfollowed = OutputWatch(), None
+        self._armed_wanted = self._proving = False
         self._requested_s = self._clock()
-        return connection
+        return reading
 
     def _first_reading(self, name: str) -> Reading:
         deadline_s = self._clock() + FIRST_READING_S
@@ -257,64 +285,41 @@ class Supervisor:
         self._command_expires_s, self._experiment_running = None, False
         self._driven_s = min(self._driven_s, self._clock())
 
-    def _grounded(self, reading: Reading) -> bool | None:
+    def _ground(self, reading: Reading) -> Ground | None:
         """What a report proves now: one of an armed supply nothing, if a voltage was asked for since."""
         outdated = reading.time_s < self._driven_s + SETTLING_S
-        return None if reading.grounded and reading.mode.may_be_live and outdated else reading.grounded
+        return None if reading.ground and reading.mode.may_be_live and outdated else reading.ground
 
-    def _judge(self, reading: Reading, now_s: float) -> None:
+    def _judge(self, reading: Reading) -> None:
         if reading.fault is not None:
             self._latch_board_fault(reading.fault)
         elif self._armed_wanted and self._supply.refusal is not None:
             self._armed_wanted = False
-        elif self.fault is None and reading.mode.may_be_live != self._armed_wanted:
-            self._await_transition(reading.mode, now_s)
-
-    def _await_transition(self, mode: Mode, now_s: float) -> None:
-        if now_s - self._requested_s > TRANSITION_S:
-            wanted = "armed" if self._armed_wanted else "disarmed"
-            self.fail(Fault(FaultCode.UNEXPECTED_STATE, f"{mode.name}, {wanted} was asked for"))
+        elif reading.mode is Mode.ARMED:
+            self._proving = False
+        self._unfollowed = self._outputs.take(reading, self.limits.slew_v_per_ms)
 
     def _latch_board_fault(self, fault: Fault) -> None:
         self.fault = self.fault or fault
         self._armed_wanted = False
         self._end_drive()
 
-    def _watch(self, now_s: float) -> None:
-        if self.fault is None and self._fresh_reading(now_s) is None:
-            self.fail(Fault(FaultCode.NO_TELEMETRY, f"none for {STALE_S} s"))
+    def _look(self, now_s: float) -> None:
         if self._command_expires_s is not None and now_s > self._command_expires_s:
             self._command_expires_s = None
             self._guard(self._supply.ground)
         fresh = self._fresh_reading(now_s)
-        if fresh is not None and self.fault is None:
-            self._watch_ground(fresh, now_s)
-            self._watch_maximum(fresh, now_s)
+        if self.fault is None:
+            asked_s = now_s - self._requested_s
+            sight = Sight(fresh, self.limits, self._armed_wanted, self._proving, asked_s, self._unfollowed)
+            found = self._watch.look(sight, now_s)
+            if found is not None:
+                self.fail(Fault(*found))
+        if self._armed_wanted and not self._experiment_running and now_s - self._used_s > self.idle_disarm_s:
+            self.disarm()
         proven = fresh is not None and not fresh.mode.may_be_live
         if self.fault is not None and not proven and now_s - self._stop_sent_s > STOP_REPEAT_S:
             self._send_stop()
-
-    def _watch_ground(self, reading: Reading, now_s: float) -> None:
-        should_be = reading.mode is Mode.STANDBY or not any(reading.commanded_v)
-        if reading.grounded is not False or not should_be:
-            self._ungrounded_s = None
-            return
-        self._ungrounded_s = now_s if self._ungrounded_s is None else self._ungrounded_s
-        limits = self._supply.limits
-        ramp_s = limits.maximum_voltage_v / limits.slew_v_per_ms * 1e-3 if reading.mode.may_be_live else 0.0
-        if now_s - self._ungrounded_s > GROUND_PROOF_S + ramp_s:
-            self.fail(Fault(FaultCode.GROUND_NOT_PROVEN, f"{_volts(reading.measured_v)} measured"))
-
-    def _watch_maximum(self, reading: Reading, now_s: float) -> None:
-        maximum_v = self.maximum_voltage_v
-        if not max(map(abs, reading.measured_v)) > max(1.05 * maximum_v, maximum_v + 100.0):
-            self._above_s = None
-            return
-        self._above_s = now_s if self._above_s is None else self._above_s
-        if now_s - self._above_s > ABOVE_MAXIMUM_S:
-            self.fail(
-                Fault(FaultCode.ABOVE_MAXIMUM, f"{_volts(reading.measured_v)}, {maximum_v:g} V is allowed")
-            )
 
     def _may_keep_alive(self) -> bool:
         """An armed board gets heartbeats only while nothing is wrong, so that its own timeout can work."""
@@ -339,7 +344,3 @@ class Supervisor:
             action()
         except SupplyFaultError as problem:
             self.fail(problem.fault)
-
-
-def _volts(voltage_v: Voltages) -> str:
-    return f"{voltage_v[0]:.0f} and {voltage_v[1]:.0f} V"

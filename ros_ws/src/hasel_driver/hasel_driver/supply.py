@@ -4,6 +4,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 
 from hasel_driver.faults import Fault
+from hasel_driver.ground import Ground
 from hasel_driver.limits import Limits, Voltages
 from hasel_driver.mode import Mode
 from hasel_driver.waveform import Waveform
@@ -33,7 +34,7 @@ class Reading:
 
     time_s: float  # host's monotonic clock, when it was measured
     mode: Mode
-    grounded: bool | None  # proven by contacts and measured voltages; None: it cannot tell
+    ground: Ground | None  # None: it cannot tell
     fault: Fault | None
     commanded_v: Voltages
     measured_v: Voltages
@@ -54,8 +55,11 @@ class Supply(ABC):
         self.refusal: str | None = None  # why the last `arm` was refused
 
     @abstractmethod
-    def open(self) -> Connection:
-        """Connect, disarm, clear the board's fault, set the limits. Waits; raises PortError."""
+    def open(self, prove: bool = False) -> Connection:
+        """Connect, disarm, set the limits, clear the board's fault; with `prove`, prove its ground where it can.
+
+        Waits; raises PortError.
+        """
 
     @abstractmethod
     def close(self) -> None:

@@ -103,7 +103,7 @@ class SupplyThread(threading.Thread):
 
     def _at_rest(self) -> bool:
         status = self.supervisor.status()
-        proven = status.grounded or not self.supervisor.capabilities.proves_grounded
+        proven = status.quiet or not self.supervisor.capabilities.proves_grounded
         return not self.supervisor.connected or (proven and not status.mode.may_be_live)
 
     def run(self) -> None:

@@ -7,16 +7,28 @@ from hasel_driver import protocol
 from hasel_driver.calibration import Calibration
 from hasel_driver.errors import ProtocolError
 from hasel_driver.faults import FaultCode
-from hasel_driver.limits import DISCHARGED_V
+from hasel_driver.ground import Ground
+from hasel_driver.latch import Latch
+from hasel_driver.limits import DISCHARGED_V, LEAST_PULSE_V, PULSE_V
 from hasel_driver.line_buffer import LineBuffer
 from hasel_driver.mode import Mode
+from hasel_driver.monitor_watch import MonitorWatch
 from hasel_driver.virtual_bridge import VirtualBridge
 from hasel_driver.virtual_commands import SETTINGS, RefusalError, execute
+from hasel_driver.virtual_ground import (
+    GROUND_PROOF_MS,
+    LEAK_MS,
+    LEAST_FALL_V,
+    GroundEvidence,
+    GroundProof,
+    Verdict,
+)
 from hasel_driver.virtual_muscle import Contact, VirtualMuscle
 from hasel_driver.waveform import Waveform
 
 CONFIRMATION_MS = 3  # a trip must hold this long
-GROUND_PROOF_MS = 100  # a closed ground contact must have discharged its muscle by then
+PULSE_SLEW_V = 10  # per millisecond
+STALE_MS, BLIND_MS = 3, 100  # inputs not converted for so long tell nothing; are a fault
 DISCREPANCY_MS = 500  # the interlock's channels may differ that long
 WATCHDOG_MS = 250
 MONITOR_V, MONITOR_A = 10_000.0, 1e-3  # ends of the monitors' ranges
@@ -33,6 +45,9 @@ class Hardware:
     ground_broken: bool = False  # the upper muscle's ground contact does not close
     set_point_gain: list[float] = field(default_factory=lambda: [1.0, 1.0])
     monitor_gain: list[float] = field(default_factory=lambda: [1.0, 1.0])
+    stuck_v: float | None = None  # what the upper muscle's monitor says for good
+    inverted: bool = False  # the sign of the upper muscle's monitor
+    unconverted: bool = False  # the converter of the analogue inputs has stopped
 
     def contact(self, channel: int, asked: Contact) -> Contact:
         """The contact that is closed when the board closes `asked`."""
@@ -44,6 +59,8 @@ class Hardware:
 
     def monitor_v(self, channel: int, voltage_v: float) -> float:
         """Magnitude that a muscle's monitor gives [V]."""
+        if channel == 0 and self.stuck_v is not None:
+            return self.stuck_v
         return min(abs(voltage_v) * self.monitor_gain[channel], MONITOR_V)
 
 
@@ -54,6 +71,8 @@ class VirtualBoard:
         self.muscles = muscles or (VirtualMuscle(), VirtualMuscle())
         self.interlock_closed = [True, True]
         self.calibrations = [Calibration(), Calibration()]
+        self.calibrations_damaged = False
+        self.latches: set[Latch] = set()
         self.hardware = Hardware()
         self.transmitted = bytearray()
         self.reset("power")
@@ -66,33 +85,64 @@ class VirtualBoard:
         self.voltage = self.wanted = (0, 0)
         self.waveform = Waveform("box", 0, 1.0, 1)
         self.waveform_ms: int | None = None
-        self.discrepancy = self.tick_dead = False
+        self.tick_dead = self.hardware.unconverted = False
+        self.proof: GroundProof | None = None
+        self.evidence = (GroundEvidence(), GroundEvidence())
+        self.monitors = (MonitorWatch(), MonitorWatch())
+        self._stale_ms = STALE_MS
+        self._converted_v: tuple[float, float] = (0.0, 0.0)
         self._time_ms = self._heartbeat_ms = self._telemetry_ms = self._unfed_ms = self._discrepancy_ms = 0
         self._charged_ms = [0, 0]
-        self._over_ms = {FaultCode.OVERCURRENT: 0, FaultCode.OVERVOLTAGE: 0}
+        self._over_ms = dict.fromkeys((FaultCode.INTERLOCK, FaultCode.OVERCURRENT, FaultCode.OVERVOLTAGE), 0)
         self._sequence = 0
         self._lines = LineBuffer()
         self._send("!BOOT " + " ".join(protocol.IDENTITY) + f" reset={cause}")
+        for latch, code in (
+            (Latch.UNPROVEN, FaultCode.NOT_GROUNDED),
+            (Latch.DISAGREED, FaultCode.DISCREPANCY),
+        ):
+            if latch in self.latches:
+                self.fail(code)
+        if self.calibrations_damaged:
+            self.fail(FaultCode.EEPROM)
 
     @property
     def grounded(self) -> bool:
         """Whether both ground contacts should be closed, and both muscles measure as discharged."""
-        return self._contacts_grounded and all(abs(volts) < DISCHARGED_V for volts in self.measured_v)
+        discharged = all(abs(volts) < DISCHARGED_V for volts in self.measured_v)
+        return self._stale_ms < STALE_MS and discharged and self._contacts_grounded
+
+    @property
+    def ground(self) -> Ground:
+        """What is known of the output."""
+        if not self.grounded:
+            return Ground.NOT
+        proven = self.settings["CONTACTS"] or all(each.proven for each in self.evidence)
+        return Ground.PROVEN if proven and Latch.UNPROVEN not in self.latches else Ground.COMMANDED
 
     @property
     def _contacts_grounded(self) -> bool:
-        return all(bridge.grounded for bridge in self.bridges)
+        return all(map(self._closed, range(2)))
+
+    def _closed(self, channel: int) -> bool:
+        """The ground contact by what was commanded, and by its auxiliary contact where that is wired."""
+        commanded = self.bridges[channel].contact
+        read = self.hardware.contact(channel, commanded) if self.settings["CONTACTS"] else commanded
+        return self.bridges[channel].grounded and read is Contact.GROUND
 
     @property
     def measured_v(self) -> tuple[float, float]:
-        """What the monitors say, corrected [V]; their sign is that of the polarity contacts."""
+        """What the monitors said last, corrected [V]; their sign is that of the polarity contacts."""
+        return self._converted_v
+
+    def _convert(self) -> None:
         upper, lower = (
             math.copysign(
                 calibration.measured_v(self.hardware.monitor_v(channel, muscle.voltage_v)), muscle.voltage_v
             )
             for channel, (calibration, muscle) in enumerate(zip(self.calibrations, self.muscles, strict=True))
         )
-        return upper, lower
+        self._converted_v = (-upper if self.hardware.inverted else upper, lower)
 
     def receive(self, data: bytes) -> None:
         """Bytes from the host."""
@@ -101,11 +151,13 @@ class VirtualBoard:
 
     def tick(self) -> None:
         """One millisecond of board and muscles."""
-        if self.tick_dead:
-            self._unfed_ms += 1
-            if self._unfed_ms >= WATCHDOG_MS:
-                self.reset("watchdog")
-        else:
+        self._unfed_ms += 1
+        if not self.hardware.unconverted:
+            self._convert()
+            self._unfed_ms = self._unfed_ms if self.tick_dead else 0
+        if self._unfed_ms >= WATCHDOG_MS:
+            self.reset("watchdog")
+        elif not self.tick_dead:
             self._control()
         for channel, (bridge, muscle) in enumerate(zip(self.bridges, self.muscles, strict=True)):
             set_point_v = min(self.calibrations[channel].set_point_v(bridge.set_point_v), MONITOR_V)
@@ -119,32 +171,67 @@ class VirtualBoard:
     def _control(self) -> None:
         self._time_ms += 1
         self._heartbeat_ms += 1
+        self._stale_ms = self._stale_ms + 1 if self.hardware.unconverted else 0
+        if self._stale_ms >= BLIND_MS:
+            self.fail(FaultCode.MONITOR)
         self._watch_interlock()
         self._watch_ground()
         if self.mode.may_be_live:
             self._watch()
+        if self.proof is not None:
+            self._prove(self.proof)
         self.wanted = self._wanted() if self.mode.may_be_live else (0, 0)
-        for bridge, voltage, measured in zip(self.bridges, self.wanted, self.measured_v, strict=True):
-            bridge.step(voltage, self.settings["SLEW"], measured, self.settings["DEADTIME"])
+        self._move()
+
+    def _move(self) -> None:
+        slew_v, dead_time_ms, least_v = self.settings["SLEW"], self.settings["DEADTIME"], LEAST_FALL_V
+        wanted: tuple[float, float] = self.wanted
+        if self.proof is not None:
+            slew_v, dead_time_ms, least_v = PULSE_SLEW_V, max(dead_time_ms, LEAK_MS), LEAST_PULSE_V / 2
+            wanted = (min(self.proof.wanted_v, self.settings["MAXIMUM"]),) * 2
+        for channel, (bridge, measured) in enumerate(zip(self.bridges, self.measured_v, strict=True)):
+            bridge.step(wanted[channel], slew_v, measured, dead_time_ms)
+            self.evidence[channel].step(self._closed(channel), abs(measured), least_v)
+
+    def begin_proof(self) -> None:
+        """The test pulse, after which the board is ARMED, or in STANDBY where a fault was to be cleared."""
+        self.proof = GroundProof(min(PULSE_V, self.settings["MAXIMUM"]))
+        self.monitors = (MonitorWatch(), MonitorWatch())
+        self.mode = Mode.ACTIVE
+
+    def _prove(self, proof: GroundProof) -> None:
+        magnitudes = [abs(volts) for volts in self.measured_v]
+        verdict = proof.step(magnitudes, self._contacts_grounded, self.evidence)
+        if verdict is Verdict.NOT_CHARGED and Latch.UNPROVEN not in self.latches:
+            self.fail(FaultCode.MONITOR)
+        elif verdict in (Verdict.NOT_CHARGED, Verdict.NOT_GROUNDED):
+            self.fail(FaultCode.NOT_GROUNDED)
+        elif verdict is Verdict.PROVEN:
+            self.proof = None
+            self.mode = Mode.ARMED if self.fault is FaultCode.NONE else Mode.STANDBY
+            self.fault = FaultCode.NONE
+            self.latches.discard(Latch.UNPROVEN)
+        elif not proof.wanted_v:
+            for bridge in self.bridges:
+                bridge.release()
 
     def _watch_interlock(self) -> None:
         if not any(self.interlock_closed):
-            self.discrepancy = False
+            self.latches.discard(Latch.DISAGREED)
         self._discrepancy_ms = self._discrepancy_ms + 1 if len(set(self.interlock_closed)) > 1 else 0
         if self._discrepancy_ms > DISCREPANCY_MS:
-            self.discrepancy = True
+            self.latches.add(Latch.DISAGREED)
+            self.fail(FaultCode.DISCREPANCY)
 
     def _watch_ground(self) -> None:
         for channel, (bridge, volts) in enumerate(zip(self.bridges, self.measured_v, strict=True)):
-            charged = bridge.grounded and abs(volts) >= DISCHARGED_V
+            charged = bridge.grounded and (abs(volts) >= DISCHARGED_V or not self._closed(channel))
             self._charged_ms[channel] = self._charged_ms[channel] + 1 if charged else 0
             if self._charged_ms[channel] >= GROUND_PROOF_MS:
                 self.fail(FaultCode.NOT_GROUNDED)
 
     def _watch(self) -> None:
-        if not all(self.interlock_closed):
-            self.fail(FaultCode.INTERLOCK)
-        elif self._heartbeat_ms > self.settings["HEARTBEAT"]:
+        if self._heartbeat_ms > self.settings["HEARTBEAT"]:
             self.fail(FaultCode.HEARTBEAT)
         # A monitor at the end of its range cannot tell how much there is: that too is more than allowed.
         last = (MONITOR_STEPS - 1) / MONITOR_STEPS
@@ -156,6 +243,7 @@ class VirtualBoard:
             if self.bridges[channel].contact.sign
         ]
         over = {
+            FaultCode.INTERLOCK: not all(self.interlock_closed),
             FaultCode.OVERCURRENT: any(m.current_a > most_a for m in self.muscles),
             FaultCode.OVERVOLTAGE: any(v > most_v or monitor > last * MONITOR_V for v, monitor in sources),
         }
@@ -163,6 +251,10 @@ class VirtualBoard:
             self._over_ms[code] = self._over_ms[code] + 1 if exceeded else 0
             if self._over_ms[code] >= CONFIRMATION_MS:
                 self.fail(code)
+        for bridge, monitor, volts in zip(self.bridges, self.monitors, self.measured_v, strict=True):
+            sign = bridge.contact.sign
+            if sign and monitor.step(bridge.set_point_v, bridge.set_point_v, abs(volts), 1e-3):
+                self.fail(FaultCode.MONITOR)
 
     def _wanted(self) -> tuple[int, int]:
         if self.waveform_ms is None:
@@ -197,7 +289,7 @@ class VirtualBoard:
         report = protocol.Telemetry(
             time_us=self._time_ms * 1000,
             mode=Mode.ACTIVE if falling else self.mode,
-            grounded=self.grounded,
+            ground=self.ground,
             fault_code=self.fault,
             voltage=self.wanted if self.mode.may_be_live else (0, 0),
             measured=(measured[0], measured[1]),
@@ -210,15 +302,17 @@ class VirtualBoard:
     def _send(self, text: str) -> None:
         self.transmitted += protocol.encode(text)
 
-    def ground(self, mode: Mode) -> None:
+    def release(self, mode: Mode) -> None:
         """Converters off, contacts on their way to ground."""
-        self.mode, self.voltage, self.waveform_ms = mode, (0, 0), None
+        self.mode, self.voltage, self.waveform_ms, self.proof = mode, (0, 0), None, None
         for bridge in self.bridges:
             bridge.release()
 
     def fail(self, code: FaultCode) -> None:
         """Ground and latch the first fault."""
-        self.ground(Mode.FAULT)
+        self.release(Mode.FAULT)
+        if code is FaultCode.NOT_GROUNDED:
+            self.latches.add(Latch.UNPROVEN)
         if self.fault is FaultCode.NONE:
             self.fault = code
             self._send(f"!FAULT {int(code)} {code.name}")

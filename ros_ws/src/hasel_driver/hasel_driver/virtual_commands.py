@@ -8,6 +8,8 @@ from hasel_driver import protocol
 from hasel_driver.calibration import CALIBRATION_RANGES, Calibration
 from hasel_driver.errors import LimitError
 from hasel_driver.faults import FaultCode
+from hasel_driver.latch import Latch
+from hasel_driver.limits import LEAST_PULSE_V
 from hasel_driver.mode import Mode
 from hasel_driver.waveform import Waveform
 
@@ -21,6 +23,7 @@ SETTINGS: dict[str, tuple[int, int, int]] = {
     "TRIP": (1, 980, 450),
     "HEARTBEAT": (100, 2_000, 500),
     "DEADTIME": (2, 50, 5),
+    "CONTACTS": (0, 1, 0),
     "TELEMETRY": (10, 1_000, 10),
 }
 
@@ -80,7 +83,7 @@ def _value(board: "VirtualBoard", quantity: str) -> str:
 
 def _set(board: "VirtualBoard", quantity: str, arguments: tuple[str, ...]) -> None:
     if quantity == "VOLTAGE":
-        _require(board.mode.may_be_live)
+        _require(board.mode.may_be_live and board.proof is None)
         most = board.settings["MAXIMUM"]
         upper, lower = _integers(arguments, 2)
         board.set_voltage((_clip(upper, -most, most), _clip(lower, -most, most)))
@@ -99,11 +102,12 @@ def _set_calibration(board: "VirtualBoard", arguments: tuple[str, ...]) -> None:
     if len(arguments) != 5 or arguments[0] not in CHANNELS:
         raise RefusalError("SYNTAX")
     values = _integers(arguments[1:], 4)
-    _require(board.mode is Mode.STANDBY)
+    _require(not board.mode.may_be_live)
     clipped = [
         _clip(value, *bounds) for value, bounds in zip(values, CALIBRATION_RANGES.values(), strict=True)
     ]
     board.calibrations[CHANNELS.index(arguments[0])] = Calibration(*clipped)
+    board.calibrations_damaged = False
 
 
 def _set_setting(board: "VirtualBoard", quantity: str, arguments: tuple[str, ...]) -> None:
@@ -148,31 +152,43 @@ def _require(allowed: bool) -> None:
 def _require_safe(board: "VirtualBoard") -> None:
     if not all(board.interlock_closed):
         raise RefusalError("INTERLOCK")
-    if board.discrepancy:
+    if Latch.DISAGREED in board.latches:
         raise RefusalError("DISCREPANCY")
+    if board.calibrations_damaged:
+        raise RefusalError("EEPROM")
     if not board.grounded:
         raise RefusalError("UNPROVEN")
+
+
+def _require_pulse(board: "VirtualBoard") -> None:
+    if board.settings["MAXIMUM"] < LEAST_PULSE_V:
+        raise RefusalError("MAXIMUM")
 
 
 def _arm(board: "VirtualBoard") -> None:
     _require(board.mode is Mode.STANDBY)
     _require_safe(board)
-    board.mode = Mode.ARMED
+    _require_pulse(board)
+    board.begin_proof()
 
 
 def _ground(board: "VirtualBoard") -> None:
-    _require(board.mode.may_be_live)
-    board.ground(Mode.ARMED)
+    _require(board.mode.may_be_live and board.proof is None)
+    board.release(Mode.ARMED)
 
 
 def _disarm(board: "VirtualBoard") -> None:
-    board.ground(Mode.STANDBY if board.fault is FaultCode.NONE else Mode.FAULT)
+    board.release(Mode.STANDBY if board.fault is FaultCode.NONE else Mode.FAULT)
 
 
 def _clear(board: "VirtualBoard") -> None:
     _require(board.mode is Mode.FAULT)
     _require_safe(board)
-    board.mode, board.fault = Mode.STANDBY, FaultCode.NONE
+    if Latch.UNPROVEN in board.latches:
+        _require_pulse(board)
+        board.begin_proof()
+    else:
+        board.mode, board.fault = Mode.STANDBY, FaultCode.NONE
 
 
 def _start(board: "VirtualBoard") -> None:

@@ -10,11 +10,13 @@ import os
 import random
 import re
 import select
+import signal
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
 
+from hasel_driver.errors import PortError
 from hasel_driver.pseudo_terminal import PseudoTerminal
 from hasel_driver.virtual_board import Hardware, VirtualBoard
 from hasel_driver.virtual_muscle import Contact, VirtualMuscle
@@ -38,6 +40,13 @@ INPUTS = {
     "unground": "keep the upper muscle's ground contact from closing",
     "tickless": "switch the board's timer interrupt off, its line goes on",
     "mute_reset": "reset the board, and lose its banner",
+    "blind": "take the lead off the upper muscle's voltage divider",
+    "third": "its monitor says a third of what there is",
+    "stick": "its monitor says for good what it says now",
+    "invert": "its monitor has the wrong sign",
+    "unconverted": "the board converts its analogue inputs no more",
+    "leak": "the upper muscle leaks by 100 MΩ",
+    "damage": "change a byte of the calibration in the EEPROM; a reset finds it",
     "miscalibrate": "the upper converter gives 3 % less than asked, its monitor says 4 % more than there is",
     "unplug": "pull the cable",
     "replug": "put it back, under a new path (printed, and linked)",
@@ -164,6 +173,27 @@ class VirtualSupply:
         self.board.hardware.set_point_gain[0] = 0.97
         self.board.hardware.monitor_gain[0] = 1.04
 
+    def _inject_blind(self) -> None:
+        self.board.hardware.monitor_gain[0] = 0.0
+
+    def _inject_third(self) -> None:
+        self.board.hardware.monitor_gain[0] = 1 / 3
+
+    def _inject_stick(self) -> None:
+        self.board.hardware.stuck_v = abs(self.board.muscles[0].voltage_v)
+
+    def _inject_invert(self) -> None:
+        self.board.hardware.inverted = True
+
+    def _inject_unconverted(self) -> None:
+        self.board.hardware.unconverted = True
+
+    def _inject_leak(self) -> None:
+        self.board.muscles[0].short_ohm = 1e8
+
+    def _inject_damage(self) -> None:
+        self.board.calibrations_damaged = True
+
     def _inject_unplug(self) -> None:
         self.port.unplug()
 
@@ -199,7 +229,11 @@ def main() -> None:
     own = itertools.takewhile(lambda word: word != "--ros-args", sys.argv[1:])  # launch files add some
     arguments = parser.parse_args(list(own))
     upper, lower = (VirtualMuscle(capacitance_f=arguments.capacitance_nf * 1e-9) for _ in range(2))
-    supply = VirtualSupply(VirtualBoard((upper, lower)), PseudoTerminal(arguments.link), _tell)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        supply = VirtualSupply(VirtualBoard((upper, lower)), PseudoTerminal(arguments.link), _tell)
+    except PortError as error:
+        sys.exit(str(error))
     commands = b""
     listening = True
     try:

@@ -16,6 +16,7 @@ from hasel_driver.errors import LimitError
 from hasel_driver.limits import HARDWARE_MAXIMUM_V, Voltages
 
 LONGEST_S = 3600.0
+SHORTEST_ROW_S = 0.0099
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,12 @@ def read_waveform(path: Path) -> FileWaveform:
     if len(time_s) < 2 or not 0.0 < time_s[-1] - time_s[0] <= LONGEST_S:
         raise LimitError(
             f"{path} lasts from its first row to its last: more than 0 and at most {LONGEST_S:g} s."
+        )
+    closest_s = float(np.diff(time_s).min())
+    if closest_s < SHORTEST_ROW_S:
+        raise LimitError(
+            f"{path} has rows {closest_s * 1e3:.3g} ms apart, and the driver sends one in 10 ms:"
+            " at least that was expected."
         )
     if not np.isfinite(voltages_v).all() or np.abs(voltages_v).max() > HARDWARE_MAXIMUM_V:
         raise LimitError(f"{path} holds a voltage that is no number, or above {HARDWARE_MAXIMUM_V:g} V.")

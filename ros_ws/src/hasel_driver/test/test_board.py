@@ -6,6 +6,7 @@ import time
 
 import pytest
 from hasel_driver import protocol
+from hasel_driver.ground import Ground
 from hasel_driver.mode import Mode
 from hasel_driver.virtual_commands import SETTINGS
 from hasel_driver.waveform import MUSCLES, POLARITIES, SHAPES, Waveform
@@ -26,11 +27,11 @@ WORDS = [
 ]
 
 
-def test_boots_grounded_and_says_so(board):
-    """A reset ends in STANDBY, grounded, with a banner that names firmware and protocol."""
+def test_boots_commanded_to_ground_and_says_so(board):
+    """A reset ends in STANDBY, commanded to ground but not proven, with a banner that names firmware and protocol."""
     assert board.events[0].words[:5] == ("BOOT", *protocol.IDENTITY)
     report = board.report()
-    assert (report.mode, report.grounded, report.fault_code) == (Mode.STANDBY, True, 0)
+    assert (report.mode, report.ground, report.fault_code) == (Mode.STANDBY, Ground.COMMANDED, 0)
     assert board.ask("GET", "IDENTITY") == (True, "IDENTITY " + " ".join(protocol.IDENTITY))
 
 
@@ -39,7 +40,12 @@ def test_settings_answer_with_the_value_applied(board, name):
     """SET clips to the documented range, GET repeats the value; the heartbeat can be neither off nor above 2 s."""
     least, most, initial = SETTINGS[name]
     assert board.ask("GET", name) == (True, f"{name} {6000 if name == 'MAXIMUM' else initial}")
-    for asked, applied in ((least - 1, least), (most + 1, most), (least + 3, least + 3), (-99999, least)):
+    for asked, applied in (
+        (least - 1, least),
+        (most + 1, most),
+        (min(least + 3, most),) * 2,
+        (-99999, least),
+    ):
         assert board.ask("SET", name, asked) == (True, f"{name} {applied}")
         assert board.ask("GET", name) == (True, f"{name} {applied}")
 
@@ -70,7 +76,7 @@ def test_refuses_what_it_cannot_do(board, words, reason):
 def test_voltage_is_clipped_to_the_maximum(board, rig):
     """A voltage above MAXIMUM is applied, answered and measured as MAXIMUM, with its sign."""
     board.ask("SET", "MAXIMUM", 2000)
-    assert board.ask("ARM") == (True, "ARM")
+    board.arm()
     assert board.ask("SET", "VOLTAGE", 9000, -9000) == (True, "VOLTAGE 2000 -2000")
     report = board.listen(0.3)[-1]
     assert report.voltage == (2000, -2000)
@@ -81,7 +87,7 @@ def test_voltage_is_clipped_to_the_maximum(board, rig):
 def test_silence_grounds_within_the_heartbeat_timeout(board, rig):
     """Without commands the output is grounded after HEARTBEAT, and the fault stays until CLEAR."""
     board.ask("SET", "HEARTBEAT", 200)
-    board.ask("ARM")
+    board.arm()
     board.ask("SET", "VOLTAGE", 3000, 3000)
     silent_s = time.monotonic()
     rig.await_live(True)
@@ -94,34 +100,37 @@ def test_silence_grounds_within_the_heartbeat_timeout(board, rig):
 
 @pytest.mark.parametrize("command", ["STOP", "DISARM"])
 def test_stop_and_disarm_ground(board, rig, command):
-    """Both ground at once; after STOP only CLEAR leads on, and not to ARMED."""
-    board.ask("ARM")
+    """Both ground at once, proven by the fall; after STOP only CLEAR leads on, and not to ARMED."""
+    board.arm()
     board.ask("SET", "VOLTAGE", 5000, 0)
-    rig.await_live(True)
+    board.listen(0.1)
     asked_s = time.monotonic()
     board.ask(command)
     assert rig.await_live(False) - asked_s < 0.1
     report = board.report()
     assert report.mode is (Mode.FAULT if command == "STOP" else Mode.STANDBY)
-    assert report.grounded
+    assert report.ground is Ground.PROVEN
 
 
 def test_a_skipped_sequence_number_is_a_fault_while_armed(board, rig):
     """A lost line, or a second master, shows in the sequence."""
-    board.ask("ARM", sequence=7)
-    board.ask("SET", "VOLTAGE", 3000, 3000, sequence=8)
+    board.arm()
+    board.ask("SET", "VOLTAGE", 3000, 3000)
     rig.await_live(True)
-    assert board.ask("SET", "VOLTAGE", 4000, 4000, sequence=10) == (False, "SEQUENCE SET VOLTAGE 4000 4000")
+    assert board.ask("SET", "VOLTAGE", 4000, 4000, sequence=board.after(2)) == (
+        False,
+        "SEQUENCE SET VOLTAGE 4000 4000",
+    )
     rig.await_live(False)
     assert board.report().fault_code == 5
 
 
 def test_a_garbled_command_is_a_fault_while_armed(board, rig):
     """One flipped bit is found by the checksum, is not obeyed, and grounds."""
-    board.ask("ARM")
+    board.arm()
     board.ask("SET", "VOLTAGE", 3000, 3000)
     rig.await_live(True)
-    line = bytearray(protocol.encode_command(2, "SET", "VOLTAGE", 3000, 3000))
+    line = bytearray(protocol.encode_command(board.after(1), "SET", "VOLTAGE", 3000, 3000))
     line[17] ^= 1
     board.send(bytes(line))
     assert board.reply() == (False, "CHECKSUM")
@@ -132,7 +141,7 @@ def test_a_garbled_command_is_a_fault_while_armed(board, rig):
 @pytest.mark.parametrize("text", [">002", "GET VOLTAGE", ">002" + 11 * " A", ">256 PING", ">002  "])
 def test_a_line_that_is_no_command_is_a_fault_while_armed(board, rig, text):
     """A right checksum does not make a command: whoever sends this is not the driver."""
-    board.ask("ARM")
+    board.arm()
     board.ask("SET", "VOLTAGE", 3000, 3000)
     rig.await_live(True)
     board.send(protocol.encode(text))
@@ -159,7 +168,7 @@ def test_random_bytes_neither_arm_nor_hang_the_board(board, rig):
 def test_slew_is_limited(board):
     """The measured voltage rises no faster than SLEW."""
     board.ask("SET", "SLEW", 20)
-    board.ask("ARM")
+    board.arm()
     board.ask("SET", "VOLTAGE", 5000, 0)
     reports = board.listen(0.4)
     rising = [(r.time_us / 1000, r.measured[0]) for r in reports if 200 < r.measured[0] < 4800]
@@ -172,7 +181,7 @@ def test_reversal_breaks_before_it_makes(firmware_rig, converse, dead_time_ms):
     """Over many reversals the firmware's pins never close two contacts, and keep the dead time between them."""
     board = converse(firmware_rig)
     board.ask("SET", "DEADTIME", dead_time_ms)
-    board.ask("ARM")
+    board.arm()
     for index in range(40):
         sign = 1 if index % 2 else -1
         board.ask("SET", "VOLTAGE", sign * 1500, -sign * 1000)
@@ -193,7 +202,7 @@ def test_waveform_on_the_board_is_the_documented_one(board, shape, polarity, mus
     waveform = Waveform(shape, 3000, 4.0, 2, 0.8, polarity, muscles)
     words = f"WAVEFORM {shape} 3000 4000 2 800 {polarity} {muscles}"
     assert board.ask("SET", *words.split()) == (True, words)
-    board.ask("ARM")
+    board.arm()
     before_us = board.report().time_us
     board.ask("START")
     reports = board.listen(waveform.duration_s + 0.3)

@@ -4,6 +4,7 @@ import time
 
 import pytest
 from hasel_driver import protocol
+from hasel_driver.ground import Ground
 from hasel_driver.mode import Mode
 
 NOT_GROUNDED, OVERVOLTAGE, INTERLOCK = 8, 7, 4
@@ -11,7 +12,7 @@ NOT_GROUNDED, OVERVOLTAGE, INTERLOCK = 8, 7, 4
 
 def drive(board, *voltage, settle_s=0.1) -> None:
     """Arm, set, and let it rise."""
-    assert board.ask("ARM") == (True, "ARM")
+    board.arm()
     board.ask("SET", "VOLTAGE", *voltage)
     board.listen(settle_s)
 
@@ -30,7 +31,7 @@ def test_ground_is_contact_and_measured_voltage(board, rig, how, command):
     board.ask(command)
     reports = board.listen(0.3)
     assert rig.live
-    assert [report for report in reports[5:] if report.grounded] == []
+    assert [report for report in reports[5:] if report.ground] == []
     assert max(abs(volts) for volts in reports[-1].measured) > 2000
     assert reports[-1].mode is Mode.FAULT
     assert board.ask("CLEAR") == (False, "UNPROVEN CLEAR")
@@ -40,7 +41,9 @@ def test_ground_is_contact_and_measured_voltage(board, rig, how, command):
     rig.await_live(False)
     board.listen(0.1)
     assert board.ask("CLEAR") == (True, "CLEAR")
-    assert board.report().grounded
+    board.await_proof()
+    report = board.report()
+    assert (report.mode, report.ground) == (Mode.STANDBY, Ground.PROVEN)
 
 
 def test_a_charged_output_forbids_arming(board, rig):
@@ -62,7 +65,7 @@ def test_a_dead_tick_is_noticed_by_the_watchdog(board, rig):
     dead_s = time.monotonic()
     rig.say("tickless")
     for index in range(30):
-        board.send(protocol.encode_command(index + 2, "PING"))
+        board.send(protocol.encode_command(board.after(index + 1), "PING"))
         time.sleep(0.02)
         if not rig.live:
             break
@@ -71,11 +74,10 @@ def test_a_dead_tick_is_noticed_by_the_watchdog(board, rig):
 
 
 def test_boots_with_a_maximum_of_nothing(rig, converse):
-    """A board that nobody has set up gives no voltage, so an unnoticed reset is harmless."""
+    """A board that nobody has set up cannot be armed, so an unnoticed reset is harmless."""
     board = converse(rig, maximum_v=None)
     assert board.ask("GET", "MAXIMUM") == (True, "MAXIMUM 0")
-    board.ask("ARM")
-    assert board.ask("SET", "VOLTAGE", 5000, -5000) == (True, "VOLTAGE 0 0")
+    assert board.ask("ARM") == (False, "MAXIMUM ARM")
 
 
 def test_a_waveform_set_before_is_clipped_to_the_maximum(board, rig):
@@ -84,7 +86,7 @@ def test_a_waveform_set_before_is_clipped_to_the_maximum(board, rig):
     ask(board, "SET WAVEFORM box 9800 500 3 1000 positive upper")
     board.ask("SET", "MAXIMUM", 2000)
     assert board.ask("GET", "WAVEFORM") == (True, "WAVEFORM box 2000 500 3 1000 positive upper")
-    board.ask("ARM")
+    board.arm()
     board.ask("START")
     reports = board.listen(0.3)
     assert max(report.voltage[0] for report in reports) == 2000
@@ -99,7 +101,7 @@ def test_the_maximum_may_be_lowered_while_live(board, rig, drive_by):
         drive(board, 5000, -1000)
     else:
         ask(board, "SET WAVEFORM box 5000 500 9 1000 positive upper")
-        board.ask("ARM")
+        board.arm()
         board.ask("START")
         board.listen(0.1)
     assert board.ask("SET", "MAXIMUM", 7000) == (False, "STATE SET MAXIMUM 7000")
@@ -130,7 +132,7 @@ def test_ground_at_once_stays_armed(board, rig):
     assert board.ask("GROUND") == (True, "GROUND")
     assert rig.await_live(False) - asked_s < 0.1
     report = board.listen(0.05)[-1]
-    assert (report.mode, report.grounded, report.voltage) == (Mode.ARMED, True, (0, 0))
+    assert (report.mode, report.ground, report.voltage) == (Mode.ARMED, Ground.PROVEN, (0, 0))
 
 
 @pytest.mark.parametrize("channel", ["interlock_a", "interlock_b"])

@@ -1,10 +1,13 @@
 """Calibration: the corrections, and the procedure on a supply that needs them."""
 
+import time
+from contextlib import contextmanager
+
 import pytest
 from hasel_driver import calibrate
 from hasel_driver.calibration import Calibration
 from hasel_driver.calibration_table import CalibrationTable, Point
-from hasel_driver.errors import LimitError
+from hasel_driver.errors import LimitError, RefusedError
 
 
 def table(present: Calibration, voltages=(1000.0, 3000.0, 5000.0)) -> CalibrationTable:
@@ -43,7 +46,9 @@ def test_the_procedure_makes_board_and_probe_agree(rig, monkeypatch):
     voltages_v = (1000.0, 3000.0, 5000.0)
 
     def run() -> CalibrationTable:
-        return calibrate.measure(rig.port, "upper", voltages_v, lambda _: rig.ask("output")[0])
+        return calibrate.measure(
+            rig.port, "upper", voltages_v, lambda _: rig.ask("output")[0], lambda _: True
+        )
 
     before = run()
     assert abs(before.points[-1].probe_v - 5000.0) > 100
@@ -62,3 +67,67 @@ def test_an_empty_answer_stops(rig, monkeypatch, capsys):
     assert calibrate.main(["--port", rig.port, "--channel", "lower"]) == 1
     assert "nothing was stored" in capsys.readouterr().err
     rig.await_live(False)
+
+
+def test_nothing_is_put_on_without_leave_nor_above_the_maximum(rig):
+    """Each voltage is asked for first; one above the maximum is refused before anything is armed."""
+    with pytest.raises(RefusedError, match="at most 6000 V"):
+        calibrate.measure(rig.port, "upper", (1000.0, 9800.0), lambda _: 0.0, lambda _: True)
+    with pytest.raises(RefusedError, match="Stopped"):
+        calibrate.measure(rig.port, "upper", (1000.0, 2000.0, 3000.0), lambda _: 0.0, lambda _: False)
+    assert max(rig.ask("output")[4:]) < 550  # the proof of ground
+    rig.await_live(False)
+
+
+def test_without_an_answer_the_output_is_grounded(rig, monkeypatch):
+    """Whoever asked has gone: 0 V, and a late answer stores nothing."""
+    monkeypatch.setattr(calibrate, "SETTLING_S", 0.3)
+    monkeypatch.setattr(calibrate, "PATIENCE_S", 0.3)
+    dead_s: list[float] = []
+
+    def probe(_: float) -> float:
+        begun_s = time.monotonic()
+        dead_s.append(rig.await_live(False) - begun_s)
+        return 3000.0
+
+    with pytest.raises(RefusedError, match="Nobody answered"):
+        calibrate.measure(rig.port, "upper", (3000.0, 4000.0, 5000.0), probe, lambda _: True)
+    assert dead_s[0] < 0.8
+
+
+def test_a_stop_is_heard_while_the_probe_is_read(rig, monkeypatch):
+    """From ROS or elsewhere: grounded at once, and nothing is stored."""
+    monkeypatch.setattr(calibrate, "SETTLING_S", 0.3)
+    stops = []
+
+    @contextmanager
+    def listen(stop):
+        stops.append(stop)
+        yield
+
+    def probe(_: float) -> float:
+        stopped_s = time.monotonic()
+        stops[0]("by topic, from /panel")
+        assert rig.await_live(False) - stopped_s < 0.5
+        return 3000.0
+
+    with pytest.raises(RefusedError, match="emergency stop"):
+        calibrate.measure(rig.port, "upper", (3000.0, 4000.0, 5000.0), probe, lambda _: True, listen=listen)
+
+
+def test_the_stops_of_ros_are_heard():
+    """By topic and by service; the service's answer proves nothing, and says so."""
+    pytest.importorskip("rclpy", reason="ROS 2 is not there")
+    from hasel_driver.testing.ros_client import RosClient
+    from hasel_driver.tool_stops import stops_of_ros
+
+    heard: list[str] = []
+    client = RosClient()
+    try:
+        with stops_of_ros(heard.append):
+            answer = client.trigger("emergency_stop")
+            assert (answer.success, heard) == (False, ["by service"])
+            client.emergency_stop_topic(True)
+            client.wait(lambda: heard[1:] == ["by topic, from /user"])
+    finally:
+        client.close()

@@ -3,6 +3,8 @@
 import math
 import random
 import signal
+import subprocess
+import sys
 import time
 
 import pytest
@@ -83,8 +85,8 @@ def test_ended_during_an_experiment(start_driver, virtual_rig, ros, tmp_path, gr
 
     client = ActionClient(ros.node, RunExperiment, "/hasel/run_experiment")
     for index in range(rounds):
+        driver = start_driver(virtual_rig.port, recording_directory=tmp_path)
         path = tmp_path / f"{index}.mcap"
-        driver = start_driver(virtual_rig.port)
         driver.arm()
         assert client.wait_for_server(10.0)
         client.send_goal_async(
@@ -163,7 +165,7 @@ def test_the_last_state_is_true(start_driver, virtual_rig, ros):
     driver = start_driver(virtual_rig.port)
     driver.arm()
     with ros.commanding():
-        ros.wait(lambda: virtual_rig.live)
+        ros.wait(lambda: bool(ros.states) and ros.state.measured_voltage[1] < -1900)
         driver.process.terminate()
         assert driver.process.wait(5.0) == 0
     time.sleep(0.2)
@@ -171,23 +173,26 @@ def test_the_last_state_is_true(start_driver, virtual_rig, ros):
 
 
 def test_simulated_time_without_a_clock_watches_all_the_same(start_driver, virtual_rig, ros):
-    """With use_sim_time and nobody who publishes /clock, a second master is a fault as ever."""
+    """With use_sim_time and nobody who publishes /clock, another driver is a fault as ever."""
     driver = start_driver(virtual_rig.port, use_sim_time=True)
     driver.arm()
-    from hasel_driver.testing.ros_client import RosClient
+    from hasel_driver.testing.ros_client import another_node
+    from hasel_interfaces.msg import SupplyState
 
     with ros.commanding():
         ros.wait(lambda: virtual_rig.live)
-        rival = RosClient()
-        try:
-            with rival.commanding((1000.0, 1000.0)):
-                ros.wait(lambda: ros.state.fault_code == FaultCode.TWO_MASTERS, 10.0)
-        finally:
-            rival.close()
+        with another_node("stranger") as node:
+            node.create_publisher(SupplyState, "/hasel/state", 10)
+            ros.wait(lambda: ros.state.fault_code == FaultCode.TWO_DRIVERS, 10.0)
 
 
 STARTS = {
     "did you mean 'maximum_voltage'": {"maximum_voltge": 200.0},
+    "There is no parameter 'voltage_limit'": {"voltage_limit": 200},
+    "maximum_voltage is nan V, 0 to 9800": {"maximum_voltage": ".nan"},
+    "realtime_priority is 99": {"realtime_priority": 99},
+    "use_sim_time": {"use_sim_time": "maybe"},
+    "s in all, less than 0.5 s": {"heartbeat_timeout": 0.45, "dead_time": 0.05, "maximum_voltage": 9800},
     "Did you mean hasel?": {"backend": "Hasel"},
     "0 to 9800 was expected": {"maximum_voltage": 20000},
     "maximum_voltage is 'high', a number was expected": {"maximum_voltage": "high"},
@@ -212,18 +217,20 @@ def test_a_whole_number_is_a_voltage(start_driver, virtual_rig, ros):
 
 
 def test_an_open_interlock_at_the_start_is_told_and_closed_later(start_driver, virtual_rig, ros):
-    """The state tells which channel is open; once both are closed the driver arms."""
+    """The state tells which channel is open; once both were open together the fault is cleared, and the driver arms."""
     virtual_rig.say("interlock_b")
     driver = start_driver(virtual_rig.port)
-    ros.await_mode(STANDBY, 15.0)
+    assert ros.await_mode(FAULT, 15.0).fault_code == FaultCode.DISCREPANCY
     assert ros.state.interlock.tolist() == [2, 1]
-    time.sleep(0.6)
-    assert "interlock is open" in ros.trigger("arm").message
+    assert "interlock is open" in ros.trigger("clear_fault").message
     virtual_rig.say("recover")
-    assert "opened without the other" in ros.trigger("arm").message
+    time.sleep(0.1)
+    assert "disagreed" in ros.trigger("clear_fault").message
     virtual_rig.say("interlock")
-    time.sleep(0.05)
+    time.sleep(0.1)
     virtual_rig.say("recover")
+    time.sleep(0.1)
+    assert ros.trigger("clear_fault").success
     driver.arm()
 
 
@@ -248,3 +255,67 @@ def test_topic_is_obeyed_by_a_driver_that_starts_later(start_driver, virtual_rig
         assert not ros.trigger("clear_fault").success
         driver.close()
     assert virtual_rig.changes == []
+
+
+PARENT = """
+import subprocess, sys, time
+subprocess.Popen([sys.executable, "-m", "hasel_driver.driver_node", "--ros-args", *sys.argv[1:]])
+time.sleep(1000)
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+def test_the_driver_ends_grounded_with_its_parent(virtual_rig, ros, tmp_path, grounded_in_time, number):
+    """As when a launch is killed, which leaves its nodes behind: grounded, and nobody holds the port any more."""
+    words = [f"port:={virtual_rig.port}", "discovery_time:=0.2", f"state_folder:={tmp_path}"]
+    words.append(f"history_file:={tmp_path}/history.jsonl")
+    ros.states.clear()
+    given = [each for word in words for each in ("-p", word)]
+    parent = subprocess.Popen([sys.executable, "-c", PARENT, *given])
+    try:
+        ros.await_mode(STANDBY, 20.0)
+        ros.wait(lambda: ros.trigger("arm").success, 10.0)
+        with ros.commanding():
+            ros.wait(lambda: virtual_rig.live)
+            ended_s = time.monotonic()
+            parent.send_signal(number)
+            grounded_in_time(virtual_rig, ended_s)
+    finally:
+        parent.kill()
+        parent.wait()
+    ros.states.clear()
+    time.sleep(1.5)
+    assert ros.states == []
+
+
+def test_a_stop_by_service_outlives_a_restart(start_driver, virtual_rig, ros, tmp_path):
+    """The next node on the port is in FAULT until somebody clears it."""
+    first = start_driver(virtual_rig.port, state_folder=tmp_path)
+    ros.await_mode(STANDBY)
+    ros.trigger("emergency_stop")
+    first.close()
+    start_driver(virtual_rig.port, state_folder=tmp_path)
+    assert ros.await_mode(FAULT).fault_code == FaultCode.EMERGENCY_STOP
+    assert not ros.trigger("arm").success
+    ros.wait(lambda: ros.trigger("clear_fault").success)
+
+
+def test_a_list_of_no_topics_is_none(start_driver, virtual_rig, ros):
+    """`-p recorded_topics:=[]` records the state alone, and does not have the node reset its board for ever."""
+    driver = start_driver(virtual_rig.port, recorded_topics="[]")
+    ros.await_mode(STANDBY)
+    driver.arm()
+
+
+def test_a_parameter_file_that_is_not_there_is_one_sentence():
+    """Before anything is opened."""
+    command = [
+        sys.executable,
+        "-m",
+        "hasel_driver.driver_node",
+        "--ros-args",
+        "--params-file",
+        "/no/such.yaml",
+    ]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, "Traceback" in done.stderr, "/no/such.yaml" in done.stderr) == (1, False, True)

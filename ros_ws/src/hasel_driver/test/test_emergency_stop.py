@@ -142,6 +142,9 @@ def test_a_charged_output_is_no_success(driver, shared_rig, ros, service):
     assert (state.grounded, "treat it as live" in state.fault_text) == (False, True)
     assert not ros.trigger("arm").success
     shared_rig.say("recover")
+    ros.wait(lambda: ros.state.ground != ros.state.GROUND_NOT)
+    assert ros.state.ground == ros.state.GROUND_COMMANDED
+    assert ros.trigger("clear_fault").success
     ros.wait(lambda: ros.state.grounded)
 
 
@@ -156,4 +159,5 @@ def test_deactivating_a_charged_output_is_a_fault(driver, shared_rig, ros):
     ros.await_mode(FAULT)
     shared_rig.say("recover")
     ros.transition(Transition.TRANSITION_ACTIVATE)
+    ros.wait(lambda: ros.trigger("clear_fault").success)
     ros.wait(lambda: ros.state.grounded)

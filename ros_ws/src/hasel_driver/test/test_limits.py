@@ -4,7 +4,7 @@ import math
 
 import pytest
 from hasel_driver.errors import LimitError
-from hasel_driver.limits import clip
+from hasel_driver.limits import Limits, clip
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -33,3 +33,10 @@ def test_no_number_is_an_error(bad):
     """NaN and infinity are refused instead of guessed at."""
     with pytest.raises(LimitError, match="not finite"):
         clip((0.0, bad), 1000.0)
+
+
+def test_the_sum_of_silence_dead_time_and_discharge_is_limited():
+    """Each within its range, 0.45 s, 0.05 s and 4.5 nF are more than half a second to ground; the defaults are not."""
+    Limits(load_f=4.5e-9).check_sum()
+    with pytest.raises(LimitError, match=r"0\.54. s in all"):
+        Limits(maximum_voltage_v=9800.0, heartbeat_s=0.45, dead_time_s=0.05, load_f=4.5e-9).check_sum()

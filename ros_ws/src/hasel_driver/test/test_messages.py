@@ -1,5 +1,6 @@
 import numpy as np
 from hasel_driver.faults import FaultCode
+from hasel_driver.ground import Ground
 from hasel_driver.messages import to_supply_state
 from hasel_driver.mode import Mode
 from hasel_driver.presets import PRESETS
@@ -19,6 +20,7 @@ def test_constants_are_those_of_the_driver():
     """Whoever hears a fault or a mode finds its name in the message."""
     assert constants(SupplyState, "FAULT_") == {code.name: code.value for code in FaultCode}
     assert {mode.name: getattr(SupplyState, mode.name) for mode in Mode} == {m.name: m.value for m in Mode}
+    assert constants(SupplyState, "GROUND_") == {each.name: each.value for each in Ground}
 
 
 def test_words_of_an_experiment_are_those_that_it_takes():
@@ -29,7 +31,7 @@ def test_words_of_an_experiment_are_those_that_it_takes():
 
 def test_state_names_muscles_and_frame():
     """One voltage and one current for each muscle, in a named frame."""
-    status = Status(0.0, Mode.ARMED, None, True, (1.0, -2.0), (3.0, 4.0), (0.0, 0.0))
+    status = Status(0.0, Mode.ARMED, None, Ground.PROVEN, (1.0, -2.0), (3.0, 4.0), (0.0, 0.0))
     message = to_supply_state(status, frame_id="rig_1/supply")
     assert message.header.frame_id == "rig_1/supply"
     assert message.muscle == ["upper", "lower"]

@@ -7,7 +7,7 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
 
 from hasel_driver import middleware
-from hasel_driver.middleware import LOOPBACK, PROFILES, RANGE, avoid_shared_memory
+from hasel_driver.middleware import LOCALHOST_ONLY, LOOPBACK, PEERS, PROFILES, RANGE, prepare
 
 TRANSPORTS = "FASTDDS_BUILTIN_TRANSPORTS"
 STANDBY, LOOPBACK_ADDRESS = 0, "0100007F"
@@ -16,18 +16,23 @@ STANDBY, LOOPBACK_ADDRESS = 0, "0100007F"
 @pytest.mark.parametrize(
     ("before", "after"),
     [
-        ({}, {TRANSPORTS: "UDPv4"}),
+        ({}, {RANGE: "SYSTEM_DEFAULT", PROFILES: str(LOOPBACK)}),
+        ({RANGE: "localhost"}, {RANGE: "SYSTEM_DEFAULT", PROFILES: str(LOOPBACK)}),
+        ({LOCALHOST_ONLY: "1"}, {RANGE: "SYSTEM_DEFAULT", PROFILES: str(LOOPBACK)}),
+        ({LOCALHOST_ONLY: "1", RANGE: "SUBNET"}, {RANGE: "SYSTEM_DEFAULT", PROFILES: str(LOOPBACK)}),
+        ({LOCALHOST_ONLY: "0"}, {LOCALHOST_ONLY: "0", TRANSPORTS: "UDPv4"}),
+        ({PEERS: "10.0.0.2"}, {PEERS: "10.0.0.2", TRANSPORTS: "UDPv4"}),
         ({RANGE: "SUBNET"}, {RANGE: "SUBNET", TRANSPORTS: "UDPv4"}),
         ({RANGE: "LOCALHOST"}, {RANGE: "SYSTEM_DEFAULT", PROFILES: str(LOOPBACK)}),
-        ({TRANSPORTS: "LARGE_DATA"}, {TRANSPORTS: "LARGE_DATA"}),
+        ({RANGE: "SUBNET", TRANSPORTS: "LARGE_DATA"}, {RANGE: "SUBNET", TRANSPORTS: "LARGE_DATA"}),
         ({RANGE: "LOCALHOST", PROFILES: "mine.xml"}, {RANGE: "LOCALHOST", PROFILES: "mine.xml"}),
     ],
 )
 def test_leaves_what_the_user_has_set(monkeypatch, before, after):
-    """UDP only, within the same range; profiles and transports of the user's own stay."""
+    """UDP only, and this machine only, in every spelling; ranges, profiles and transports of the user's own stay."""
     monkeypatch.setattr(middleware, "get_rmw_implementation_identifier", lambda: "rmw_fastrtps_cpp")
     environment = dict(before)
-    avoid_shared_memory(environment)
+    prepare(environment)
     assert environment == after
 
 
@@ -35,7 +40,7 @@ def test_leaves_other_middleware_alone(monkeypatch):
     """The settings are Fast DDS's."""
     monkeypatch.setattr(middleware, "get_rmw_implementation_identifier", lambda: "rmw_cyclonedds_cpp")
     environment = {RANGE: "LOCALHOST"}
-    avoid_shared_memory(environment)
+    prepare(environment)
     assert environment == {RANGE: "LOCALHOST"}
 
 

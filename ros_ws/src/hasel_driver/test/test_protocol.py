@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from hasel_driver import protocol
 from hasel_driver.errors import ProtocolError
+from hasel_driver.ground import Ground
 from hasel_driver.line_buffer import LineBuffer
 from hasel_driver.mode import Mode
 from hypothesis import given
@@ -20,7 +21,7 @@ TELEMETRY = st.builds(
     protocol.Telemetry,
     time_us=st.integers(0, 2**32 - 1),
     mode=st.sampled_from(Mode),
-    grounded=st.booleans(),
+    ground=st.sampled_from(Ground),
     fault_code=st.integers(0, 255),
     voltage=st.tuples(VOLTS, VOLTS),
     measured=st.tuples(VOLTS, VOLTS),

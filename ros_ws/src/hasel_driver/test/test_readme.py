@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
+from hasel_driver.checks import CHECKS
 from hasel_driver.faults import EXPLANATIONS, FaultCode
 from hasel_driver.mode import Mode
 from hasel_driver.parameters import PARAMETERS
@@ -71,7 +72,7 @@ def test_every_setting_of_the_board_is_in_the_protocol():
 def test_every_executable():
     """Each console script is named."""
     scripts = re.findall(r'"(\w+) = hasel_driver', (PACKAGE / "setup.py").read_text())
-    assert len(scripts) == 7
+    assert len(scripts) == 8
     assert all(f"`{script}`" in README for script in scripts)
 
 
@@ -94,3 +95,10 @@ def test_every_interface_exists_with_its_type(ros, start_driver, heading):
     for row in table(README, heading):
         name, kind = row[0].strip("`"), row[1].strip("`")
         ros.wait(lambda name=name, kind=kind: has(name, kind), 10.0)
+
+
+def test_every_check_of_the_host():
+    """The safety page lists the rows of the table of checks, with their reasons."""
+    page = (PACKAGE / "docs" / "safety.md").read_text()
+    rows = table(page, "Checks")
+    assert [(row[0], row[-1]) for row in rows] == [(check.code.name, check.why) for check in CHECKS]

@@ -20,7 +20,18 @@ def test_what_exists_is_refused(tmp_path):
 
 
 @pytest.mark.parametrize("output", ["/", "", "~no-such-user/run"])
-def test_no_name_is_no_path(output):
+def test_no_name_is_no_path(tmp_path, output):
     """One sentence instead of an error of pathlib's."""
-    with pytest.raises(LimitError, match="the path of a file was expected"):
-        chosen_path(output)
+    with pytest.raises(LimitError, match="was expected"):
+        chosen_path(tmp_path, output)
+
+
+@pytest.mark.parametrize("output", ["/etc/run", "../run", "inside/../../run", "link/run"])
+def test_nothing_outside_the_folder_is_a_path(tmp_path, output):
+    """Whoever sends a goal over the network reaches the folder that was given at the start, and no other."""
+    folder = tmp_path / "recordings"
+    folder.mkdir()
+    (folder / "link").symlink_to(tmp_path)
+    with pytest.raises(LimitError, match="a file below"):
+        chosen_path(folder, output)
+    assert chosen_path(folder, "inside/run") == folder / "inside" / "run.mcap"

@@ -36,6 +36,7 @@ class Pair:
         end_s = time.monotonic() + duration_s
         while time.monotonic() < end_s:
             if voltage is not None:
+                self.supervisor.command((0.0, 0.0))  # with which every controller begins
                 self.supervisor.command(voltage)
             self.supervisor.service()
             time.sleep(0.002)

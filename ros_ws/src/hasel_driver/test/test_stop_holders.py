@@ -1,6 +1,7 @@
 """One flag for each publisher."""
 
-from hasel_driver.stop_holders import UNNAMED, StopHolders
+from hasel_driver.graph_names import UNNAMED
+from hasel_driver.stop_holders import StopHolders
 
 A, B = b"a", b"b"
 

@@ -1,10 +1,12 @@
 """The rules of arming, limits, timeouts and faults, on a supply that does what it is told, or does not."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from hasel_driver.errors import RefusedError
 from hasel_driver.faults import Fault, FaultCode, SupplyFaultError
+from hasel_driver.ground import Ground
 from hasel_driver.limits import Limits
 from hasel_driver.mode import Mode
 from hasel_driver.supervisor import Supervisor
@@ -35,10 +37,11 @@ class ObedientSupply(Supply):
         super().__init__(Limits(maximum_voltage_v=5000.0))
         self.mode, self.voltage_v, self.fault = Mode.STANDBY, ZERO, None
         self.deaf = self.silent = self.broken = self.ungrounded = False
-        self.measured_v = None
+        self.measured_v, self.unproven = None, False
+        self.reported: dict = {}
         self.heartbeats: list[bool] = []
 
-    def open(self) -> Connection:
+    def open(self, prove: bool = False) -> Connection:
         self.mode, self.voltage_v, self.fault = Mode.STANDBY, ZERO, None
         return Connection("obedient")
 
@@ -56,7 +59,8 @@ class ObedientSupply(Supply):
             return []
         grounded = self.voltage_v == ZERO and not self.ungrounded
         values = (self.voltage_v, self.measured_v or self.voltage_v, ZERO)
-        return [Reading(now_s, self.mode, grounded, self.fault, *values)]
+        ground = (Ground.COMMANDED if self.unproven else Ground.PROVEN) if grounded else Ground.NOT
+        return [replace(Reading(now_s, self.mode, ground, self.fault, *values), **self.reported)]
 
     def _become(self, mode: Mode, voltage_v=ZERO) -> None:
         if not self.deaf:
@@ -96,6 +100,7 @@ class Case:
         """And let it happen."""
         self.supervisor.arm()
         self.pass_time(0.02)
+        self.supervisor.command(ZERO)
 
 
 @pytest.fixture
@@ -243,7 +248,7 @@ def test_no_sequence_of_calls_leaves_voltage_where_it_must_not_be(actions):
     case, armed = Case(), False
     supervisor, supply = case.supervisor, case.supply
     calls = {
-        "arm": supervisor.arm,
+        "arm": case.arm,
         "disarm": supervisor.disarm,
         "command": lambda: supervisor.command((9000.0, -100.0)),
         "nan": lambda: supervisor.command((math.nan, 0.0)),
@@ -280,7 +285,7 @@ def test_a_ground_that_is_not_proven_is_a_fault(case):
     """STANDBY without proof is FAULT after 300 ms; until then arming is refused."""
     case.supply.ungrounded = True
     case.pass_time(0.02)
-    with pytest.raises(RefusedError, match="proven grounded"):
+    with pytest.raises(RefusedError, match="discharged output"):
         case.supervisor.arm()
     case.pass_time(0.5)
     assert case.supervisor.fault.code is FaultCode.GROUND_NOT_PROVEN
@@ -296,3 +301,122 @@ def test_a_measured_voltage_above_the_maximum_is_a_fault(case):
     case.supervisor.command((5000.0, 0.0))
     case.pass_time(0.15)
     assert case.supervisor.fault.code is FaultCode.ABOVE_MAXIMUM
+
+
+def test_live_output_begins_at_zero(case):
+    """A voltage that is commanded as the supply is armed waits for 0 V, and so does that of another commander."""
+    case.supervisor.arm()
+    case.pass_time(0.02)
+    case.supervisor.command((1000.0, 0.0))
+    assert case.supply.voltage_v == ZERO
+    case.supervisor.command(ZERO)
+    case.supervisor.command((1000.0, 0.0))
+    assert case.supply.voltage_v == (1000.0, 0.0)
+    case.supervisor.await_zero()
+    case.supervisor.command((2000.0, 0.0))
+    assert case.supply.voltage_v == (1000.0, 0.0)
+
+
+def test_what_nobody_uses_is_disarmed(case):
+    """Armed for a minute without a command or an experiment: STANDBY, and no fault; with commands it stays armed."""
+    case.arm()
+    for _ in range(7):
+        case.pass_time(10.0)
+        case.supervisor.command(ZERO)
+    assert case.supervisor.armed
+    case.pass_time(61.0)
+    assert (case.supervisor.armed, case.supervisor.fault) == (False, None)
+    assert case.supervisor.status().mode is Mode.STANDBY
+
+
+def test_a_gap_in_the_telemetry_is_borne_while_nothing_is_armed(case):
+    """Unknown, but no fault, for three seconds; then it is one."""
+    case.pass_time(0.5)
+    case.supply.silent = True
+    case.pass_time(2.5)
+    status = case.supervisor.status()
+    assert (status.mode, status.output, status.fault) == (Mode.STANDBY, "unknown", None)
+    with pytest.raises(RefusedError):
+        case.supervisor.begin_experiment()
+    case.pass_time(1.0)
+    assert case.supervisor.fault.code is FaultCode.NO_TELEMETRY
+
+
+BROKEN = {
+    "blind": (lambda asked: 0.0, FaultCode.MONITOR),
+    "a third": (lambda asked: asked / 3, FaultCode.MONITOR),
+    "wrong sign": (lambda asked: -asked, FaultCode.MONITOR),
+    "stuck as it rises": (lambda asked: 2600.0, FaultCode.MONITOR),
+}
+
+
+@pytest.mark.parametrize("how", BROKEN)
+def test_a_monitor_that_does_not_follow_is_a_fault(case, how):
+    """Within half a second of what it could be seen in, though the board says nothing."""
+    read, code = BROKEN[how]
+    case.arm()
+    for step in range(100):
+        asked_v = 2600.0 if step < 50 else 4000.0
+        case.supply.measured_v = (asked_v if step < 50 else read(asked_v), 0.0)
+        case.supervisor.command((asked_v, 0.0))
+        case.pass_time(0.01)
+    assert case.supervisor.fault.code is code
+
+
+@pytest.mark.parametrize("slew_v_per_ms", [1.0, 250.0])
+def test_a_monitor_that_follows_late_is_none(case, slew_v_per_ms):
+    """The slew limit, a converter that lags by 50 ms, reversals and a lowered maximum are no blindness."""
+    case.supply.limits = Limits(maximum_voltage_v=5000.0, slew_v_per_ms=slew_v_per_ms)
+    case.arm()
+    output_v, lag = 0.0, [0.0] * 5
+    for step in range(3000):
+        asked_v = 4000.0 * (1 if step // 700 % 2 else -1)
+        if step == 2000:
+            case.supervisor.lower_maximum(3000.0)
+            output_v = 0.0
+        asked_v = max(-case.supervisor.maximum_voltage_v, min(case.supervisor.maximum_voltage_v, asked_v))
+        change_v = asked_v - output_v
+        output_v += max(-10 * slew_v_per_ms, min(10 * slew_v_per_ms, change_v))
+        if output_v * asked_v < 0:
+            output_v = 0.0  # by way of ground
+        lag = [*lag[1:], output_v]
+        case.supply.measured_v = (lag[0] if lag[0] * asked_v >= 0 else 0.0, 0.0)
+        case.supervisor.command((asked_v, 0.0))
+        case.pass_time(0.01)
+        assert case.supervisor.fault is None, (step, case.supervisor.fault)
+
+
+@pytest.mark.parametrize(
+    ("what", "code"), [("current_a", FaultCode.OVERCURRENT), ("interlock_closed", FaultCode.INTERLOCK)]
+)
+def test_the_host_does_not_rely_on_the_boards_trips(case, what, code):
+    """900 µA that do not trip at 450, and an interlock that is open while the board stays armed."""
+    case.arm()
+    case.supply.reported = {what: {"current_a": (9e-4, 0.0), "interlock_closed": (True, False)}[what]}
+    for _ in range(10):
+        case.supervisor.command(ZERO)
+        case.pass_time(0.02)
+    assert case.supervisor.fault.code is code
+
+
+def test_a_fault_that_needs_a_proof_is_not_cleared_without_one(case):
+    """Contacts that are commanded to ground do not do."""
+    case.supervisor.fail(Fault(FaultCode.NOT_GROUNDED))
+    case.pass_time(0.1)
+    case.supply.unproven = True
+    with pytest.raises(RefusedError, match="came back"):
+        case.supervisor.clear_fault()
+    case.supply.unproven = False
+    case.supervisor.clear_fault()
+    assert case.supervisor.fault is None
+
+
+def test_a_ripple_that_the_output_cannot_follow_is_no_blindness(case):
+    """A converter cannot sink: the output stays at the peaks of what is asked for, and that is no stuck monitor."""
+    case.arm()
+    for step in range(300):
+        asked_v = 4600.0 if step % 2 else 4000.0
+        case.supply.measured_v = (min(4600.0, 250.0 * step) - (step % 4), 0.0)
+        case.supervisor.command((asked_v, 0.0))
+        case.pass_time(0.01)
+    assert case.supervisor.fault is None

@@ -21,7 +21,7 @@ def test_disarming_a_charged_output_is_a_fault(bench, how):
     bench.call(bench.supervisor.disarm)
     assert bench.wait_until(lambda: bench.supervisor.fault is not None)
     assert bench.supervisor.fault.code in (FaultCode.NOT_GROUNDED, FaultCode.GROUND_NOT_PROVEN)
-    assert (bench.status().mode, bench.status().grounded, bench.rig.live) == (Mode.FAULT, False, True)
+    assert (bench.status().mode, bench.status().quiet, bench.rig.live) == (Mode.FAULT, False, True)
     with pytest.raises(RefusedError):
         bench.call(bench.supervisor.clear_fault)
     with pytest.raises(RefusedError):

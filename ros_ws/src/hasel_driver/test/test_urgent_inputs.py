@@ -34,7 +34,8 @@ def inputs():
     rclpy.init()
     inputs = UrgentInputs(
         "/hasel",
-        lambda voltage_v, _age_s: take("commands", voltage_v),
+        lambda: ["/hasel/arm"],
+        lambda _publisher, _name, voltage_v, _age_s: take("commands", voltage_v),
         lambda stop, _who: take("stops", stop),
         lambda: None,
     )

@@ -83,8 +83,8 @@ def test_a_reset_forgets_everything_but_the_charge():
     board = VirtualBoard()
     for sequence, words in enumerate(("SET MAXIMUM 3000", "ARM", "SET VOLTAGE 3000 0")):
         board.receive(protocol.encode_command(sequence, *words.split()))
-    for _ in range(100):
-        board.tick()
+        for _ in range(150):
+            board.tick()
     assert board.muscles[0].voltage_v > 2990
     board.reset("watchdog")
     contacts = [bridge.grounded for bridge in board.bridges]

@@ -54,12 +54,14 @@ def state_message(voltage: list[float]) -> dict[str, Any]:
         "fault_code": 0,
         "fault_text": "",
         "grounded": False,
+        "ground": 0,
         "interlock": [0, 0],
         "emergency_stop_holders": [],
         "maximum_voltage": math.nan,
         "slew_rate": math.nan,
         "trip_current": math.nan,
         "heartbeat_timeout": math.nan,
+        "commander": "",
     }
 
 

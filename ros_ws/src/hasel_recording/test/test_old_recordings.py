@@ -11,6 +11,7 @@ from hasel_recording.topics import MEASURED, SIMULATED, STATE
 from rosbags.highlevel import AnyReader
 
 pytestmark = pytest.mark.filterwarnings("ignore::hasel_recording.RecordingWarning")  # of the first frame
+BEFORE_PROOF_OF_GROUND = Path(__file__).parent / "recordings" / "before_proof_of_ground.mcap"
 PAIRS_OF_VOLTAGES = Path(__file__).parent / "recordings" / "pairs_of_voltages.mcap"
 """RunExperiment on the virtual rig, 4500 V, 4 Hz, two periods, when a SupplyState had exactly two voltages, no names
 of the muscles, and a BendingAngle a sin_theta_std."""
@@ -56,3 +57,11 @@ def test_old_recording_is_converted_to_the_definitions_of_today(tmp_path):
     np.testing.assert_allclose(now.time_s - now.time_s[0], old.time_s - old.time_s[0], atol=2e-9)
     np.testing.assert_array_equal(now.sin_theta, old.sin_theta)
     np.testing.assert_array_equal(now.voltage, old.voltage)
+
+
+def test_a_state_from_before_the_proof_of_ground_is_read_alike():
+    """A SupplyState that has neither `ground` nor `commander` gives the same run as the recording it was made of."""
+    run, before = read_recording(BEFORE_PROOF_OF_GROUND), read_recording(PAIRS_OF_VOLTAGES)
+    np.testing.assert_array_equal(run.sin_theta, before.sin_theta)
+    for mine, other in zip(run.drive(), before.drive(), strict=True):
+        np.testing.assert_allclose(mine, other, atol=1e-9)

@@ -20,6 +20,7 @@ from visualization_msgs.msg import MarkerArray
 from hasel_sim.errors import HaselSimError, SimulationError
 from hasel_sim.live.live_model import live_model
 from hasel_sim.live.live_simulator import LiveAnswer, LiveSimulator
+from hasel_sim.live.own_files import within
 from hasel_sim.live.pace import Pace
 from hasel_sim.live.repeated_warnings import RepeatedWarnings
 from hasel_sim.model import Model
@@ -165,7 +166,7 @@ class SimulatorNode(ManagedNode):
 
     def _add_effect(self, request: AddEffect.Request, response: AddEffect.Response) -> AddEffect.Response:
         def add() -> str:
-            model = self.live.model.with_effects(request.effect)
+            model = self.live.model.with_effects(within(self._value("own_files"), request.effect))
             added = model.effects[-1]
             names = [
                 f"parameters.{added.id}.{p.name} (typically {p.typical:g} {p.unit})" for p in added.parameters
@@ -185,7 +186,7 @@ class SimulatorNode(ManagedNode):
     def _load_model(self, request: LoadModel.Request, response: LoadModel.Response) -> LoadModel.Response:
         def load() -> str:
             _ = self.live  # configured
-            model, warning = live_model(request.model)
+            model, warning = live_model(within(self._value("own_files"), request.model))
             self._warn(warning)
             self._change(model)
             return f"Model '{model.name}' is simulated from now on."

@@ -10,6 +10,9 @@ PARAMETERS = (
         "effects", [""], "effects added to the model at the start: ids, or path/to/file.py:ClassName"
     ),
     NodeParameter(
+        "own_files", "", "folder below which add_effect and load_model may read files of yours; empty: none"
+    ),
+    NodeParameter(
         "rate",
         0.0,
         "most angles published per second; 0: one for every state",

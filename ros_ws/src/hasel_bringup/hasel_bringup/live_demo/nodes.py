@@ -22,6 +22,7 @@ def start_nodes(processes: Processes, folder: Path, hidden: str, seed: int) -> N
         {
             "port": port,
             "history_file": folder / "supply_history.jsonl",
+            "state_folder": folder / "supply_state",
             "recorded_topics": "['']",  # the recorder's work
         },
     )

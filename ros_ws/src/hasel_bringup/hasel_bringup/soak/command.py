@@ -23,6 +23,7 @@ NODES = {
     "virtual_supply": ("hasel_driver", "--link", "{folder}/port"),
     "driver_node": (
         "hasel_driver", "--ros-args", "-p", "port:={folder}/port", "-p", "history_file:={folder}/history.jsonl",
+        "-p", "state_folder:={folder}/state",
     ),
     "virtual_rig": ("hasel_bringup", "--body-only"),
     "simulator": ("hasel_sim",),

@@ -33,6 +33,7 @@ class VirtualSupply:
                     *("-r", f"__ns:={self._namespace}"),
                     *("-p", f"port:={port}"),
                     *("-p", "history_file:=" + str(port.with_name("history.jsonl"))),
+                    *("-p", f"state_folder:={port.parent}"),
                 )
             )
         except BringupError:

@@ -18,6 +18,14 @@ uint16_t checksum(const Stored& stored) {
   return crc;
 }
 
+bool never_stored(const Stored& stored) {
+  const uint8_t* bytes = reinterpret_cast<const uint8_t*>(&stored);
+  for (uint8_t i = 0; i < sizeof(stored); ++i) {
+    if (bytes[i] != 0xFF) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 uint16_t Calibration::monitored(uint16_t volts) const {
@@ -25,11 +33,12 @@ uint16_t Calibration::monitored(uint16_t volts) const {
   return value < 0 ? 0 : value;
 }
 
-void load_calibrations(Calibration calibrations[2]) {
+bool load_calibrations(Calibration calibrations[2]) {
   Stored stored;
   eeprom_read_block(&stored, nullptr, sizeof(stored));
-  if (stored.checksum != checksum(stored)) return;
+  if (stored.checksum != checksum(stored)) return never_stored(stored);
   memcpy(static_cast<void*>(calibrations), stored.calibrations, sizeof(stored.calibrations));
+  return true;
 }
 
 void store_calibrations(const Calibration calibrations[2]) {

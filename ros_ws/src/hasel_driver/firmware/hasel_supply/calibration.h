@@ -24,6 +24,6 @@ struct Calibration {
   }
 };
 
-// Both channels; what was never stored, or no longer fits its checksum, is no correction.
-void load_calibrations(Calibration calibrations[2]);
+// Both channels; what was never stored is no correction. False: what is stored does not fit its checksum.
+bool load_calibrations(Calibration calibrations[2]);
 void store_calibrations(const Calibration calibrations[2]);

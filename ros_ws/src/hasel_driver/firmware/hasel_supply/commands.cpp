@@ -89,6 +89,7 @@ const char* Commands::simple() {
     case 1:
       if (supply_.mode() != STANDBY) return "STATE";
       if (const char* reason = unsafe()) return reason;
+      if (supply_.settings().maximum_v < LEAST_PULSE_V) return "MAXIMUM";
       return supply_.arm() ? nullptr : "STATE";
     case 2:
       supply_.disarm();
@@ -99,6 +100,7 @@ const char* Commands::simple() {
     case 4:
       if (supply_.mode() != FAULT) return "STATE";
       if (const char* reason = unsafe()) return reason;
+      if (supply_.needs_proof() && supply_.settings().maximum_v < LEAST_PULSE_V) return "MAXIMUM";
       return supply_.clear() ? nullptr : "STATE";
     case 5:
       return supply_.start(waveform_) ? nullptr : "STATE";
@@ -113,6 +115,7 @@ const char* Commands::simple() {
 const char* Commands::unsafe() {
   if (supply_.interlock_open()) return "INTERLOCK";
   if (supply_.discrepancy()) return "DISCREPANCY";
+  if (supply_.calibrations_damaged()) return "EEPROM";
   if (!supply_.grounded()) return "UNPROVEN";
   return nullptr;
 }
@@ -181,7 +184,7 @@ const char* Commands::set_calibration() {
   const bool readable = count_ == 7 && find(words_[2], CHANNEL_NAMES, CHANNELS, channel) && number(3, set_gain) &&
                         number(4, set_offset) && number(5, read_gain) && number(6, read_offset);
   if (!readable) return "SYNTAX";
-  if (supply_.mode() != STANDBY) return "STATE";
+  if (supply_.may_be_live()) return "STATE";
   Calibration calibration;
   calibration.set_gain = clip(set_gain, 9000, 11000);
   calibration.set_offset_v = clip(set_offset, -300, 300);
@@ -197,6 +200,7 @@ uint16_t* Commands::setting(Settings& settings, uint16_t& least, uint16_t& most)
   if (is(1, "TRIP")) return least = 1, most = MOST_TRIP_UA, &settings.trip_ua;
   if (is(1, "HEARTBEAT")) return least = 100, most = 2000, &settings.heartbeat_ms;
   if (is(1, "DEADTIME")) return least = 2, most = 50, &settings.dead_time_ms;
+  if (is(1, "CONTACTS")) return least = 0, most = 1, &settings.contacts;
   return nullptr;
 }
 

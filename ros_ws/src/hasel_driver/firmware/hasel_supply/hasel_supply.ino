@@ -1,7 +1,8 @@
 // High-voltage supply for two HASEL muscles: see PROTOCOL.md for the serial protocol, board.h for the pins.
 //
 // The timer interrupt watches heartbeat, interlock, trips and ground every millisecond. The hardware watchdog resets
-// the chip, hence grounds the output, unless both go on: loop() feeds it, and only after a tick that has run.
+// the chip, hence grounds the output, unless both go on: loop() feeds it, and only after a tick
+// that has run with every analogue input converted since the one before.
 
 #include <avr/sleep.h>
 #include <avr/wdt.h>
@@ -16,7 +17,7 @@ static Supply supply;
 static LineReader reader;
 static LineWriter writer;
 static Commands commands(supply, writer);
-static volatile bool ticked = false;
+static volatile bool ticked = false, sound = false;
 static uint8_t reset_flags __attribute__((section(".noinit")));
 
 // Optiboot clears MCUSR, and hands it on in r2.
@@ -66,7 +67,7 @@ ISR(TIMER2_COMPA_vect, ISR_NOBLOCK) {
     ADMUX = _BV(REFS0);
     ADCSRA |= _BV(ADSC);
   }
-  supply.tick();
+  if (supply.tick()) sound = true;
   ticked = true;
   running = false;
 }
@@ -93,7 +94,7 @@ static void send_telemetry() {
   const uint32_t time_us = micros();
   const Report report = supply.report();
   writer.begin('#').add("t=").add_unsigned(time_us).add(" s=").add(MODE_NAMES[report.mode]);
-  writer.add(" g=").add_unsigned(report.grounded).add(" f=").add_unsigned(report.fault);
+  writer.add(" g=").add_unsigned(report.ground).add(" f=").add_unsigned(report.fault);
   writer.add(" v=").add_number(report.asked_v[0]).add(',').add_number(report.asked_v[1]);
   writer.add(" m=").add_number(report.measured_v[0]).add(',').add_number(report.measured_v[1]);
   writer.add(" i=").add_unsigned(report.current_ua[0]).add(',').add_unsigned(report.current_ua[1]);
@@ -111,8 +112,9 @@ void setup() {
 }
 
 void loop() {
-  if (ticked) {
-    ticked = false;
+  ticked = false;
+  if (sound) {
+    sound = false;
     wdt_reset();
   }
   // Only what is there now: an endless stream must not keep the watchdog from being fed.
@@ -120,6 +122,7 @@ void loop() {
     commands.take(reader.take(Serial.read()), reader.text());
   }
   send_events();
+  supply.keep_latches();
   send_telemetry();
   writer.pump();
   while (!ticked && !Serial.available()) sleep_mode();

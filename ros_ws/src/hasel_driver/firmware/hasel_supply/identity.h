@@ -1,4 +1,4 @@
 // What this firmware calls itself.
 #pragma once
 
-constexpr char IDENTITY[] = "hasel-supply 2.0 protocol 2";
+constexpr char IDENTITY[] = "hasel-supply 3.0 protocol 3";

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "avr_adc.h"
+#include "avr_eeprom.h"
 #include "avr_extint.h"
 #include "avr_ioport.h"
 #include "avr_uart.h"
@@ -23,7 +24,7 @@
 #include "trace.h"
 
 enum { CHANNELS = 2, FREQUENCY_HZ = 16000000, TICK_CYCLES = 16000, BYTE_CYCLES = 320 };
-enum { DDRB = 0x24, PORTB, DDRD = 0x2A, PORTD, TIMSK2 = 0x70, TCCR1A = 0x80, OCR1A = 0x88, OCR1B = 0x8A };
+enum { DDRB = 0x24, PORTB, DDRD = 0x2A, PORTD, TIMSK2 = 0x70, ADCSRA = 0x7A, ADIE = 3, TCCR1A = 0x80, OCR1A = 0x88, OCR1B = 0x8A };
 static const double LIVE_V = 50.0;
 static const uint32_t HANG_ADDRESS = 0x7F00;
 static const uint64_t LATE_CYCLES = FREQUENCY_HZ / 20, MOST_LAG_CYCLES = FREQUENCY_HZ / 10;
@@ -36,6 +37,7 @@ static double peaks_v[CHANNELS];
 static uint16_t compare_values[CHANNELS];
 static bool interlock_open[2], contact_welded, ground_broken, boot_lost;
 static double set_point_gain = 1.0, monitor_gain = 1.0;  // of the upper muscle's converter and monitor
+static double stuck_v = -1.0;                            // what its monitor says for good; negative: the truth
 static bool live, silent, deaf, noise, truncate_next, uart_full, host_present, tracing;
 static char received[4096];
 static size_t received_count;
@@ -108,6 +110,20 @@ static void set_interlock(void) {
   }
 }
 
+// Auxiliary contacts, low while the ground contact is closed in truth: pins A4 and A5.
+static void set_contact(int channel) {
+  avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_IOPORT_GETIRQ('C'), 4 + channel), contacts[channel] != GROUND);
+}
+
+static void damage_eeprom(void) {
+  uint8_t byte = 0;
+  avr_eeprom_desc_t where = {.ee = &byte, .offset = 1, .size = 1};
+  avr_ioctl(avr, AVR_IOCTL_EEPROM_GET, &where);
+  byte ^= 0x10;
+  where.ee = &byte;
+  avr_ioctl(avr, AVR_IOCTL_EEPROM_SET, &where);
+}
+
 static void tick(void) {
   // Pins 2 and 3 are outputs; after any reset simavr polls them for external interrupts, at most of its time.
   avr_extint_set_strict_lvl_trig(avr, EXTINT_IRQ_OUT_INT0, 0);
@@ -119,7 +135,9 @@ static void tick(void) {
     const double volts = fabs(muscles[channel].voltage_v);
     peaks_v[channel] = fmax(peaks_v[channel], volts);
     is_live |= volts > LIVE_V || contacts[channel] != GROUND;
-    raise_analogue(channel, volts / 10000.0 * (channel == 0 ? monitor_gain : 1.0));
+    const double said_v = channel != 0 ? volts : stuck_v < 0.0 ? volts * monitor_gain : stuck_v;
+    raise_analogue(channel, said_v / 10000.0);
+    set_contact(channel);
     raise_analogue(CHANNELS + channel, muscles[channel].current_a / 1e-3);
   }
   if (is_live != live) {
@@ -184,6 +202,7 @@ static void recover(void) {
   silent = deaf = noise = truncate_next = contact_welded = ground_broken = boot_lost = false;
   interlock_open[0] = interlock_open[1] = false;
   set_point_gain = monitor_gain = 1.0;
+  stuck_v = -1.0;
   set_interlock();
   muscles[0].short_ohm = muscles[1].short_ohm = HUGE_VAL;
 }
@@ -218,6 +237,12 @@ static bool obey(const char* word) {
   else if (!strcmp(word, "weld")) contact_welded = true;
   else if (!strcmp(word, "unground")) ground_broken = true;
   else if (!strcmp(word, "tickless")) avr->data[TIMSK2] = 0;
+  else if (!strcmp(word, "blind")) monitor_gain = 0.0;
+  else if (!strcmp(word, "third")) monitor_gain = 1.0 / 3.0;
+  else if (!strcmp(word, "stick")) stuck_v = fabs(muscles[0].voltage_v);
+  else if (!strcmp(word, "unconverted")) avr->data[ADCSRA] &= ~(1 << ADIE);
+  else if (!strcmp(word, "leak")) muscles[0].short_ohm = 1e8;
+  else if (!strcmp(word, "damage")) damage_eeprom();
   else if (!strcmp(word, "miscalibrate")) set_point_gain = 0.97, monitor_gain = 1.04;
   else if (!strcmp(word, "overcurrent")) muscles[0].short_ohm = 2e6;
   else if (!strcmp(word, "recover")) recover();

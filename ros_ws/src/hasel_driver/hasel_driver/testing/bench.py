@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from hasel_driver import protocol
+from hasel_driver.ground import Ground
 from hasel_driver.hasel_supply import HaselSupply
 from hasel_driver.limits import Limits, Voltages
 from hasel_driver.mode import Mode
@@ -53,6 +54,7 @@ class Bench:
         self.await_mode(Mode.STANDBY)
         self.call(self.supervisor.arm)
         self.await_mode(Mode.ARMED)
+        self.call(self.supervisor.command, (0.0, 0.0))  # with which every controller begins
 
     def command_until(
         self,
@@ -83,7 +85,7 @@ class Bench:
         return [
             str(status)
             for status in list(self.statuses)
-            if (status.grounded or status.mode in (Mode.STANDBY, Mode.ARMED))
+            if (status.ground is Ground.PROVEN or status.mode in (Mode.STANDBY, Mode.ARMED))
             and self.rig.refutes_dead_at(status.time_s)
         ]
 

@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 from hasel_driver import protocol
 from hasel_driver.line_buffer import LineBuffer
+from hasel_driver.mode import Mode
 from hasel_driver.serial_port import SerialPort
 
 
@@ -44,6 +45,23 @@ class Conversation:
         self._sequence = (self._sequence + 1) % 256 if sequence is None else sequence
         self.send(protocol.encode_command(self._sequence, *words))
         return self.reply()
+
+    def arm(self) -> None:
+        """ARM, and its proof of ground."""
+        if self.ask("ARM") != (True, "ARM"):
+            raise AssertionError("the board did not arm")
+        self.await_proof()
+
+    def await_proof(self, timeout_s: float = 1.0) -> None:
+        """Until the test pulse has ended; the heartbeat goes on."""
+        end_s = time.monotonic() + timeout_s
+        while self.listen(0.05)[-1].mode is Mode.ACTIVE:
+            if time.monotonic() > end_s:
+                raise AssertionError(f"the test pulse did not end within {timeout_s} s")
+
+    def after(self, count: int) -> int:
+        """The sequence number that is `count` after the last."""
+        return (self._sequence + count) % protocol.SEQUENCE_MODULUS
 
     def reply(self) -> tuple[bool, str]:
         """The next reply."""

@@ -18,8 +18,10 @@ class DriverProcess:
         self._client = client
         client.states.clear()
         self._folder = tempfile.TemporaryDirectory(prefix="hasel_driver_")
-        self.history = Path(self._folder.name) / "history.jsonl"
-        own = {"history_file": self.history, "recording_directory": self._folder.name}
+        self.folder = Path(self._folder.name)
+        self.history = self.folder / "history.jsonl"
+        folders = dict.fromkeys(("recording_directory", "waveform_directory", "state_folder"), self.folder)
+        own = {"history_file": self.history, **folders}
         chosen = {"port": port, "discovery_time": 0.2} | own | parameters
         arguments = [word for key, value in chosen.items() for word in ("-p", f"{key}:={value}")]
         self.process = subprocess.Popen(
@@ -38,6 +40,7 @@ class DriverProcess:
         for _ in range(20):
             answer = self._client.trigger("arm")
             if answer.success:
+                self._client.command((0.0, 0.0))  # with which every controller begins
                 return
             time.sleep(0.2)
         raise AssertionError(answer.message)

@@ -13,6 +13,7 @@ from lifecycle_msgs.msg import State, Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 from rclpy.duration import Duration
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
@@ -32,16 +33,16 @@ COMMAND_PERIOD_S = 0.02
 class RosClient:
     """For some tests; `states` collects `/hasel/state` and may be cleared, `heard` keeps the last."""
 
-    def __init__(self) -> None:
+    def __init__(self, name: str = "user") -> None:
         # Alone: other tests of the same process make contexts of theirs, and the signals are the test runner's.
-        self.node = node_alone("user")
+        self.node = node_alone(name)
         self.states: list[SupplyState] = []
         self.heard: deque[SupplyState] = deque(maxlen=10_000)
         self.node.create_subscription(SupplyState, "/hasel/state", self._take_state, 200)
-        self.commands = self.node.create_publisher(Actuation, "/hasel/command", 100)
+        self.commands: Publisher | None = self.node.create_publisher(Actuation, "/hasel/command", 100)
         self._stop: Any = None
         self._clients: dict[str, Any] = {}
-        self._spin = BackgroundSpin(self.node, "user", owns_context=True)
+        self._spin = BackgroundSpin(self.node, name, owns_context=True)
 
     def _take_state(self, state: SupplyState) -> None:
         self.states.append(state)
@@ -97,7 +98,9 @@ class RosClient:
         client.call_async(request)
 
     def command(self, voltage_v: Voltages, age_s: float = 0.0) -> None:
-        """Publish one command."""
+        """Publish one command, unless within `silent`."""
+        if self.commands is None:
+            return
         message = Actuation(voltage=list(voltage_v))
         message.header.stamp = (self.node.get_clock().now() - Duration(seconds=age_s)).to_msg()
         self.commands.publish(message)
@@ -108,6 +111,7 @@ class RosClient:
         ended = threading.Event()
 
         def publish() -> None:
+            self.command((0.0, 0.0))  # with which every controller begins
             while not ended.wait(COMMAND_PERIOD_S):
                 self.command(voltage_v)
 
@@ -122,7 +126,8 @@ class RosClient:
     @contextmanager
     def silent(self) -> Iterator[None]:
         """Publish no commands, nor be able to: somebody else does."""
-        self.node.destroy_publisher(self.commands)
+        commands, self.commands = self.commands, None
+        self.node.destroy_publisher(commands)
         try:
             yield
         finally:

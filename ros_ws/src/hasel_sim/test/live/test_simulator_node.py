@@ -183,6 +183,17 @@ def test_a_mistaken_request_is_answered_by_a_sentence(rig):
     assert rig.node.live.model is before
 
 
+def test_no_file_is_read_that_a_request_names(rig, tmp_path):
+    """Whoever reaches the node must not have it run code, unless it lies in the folder given at the start."""
+    own = tmp_path / "evil.py"
+    own.write_text("raise SystemExit('it was run')")
+    for answer in (
+        rig.call(AddEffect, "/hasel/add_effect", effect=f"{own}:Evil"),
+        rig.call(LoadModel, "/hasel/load_model", model=str(tmp_path / "evil.yaml")),
+    ):
+        assert (answer.success, "own_files" in answer.message) == (False, True)
+
+
 def test_another_body_can_be_loaded(rig):
     """After the beam is loaded it is the beam that is drawn, from rest."""
     rig.say(0, [0.0, 0.0])

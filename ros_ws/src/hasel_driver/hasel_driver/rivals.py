@@ -1,0 +1,114 @@
+"""Other drivers that answer to the same names: publishers of this driver's state, servers of its services.
+
+Two of them in one namespace would obey one `arm`, and the first answer to an emergency stop would win.
+"""
+
+import os
+import socket
+import time
+import uuid
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+from hasel_interfaces.msg import SupplyState
+from hasel_recording.endpoints import Role
+from hasel_recording.topics import STATE, relative
+from rclpy._rclpy_pybind11 import NodeNameNonExistentError
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.node import Node
+from std_msgs.msg import String
+
+from hasel_driver.graph_names import UNNAMED, full_name
+from hasel_driver.identified_subscription import IdentifiedSubscription
+
+DRIVER, PRESENCE = "hasel_driver", "driver_presence"
+NOT_TOLD = "on a host that it does not tell"
+SILENT_S = 1.0  # a driver that lives has been heard within that time
+PARTICIPANT_BYTES = 12  # of an identifier: those that all endpoints of a process share
+HOST, PROCESS = (
+    slice(2, 4),
+    slice(4, 6),
+)  # in Fast DDS: a hash of the host, the lower half of the process's number
+
+
+class Rivals:
+    """Watches from `node`; `services()` are the full names of the services that nobody else may serve."""
+
+    def __init__(self, node: Node, services: Callable[[], list[str]]) -> None:
+        self._node, self._services = node, services
+        name = f"{node.get_namespace().rstrip('/')}/{DRIVER}"
+        self.own_words = f"{name} on {socket.gethostname()} (process {os.getpid()})"
+        self._token = uuid.uuid4().hex
+        self._own: bytes | None = None  # this process, as the middleware calls it
+        self._words: dict[bytes, str] = {}  # of each process
+        self._seen_s: dict[bytes, float] = {}  # when it was heard last, or first known
+        group = MutuallyExclusiveCallbackGroup()
+        self._subscriptions = [
+            IdentifiedSubscription(node, String, PRESENCE, self._take_presence, Role.RESULTS.value, group),
+            IdentifiedSubscription(
+                node, SupplyState, relative(STATE), self._take_state, Role.SAMPLES.value, group, raw=True
+            ),
+        ]
+        self._presence = node.create_publisher(String, PRESENCE, Role.RESULTS.value)
+        self._presence.publish(String(data=f"{self._token} {self.own_words}"))
+
+    @property
+    def known(self) -> bool:
+        """Whether this driver has found itself, without which it could not tell another."""
+        return self._own is not None
+
+    def found(self) -> list[str]:
+        """Each other driver in words: its node's name, and its host where it tells that."""
+        if self._own is None:
+            return []
+        others, gone = [], 0
+        for info in self._node.get_publishers_info_by_topic(relative(STATE)):
+            participant = bytes(info.endpoint_gid[:PARTICIPANT_BYTES])
+            if participant == self._own:
+                continue
+            if self._is_gone(participant):
+                gone += 1
+            else:
+                name = self._words.get(participant, f"{full_name(info)} {NOT_TOLD}")
+                others.append(name)
+        servers = max(self._node.count_services(name) for name in self._services())
+        if servers > 1 + gone + len(others):
+            others.append(self._other_server())
+        return others
+
+    def destroy(self) -> None:
+        """Stop listening."""
+        for subscription in self._subscriptions:
+            subscription.destroy()
+
+    def _take_presence(self, publisher: bytes, _: int, message: String) -> None:
+        token, _, words = message.data.partition(" ")
+        participant = publisher[:PARTICIPANT_BYTES]
+        self._words[participant] = words
+        if token == self._token:
+            self._own = participant
+
+    def _take_state(self, publisher: bytes, *_: object) -> None:
+        self._seen_s[publisher[:PARTICIPANT_BYTES]] = time.monotonic()
+
+    def _is_gone(self, participant: bytes) -> bool:
+        """Whether the middleware only has not noticed yet that a process of this machine has ended."""
+        now_s = time.monotonic()
+        if (
+            participant[HOST] != self._own[HOST]
+            or now_s - self._seen_s.setdefault(participant, now_s) < SILENT_S
+        ):
+            return False
+        number = int.from_bytes(participant[PROCESS], "little")
+        return not any(int(each.name) & 0xFFFF == number for each in Path("/proc").glob("[0-9]*"))
+
+    def _other_server(self) -> str:
+        own = (self._node.get_namespace().rstrip("/") or "/", DRIVER)
+        for name, namespace in self._node.get_node_names_and_namespaces():
+            if (namespace, name) != own:
+                with suppress(NodeNameNonExistentError):
+                    served = self._node.get_service_names_and_types_by_node(name, namespace)
+                    if {service for service, _ in served} & set(self._services()):
+                        return f"{namespace.rstrip('/')}/{name}, which answers to its services"
+        return f"{UNNAMED} that answers to its services"

@@ -1,0 +1,156 @@
+"""Kinds of hardware that does not do as it is told, each injected while the driver drives, and judged by the truth."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from hasel_driver.errors import DriverError
+from hasel_driver.faults import FaultCode
+from hasel_driver.ground import Ground
+from hasel_driver.limits import DISCHARGED_V, Voltages
+from hasel_driver.mode import Mode
+from hasel_driver.testing.bench import Bench
+
+DRIVEN_V: Voltages = (3000.0, -2000.0)
+OTHER_V: Voltages = (5000.0, -2000.0)
+WITHIN_S = 0.5
+WATCHED_S = 0.7
+F = FaultCode
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What is injected, and what the driver must find within half a second of the moment when it can be seen."""
+
+    name: str
+    inject: tuple[str, ...]
+    expected: frozenset[FaultCode]
+    act: str = "drive"  # what follows: drive, change, ramp and disarm, disarm, stop, arm
+    virtual_only: bool = False
+
+
+def _kind(name: str, inject: str, codes: set[FaultCode], **options) -> Kind:
+    return Kind(name, tuple(inject.split()), frozenset(codes), **options)
+
+
+RESET = {F.DEVICE_RESET, F.GARBAGE_RECEIVED}  # its banner may cut a line in two
+CONTACT = {F.NOT_GROUNDED, F.GROUND_NOT_PROVEN}
+KINDS: tuple[Kind, ...] = (
+    _kind("divider off", "blind", {F.MONITOR}),
+    _kind("divider says a third", "third", {F.MONITOR}),
+    _kind("divider of the wrong sign", "invert", {F.MONITOR}, virtual_only=True),
+    _kind("divider stuck as the voltage changes", "stick", {F.MONITOR}, act="change"),
+    _kind("divider off before arming", "blind", {F.MONITOR, F.NOT_GROUNDED}, act="arm"),
+    _kind("inputs no longer converted", "unconverted", RESET | {F.MONITOR}),
+    _kind(
+        "inputs not converted, muscle shorted",
+        "unconverted overcurrent",
+        RESET | {F.MONITOR, F.OVERCURRENT},
+    ),
+    _kind("timer interrupt off", "tickless", RESET | {F.NO_REPLY, F.NO_TELEMETRY, F.UNEXPECTED_STATE}),
+    _kind("contact welded, disarmed", "weld", CONTACT, act="disarm"),
+    _kind("contact welded, leaking load, disarmed", "weld leak", CONTACT, act="disarm"),
+    _kind("contact welded before arming", "weld", CONTACT, act="arm"),
+    _kind("contact welded before arming, leaking load", "weld leak", CONTACT, act="arm"),
+    _kind("contact never closes, disarmed", "unground", CONTACT, act="disarm"),
+    _kind("contact never closes before arming", "unground", CONTACT, act="arm"),
+    _kind("contact never closes before arming, leaking load", "unground leak", CONTACT, act="arm"),
+)
+# Nothing can be found here before the next arming: no claim may be made.
+UNSEEN: tuple[Kind, ...] = (
+    _kind("contact never closes, ramped to 0 first", "unground", set(), act="ramp and disarm"),
+    _kind("contact welded, ramped to 0 first", "weld", set(), act="ramp and disarm"),
+)
+
+
+@dataclass
+class Trial:
+    """What became of one: `found_s` after it could be seen; sentences for what must not be."""
+
+    found_s: float | None = None
+    wrong: list[str] = field(default_factory=list)
+
+
+def try_kind(bench: Bench, kind: Kind) -> Trial:
+    """Inject one kind, and judge everything that the driver says by the voltages of the supply."""
+    trial, rig = Trial(), bench.rig
+    _prepare(bench)
+    if kind.act != "arm":
+        bench.arm()
+        if not bench.command_until(lambda: bench.status().measured_v[0] > 2900, DRIVEN_V):
+            trial.wrong.append(f"it did not reach its voltage: {bench.status()}")
+            return trial
+    for word in kind.inject:
+        rig.say(word)
+    began_s = time.monotonic()
+    _act(bench, kind)
+    _watch(bench, trial, kind, began_s)
+    if kind.expected:
+        _judge(bench, trial, kind)
+    rig.say("recover")
+    return trial
+
+
+def _prepare(bench: Bench) -> None:
+    bench.rig.say("recover")
+    bench.call(bench.supervisor.disarm)
+    for _ in range(20):
+        time.sleep(0.1)
+        try:
+            if bench.supervisor.fault is not None:
+                bench.call(bench.supervisor.clear_fault)
+            bench.await_mode(Mode.STANDBY)
+            return
+        except (DriverError, AssertionError):
+            continue
+    raise AssertionError(f"the driver did not come back to STANDBY: {bench.status()}")
+
+
+def _act(bench: Bench, kind: Kind) -> None:
+    supervisor = bench.supervisor
+    if kind.act == "disarm":
+        bench.call(supervisor.disarm)
+    elif kind.act == "arm":
+        bench.call(supervisor.arm)
+    elif kind.act == "ramp and disarm":
+        for share in range(20, -1, -1):
+            bench.call(supervisor.command, (DRIVEN_V[0] * share / 20, DRIVEN_V[1] * share / 20))
+            time.sleep(0.02)
+        time.sleep(0.1)
+        bench.call(supervisor.disarm)
+
+
+def _watch(bench: Bench, trial: Trial, kind: Kind, began_s: float) -> None:
+    """Commands go on where they did; no word of grounded while there is voltage."""
+    target_v = OTHER_V if kind.act == "change" else DRIVEN_V
+    while time.monotonic() - began_s < WATCHED_S:
+        if kind.act in ("drive", "change"):
+            bench.call(bench.supervisor.command, target_v)
+        before = abs(bench.rig.ask("output")[0])
+        status = bench.status()
+        after = abs(bench.rig.ask("output")[0])
+        if status.ground is Ground.PROVEN and min(before, after) > DISCHARGED_V:
+            trial.wrong.append(f"{status}, with {after:.0f} V")
+        if bench.supervisor.fault is not None and trial.found_s is None:
+            trial.found_s = time.monotonic() - began_s
+        time.sleep(0.005)
+
+
+def _judge(bench: Bench, trial: Trial, kind: Kind) -> None:
+    fault = bench.supervisor.fault
+    if fault is None or fault.code not in kind.expected:
+        trial.wrong.append(
+            f"{fault or 'nothing'} was found, {', '.join(sorted(c.name for c in kind.expected))} expected"
+        )
+    elif trial.found_s is None or trial.found_s > WITHIN_S:
+        trial.wrong.append(f"it was found after {trial.found_s} s")
+    if _succeeds(lambda: bench.call(bench.supervisor.arm)):
+        trial.wrong.append("it was armed again")
+
+
+def _succeeds(call: Callable[[], object]) -> bool:
+    try:
+        call()
+    except DriverError:
+        return False
+    return True

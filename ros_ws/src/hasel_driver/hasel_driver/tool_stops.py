@@ -1,0 +1,44 @@
+"""Emergency stops of ROS for a tool that drives the supply while the driver's node is not there."""
+
+import importlib.util
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+
+@contextmanager
+def stops_of_ros(stop: Callable[[str], None]) -> Iterator[None]:
+    """Within it `stop(who)` is called for an emergency stop by topic, and by the service, which is answered."""
+    if importlib.util.find_spec("rclpy") is None:
+        print("ROS 2 is not there: only the keyboard and the interlock stop.", file=sys.stderr)
+        yield
+        return
+    from hasel_recording.spinning import BackgroundSpin, node_alone
+    from hasel_recording.topics import EMERGENCY_STOP, NAMESPACE
+    from std_srvs.srv import Trigger
+
+    from hasel_driver.middleware import prepare
+    from hasel_driver.stop_holders import StopHolders
+    from hasel_driver.stop_topic import StopTopic
+
+    def serve(_: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        stop("by service")
+        response.success, response.message = (
+            False,
+            "Stopped; a calibration proves nothing: treat the output as live.",
+        )
+        return response
+
+    prepare()
+    node = node_alone("hasel_calibrate", namespace=NAMESPACE)
+    topic = StopTopic(
+        node, StopHolders(), lambda asserted, who: stop(f"by topic, from {who}") if asserted else None
+    )
+    node.create_service(Trigger, EMERGENCY_STOP, serve)
+    spin = BackgroundSpin(node, "stops", owns_context=True)
+    try:
+        yield
+    finally:
+        spin.end()
+        topic.destroy()
+        spin.close()

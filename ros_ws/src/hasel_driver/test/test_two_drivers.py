@@ -1,0 +1,73 @@
+"""One supply, one driver: another that answers to the same names is noticed, named, and never speaks for both."""
+
+import socket
+import time
+
+import pytest
+
+pytest.importorskip("rclpy", reason="ROS 2 is not there")
+pytest.importorskip("hasel_interfaces", reason="the workspace is not built")
+
+from hasel_driver.faults import FaultCode
+from hasel_driver.mode import Mode
+from hasel_driver.testing.hooks import PUNCTUALITY
+from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Rig
+from hasel_driver.testing.ros_client import another_node
+from hasel_interfaces.msg import SupplyState
+from std_srvs.srv import Trigger
+
+
+@pytest.fixture
+def other_rig():
+    """A second supply."""
+    rig = Rig(VIRTUAL_SUPPLY, PUNCTUALITY.note)
+    yield rig
+    rig.close()
+
+
+def test_a_second_driver_ends_the_first_ones_arming(start_driver, virtual_rig, other_rig, ros):
+    """Grounded, with the other's name and host; neither arms; a stop says how many answer, and is no success."""
+    first = start_driver(virtual_rig.port)
+    first.arm()
+    with ros.commanding():
+        ros.wait(lambda: virtual_rig.live)
+        second = start_driver(other_rig.port)
+        ros.wait(lambda: any("another driver answers" in line for line in list(first.log)), 20.0)
+        virtual_rig.await_live(False)
+    told = next(line for line in first.log if "another driver answers" in line)
+    assert f"/hasel/hasel_driver on {socket.gethostname()} (process {second.process.pid})" in told
+    ros.wait(lambda: "commanded by" in "".join(second.log), 10.0)
+    for name in ("arm", "emergency_stop", "emergency_stop", "disarm"):
+        answer = ros.trigger(name)
+        assert not answer.success, answer.message
+        if name == "emergency_stop":
+            assert "2 drivers answer to this name" in answer.message
+    assert not other_rig.live
+    second.close()
+    ros.wait(lambda: ros.trigger("emergency_stop").success)
+
+
+def test_a_driver_that_was_killed_does_not_keep_its_successor_from_arming(start_driver, virtual_rig, ros):
+    """The middleware knows a killed one for 20 s: its process is gone, so it is no other driver."""
+    killed = start_driver(virtual_rig.port)
+    ros.await_mode(Mode.STANDBY)
+    killed.process.kill()
+    killed.process.wait()
+    start_driver(virtual_rig.port).arm()
+    time.sleep(0.5)
+    assert ros.state.mode == Mode.ARMED
+
+
+@pytest.mark.parametrize("what", ["state", "service"])
+def test_a_stranger_that_uses_the_drivers_names_is_a_fault(start_driver, virtual_rig, ros, what):
+    """Another publisher of the state, or server of a service, would be believed in the driver's place."""
+    driver = start_driver(virtual_rig.port)
+    driver.arm()
+    with another_node("stranger") as node:
+        if what == "state":
+            node.create_publisher(SupplyState, "/hasel/state", 10)
+        else:
+            node.create_service(Trigger, "/hasel/emergency_stop", lambda _, response: response)
+        ros.wait(lambda: ros.state.fault_code == FaultCode.TWO_DRIVERS)
+        assert "/stranger" in ros.state.fault_text
+        assert not virtual_rig.live
