@@ -12,10 +12,10 @@ from hasel_sim.mechanics.inertia import Mass, add_tip_plate, element_masses
 from hasel_sim.mechanics.residual_slopes import (
     ContractionSlope,
     ForceSlope,
+    LawSlope,
     NoSlope,
     ResidualSlope,
     SolidSlope,
-    StressSlope,
     SystemSlope,
 )
 from hasel_sim.mechanics.solid import Solid, lame_constants
@@ -90,7 +90,8 @@ class Builder:
         }
         forces = [law for e in acting[ForceEffect] for law in self._force_laws(e, self._values[e.id])]
         stresses = [self._stress_law(e, self._values[e.id]) for e in acting[MaterialEffect] if e.regions]
-        return System(self.mesh, self.nodes, self._solid(self._values), self.mass, gravity, forces, stresses)
+        solid, muscles = self._solid(self._values), len(self._described.muscles)
+        return System(self.mesh, self.nodes, solid, self.mass, gravity, forces, stresses, muscles)
 
     def _is_null(self, effect: Effect) -> bool:
         """Whether an effect has no size, so that nothing it does needs to be called."""
@@ -134,11 +135,13 @@ class Builder:
         """What acts of one effect: its force, and its flux where it has one."""
         gravity = self.model.description.material.gravity_m_per_s2
         around = self._described.surroundings
-        laws = [ForceLaw(effect, p, self._sites(effect, p), self.nodes, gravity, around)]
-        if effect.has_flux:
-            sites = flux_sites(laws[0].sites, effect.sheds)
-            laws.append(ForceLaw(effect, p, sites, self.nodes, gravity, around, flux=True))
-        return laws
+        muscles = len(self._described.muscles)
+
+        def law(sites: Sites, flux: bool) -> ForceLaw:
+            return ForceLaw(effect, p, sites, self.nodes, gravity, around, flux, muscles)
+
+        laws = [law(self._sites(effect, p), False)]
+        return [*laws, law(flux_sites(laws[0].sites, effect.sheds), True)] if effect.has_flux else laws
 
     def _stress_law(self, effect: MaterialEffect, p: SimpleNamespace) -> StressLaw:
         fibres = np.array([0.0, *(muscle.fibre_stiffness_pa for muscle in self._described.muscles)])
@@ -154,14 +157,19 @@ class Builder:
         if effect is None or not isinstance(effect, ForceEffect | MaterialEffect):
             return NoSlope()
         parameter = next(p for p in effect.parameters if p.name == own)
-        more, less, width = difference_points(parameter, getattr(self._values[identity], own))
+        more, less, width = parameter.around(getattr(self._values[identity], own))
         above, below = (
             SimpleNamespace(**{**vars(self._values[identity]), own: value}) for value in (more, less)
         )
         if isinstance(effect, ForceEffect):
-            return ForceSlope(self._force_laws(effect, above), self._force_laws(effect, below), width)
+            laws, more_laws, less_laws = (
+                self._force_laws(effect, p) for p in (self._values[identity], above, below)
+            )
+            if all(a.sites.same_as(b.sites) for a, b in zip(more_laws, less_laws, strict=True)):
+                return LawSlope(laws, own)
+            return ForceSlope(more_laws, less_laws, width)
         if effect.regions:
-            return StressSlope(self._stress_law(effect, above), self._stress_law(effect, below), width)
+            return LawSlope([self._stress_law(effect, self._values[identity])], own)
         more_solid, less_solid = (
             self._solid({**self._values, identity: changed}) for changed in (above, below)
         )
@@ -171,7 +179,7 @@ class Builder:
         if name.endswith(REST_CONTRACTION):
             names = [muscle.name for muscle in self.model.description.muscles]
             return ContractionSlope(names.index(name.split(".")[1]))
-        more, less, width = difference_points(constant_parameter(self.model, name), self.model.values[name])
+        more, less, width = constant_parameter(self.model, name).around(self.model.values[name])
         above, below = (Builder(self.model.with_values({name: value})).system() for value in (more, less))
         return SystemSlope(above, below, width)
 
@@ -179,13 +187,6 @@ class Builder:
         """The derivative of the residual by one outline coefficient, which moves nodes, masses, skin and all."""
         name = outline_names(self.model.description.body)[index]
         return Builder(self.model.with_freed(name)).residual_slope(name)
-
-
-def difference_points(parameter: EffectParameter, value: float) -> tuple[float, float, float]:
-    """Two values around `value`, within the parameter's range, and their distance."""
-    more = value + parameter.step if value + parameter.step <= parameter.upper else value
-    less = value - parameter.step if value - parameter.step >= parameter.lower else value
-    return more, less, more - less
 
 
 def constant_parameter(model: Model, name: str) -> EffectParameter:

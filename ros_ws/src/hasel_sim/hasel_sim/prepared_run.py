@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hasel_sim.build import Builder, constant_parameter, difference_points
+from hasel_sim.build import Builder, constant_parameter
 from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.schedule import no_drive
 from hasel_sim.effects.base import DriveEffect, EffectParameter, ObservationEffect
@@ -123,7 +123,7 @@ class PreparedRun:
         for column, parameter in enumerate(self.parameters):
             if not self._drives(parameter.name):
                 continue
-            more, less, width = difference_points(self.declared(parameter.name), parameter.value)
+            more, less, width = self.declared(parameter.name).around(parameter.value)
             above = self.contraction(times, {**self.model.values, parameter.name: more})
             below = self.contraction(times, {**self.model.values, parameter.name: less})
             out[:, column] = (above - below) / width

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hasel_sim.build import difference_points
 from hasel_sim.errors import HaselSimError
 from hasel_sim.lanes import Lane, columns_of_lanes, step_together
 from hasel_sim.mechanics.seen import Seen
@@ -131,7 +130,7 @@ def slope_by_observation(prepared: PreparedRun, name: str, markers, lines) -> np
     time, model = prepared.plan.boundaries, prepared.model
     if name.rpartition(".")[0] not in {effect.id for effect in prepared.observed_by}:
         return np.zeros(len(time))
-    more, less, width = difference_points(prepared.declared(name), model.parameters[name].value)
+    more, less, width = prepared.declared(name).around(model.parameters[name].value)
     above, below = (
         observe(
             time, markers, lines, prepared.observed_by, model.effect_values({**model.values, name: value})

@@ -57,6 +57,12 @@ class EffectParameter:
         """Step of the central differences by this parameter."""
         return self.difference or 1e-6 * max(abs(self.typical), abs(self.null))
 
+    def around(self, value: float) -> tuple[float, float, float]:
+        """Two values around this one, within the range, and their distance."""
+        more = value + self.step if value + self.step <= self.upper else value
+        less = value - self.step if value - self.step >= self.lower else value
+        return more, less, more - less
+
 
 class Effect:
     """Base of all effects; subclass one of the four places below, not this."""

@@ -2,23 +2,24 @@
 
 from collections.abc import Sequence
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hasel_sim.mechanics.law_terms import SiteGroups, add_site_matrix, site_groups
-from hasel_sim.mechanics.laws import by_point
 from hasel_sim.mechanics.motion import DriveState, Motion
-from hasel_sim.mechanics.site_force import SiteForce
+from hasel_sim.mechanics.site_force import NO_MESH, SiteForce
 from hasel_sim.simd import lane_tuple
 
-_CONTRACTION_DIFFERENCE = 1e-6
+if TYPE_CHECKING:
+    from hasel_sim.mechanics.linearisation import StrainedSystem
 
 
 class ForceLaw(SiteForce):
     """A force and, once `linearise` was called, its derivatives at that state.
 
-    `linearise` differentiates the effect at every site by central differences in the two components of each quantity it
-    depends on, all in one call, so that an effect never writes a derivative.
+    `linearise` differentiates the effect at every site by the two components of each quantity it depends on, so that an
+    effect never writes a derivative.
     """
 
     def _use_lanes(self, values: list) -> None:
@@ -29,26 +30,34 @@ class ForceLaw(SiteForce):
     def linearise(self, motion: Motion, drive: DriveState) -> None:
         """Keep the derivatives at this state: one [n, 2, 2, lanes] array per quantity the effect depends on."""
         if "contraction" in self.effect.depends_on:
-            self._by_contraction = self._contraction_slope(motion, drive)
-        if self._moved_by:
-            self._differentiate(motion, drive)
+            self._by_contraction = self.by_contraction(motion, drive)
+        if self.moving:
+            self.keep(self.answers("response", motion, drive, NO_MESH))
 
-    def _contraction_slope(self, motion: Motion, drive: DriveState) -> np.ndarray:
-        out = np.empty((len(drive.contraction), *self._reference.shape, len(self.values)))
-        for muscle, step in enumerate(_CONTRACTION_DIFFERENCE * np.eye(len(drive.contraction))):
-            more, less = (
-                self._force(motion, drive.with_contraction(drive.contraction + sign * step[:, None]))[0]
-                for sign in (1.0, -1.0)
-            )
-            out[muscle] = by_point(more - less) / (2 * _CONTRACTION_DIFFERENCE)
-        return out
+    def by_contraction(self, motion: Motion, drive: DriveState) -> np.ndarray:
+        """Derivative of the force by every muscle's contraction, [muscles, n, 2, lanes]."""
+        found = [
+            self.answers(("contraction", muscle), motion, drive, NO_MESH).transpose(1, 0, 2)
+            for muscle in range(len(drive.contraction))
+        ]
+        return np.array(found).reshape(-1, *self._reference.shape, len(self.values))
 
-    def _differentiate(self, motion: Motion, drive: DriveState) -> None:
-        force = self._force(motion, drive, self._moved_twice)
-        lanes = force.shape[1]
-        for name in self._moved_by:
-            self._slopes[name] = np.zeros((*self._reference.shape, 2, lanes))
-            self._moved_twice.add_derivative(name, force, np.ones(lanes), self._slopes[name])
+    def add_slope(
+        self,
+        name: str,
+        line: "StrainedSystem",
+        drive: DriveState,
+        factor: float | np.ndarray,
+        out: np.ndarray,
+    ) -> None:
+        """Subtract a factor times the derivative by a parameter from out [nodes, 2, lanes]."""
+        change = self.answers((("p", name), 0), line.motion, drive, NO_MESH)
+        self.sites.scatter(-factor * change.transpose(1, 0, 2), out)
+
+    def keep(self, response: np.ndarray) -> None:
+        """Keep derivatives found otherwise: the rows of the effect's response [rows, n, lanes]."""
+        found = response[2:].reshape(-1, 2, 2, *response.shape[1:]).transpose(0, 3, 2, 1, 4)
+        self._slopes = dict(zip(self.moving, found.copy(), strict=True))
 
     def weighted(self, position, velocity, acceleration) -> tuple[np.ndarray, np.ndarray]:
         """Less the derivatives, weighted per lane: by the value and by the tangent at the sites [n, 2, 2, lanes]."""
@@ -61,7 +70,7 @@ class ForceLaw(SiteForce):
 
     def add_matrix(self, position, velocity, acceleration, band: np.ndarray, diagonal: int) -> None:
         """Subtract the derivatives, weighted per lane, from a band matrix (the force stands on the right-hand side)."""
-        if not self._moved_by:
+        if not self.moving:
             return
         derivatives = self.weighted(position, velocity, acceleration)
         add_site_matrix((self._site_groups, *derivatives), band, diagonal, lane_tuple(band.shape[-1]))
@@ -85,7 +94,7 @@ class ForceLaw(SiteForce):
             "tangent": (shift, sites.slope),
             "tangent_rate": (rate, sites.slope),
         }
-        for name in self._moved_by:
+        for name in self.moving:
             field, weights = moved[name]
             if field is not None:
                 sites.scatter_products(self._slopes[name], weights, field, out)
@@ -104,7 +113,7 @@ class ForceLaw(SiteForce):
             "tangent": (0, s.slope),
             "tangent_rate": (1, s.slope),
         }
-        for name in self._moved_by:
+        for name in self.moving:
             row, interpolation = places[name]
             wanted = out[row]
             if wanted is None:

@@ -2,11 +2,14 @@
 
 import numpy as np
 
+from hasel_sim.mechanics.force_law import ForceLaw
 from hasel_sim.mechanics.law_terms import site_groups
 from hasel_sim.mechanics.linearisation import StrainedSystem
 from hasel_sim.mechanics.motion import DriveState, Motion
-from hasel_sim.mechanics.strained import Strained
 from hasel_sim.mechanics.system import System
+from hasel_sim.mechanics.tape_loops import add_slopes, respond
+from hasel_sim.mechanics.tapes import Tapes
+from hasel_sim.simd import lane_tuple
 
 
 class LawTable:
@@ -16,13 +19,14 @@ class LawTable:
     derivatives by the value and by the tangent of the end-of-step acceleration [sites, 2, 2, lanes]); the place of
     every element among those with further stress or -1, and their stress [n, points, 4, lanes] and its derivative
     [n, points, 4, 4, lanes]. Empty where no effect acts; one at its null is not among the laws. by_rate: derivative of
-    the further stress by the rate of the deformation [n, points, 4, 4, lanes] alone, of `linearise`.
+    the further stress by the rate of the deformation [n, points, 4, 4, lanes] alone, of `linearise`. programs, tapes:
+    what `tape_loops.respond` takes.
     """
 
     def __init__(self, system: System) -> None:
         self._system, solid, lanes = system, system.solid, system.lanes
-        laws = [(law.sites, law.looks_along) for law in system.forces]
-        slopes = np.zeros((2, sum(len(sites.nodes) for sites, _ in laws), 2, 2, lanes))
+        sites = [(law.sites, law.looks_along) for law in system.forces]
+        slopes = np.zeros((2, sum(len(each.nodes) for each, _ in sites), 2, 2, lanes))
         concerned = [law.elements for law in system.stresses]
         elements = np.unique(np.concatenate([np.zeros(0, dtype=np.intp), *concerned]))
         further = np.full(len(solid.elements), -1)
@@ -33,69 +37,51 @@ class LawTable:
         )
         self.terms = (
             np.zeros((*system.nodes.shape, lanes)),
-            (site_groups(laws), slopes[0], slopes[1]),
+            (site_groups(sites), slopes[0], slopes[1]),
             (further, stress, matrix),
         )
+        self._laws = [*system.forces, *system.stresses]
+        firsts = [0, *np.cumsum([law.points for law in system.forces])][: len(system.forces)]
+        firsts += [-1] * len(system.stresses)
+        rows = [(2 * n, 2 * n + 1, first) for n, first in enumerate(firsts)]
+        self.programs = np.array(rows, dtype=np.intp).reshape(-1, 3)
+        wanted = [(law, of) for law in self._laws for of in ("value", "response")]
+        self.tapes = Tapes(wanted, lanes, system.muscles)
 
     def __bool__(self) -> bool:
         """Whether there are any effects to call."""
-        return bool(self._system.forces or self._system.stresses)
+        return bool(self._laws)
 
-    def call(self, motion: Motion, drive: DriveState, weights: np.ndarray | None) -> None:
-        """Call every effect once.
+    @property
+    def as_python(self) -> bool:
+        """Whether any of them runs as Python, and must be called before the compiled loops go on."""
+        return any(law.laws is None for law in self._laws)
 
-        weights [3, lanes]: of the end-of-step acceleration in position, velocity and acceleration, for the derivatives;
-        None leaves those of an earlier call.
-        """
-        self._call_forces(motion, drive, weights)
-        if self._system.stresses:
-            self._call_stresses(motion, drive, weights)
-
-    def _call_forces(self, motion: Motion, drive: DriveState, weights: np.ndarray | None) -> None:
-        forces, (_, by_value, by_tangent), _ = self.terms
-        forces[:] = 0.0
-        first = 0
-        for law in self._system.forces:
-            last = first + len(law.sites.nodes)
-            if weights is None:
-                law.add_force(motion, drive, forces, -1.0)
-            else:
-                law.respond(motion, drive, weights, forces, by_value[first:last], by_tangent[first:last])
-            first = last
-
-    def _call_stresses(self, motion: Motion, drive: DriveState, weights: np.ndarray | None) -> None:
-        _, _, (further, stress, matrix) = self.terms
-        solid = self._system.solid
-        at = Strained(solid, motion)
-        stress[:] = 0.0
-        if weights is not None:
-            matrix[:] = 0.0
-        for law in self._system.stresses:
-            places = further[law.elements]
-            if weights is None:
-                stress[places] += law.stress(at, drive)
-                continue
-            own, by_motion = law.respond(at, drive, weights)
-            stress[places] += own
-            matrix[places] += by_motion
+    def call(self, motion: Motion, drive: DriveState, with_slopes: bool, exact: bool = False) -> None:
+        """Call every effect that runs as Python once, with its derivatives where wanted."""
+        for value, response, _ in self.programs.tolist():
+            program = response if with_slopes else value
+            self.tapes.fill(program, motion, drive, self._system.solid.places, exact)
 
     def linearise(self, at: StrainedSystem, drive: DriveState, weights: np.ndarray) -> None:
-        """Differentiate every effect as exactly as differences can; terms and weights as in `call`."""
-        _, (_, by_value, by_tangent), (further, _, matrix) = self.terms
-        first = 0
-        for law in self._system.forces:
-            last = first + len(law.sites.nodes)
-            law.linearise(at.motion, drive)
-            by_value[first:last], by_tangent[first:last] = law.weighted(*weights)
-            first = last
-        if self._system.stresses:
-            matrix[:], self.by_rate[:] = 0.0, 0.0
-        for stress in self._system.stresses:
-            places = further[stress.elements]
-            for name, moduli in stress.moduli(at, drive).items():
-                matrix[places] += weights[("deformation", "rate").index(name)] * moduli
-                if name == "rate":
-                    self.by_rate[places] += moduli
+        """Differentiate every effect; terms as in `tape_loops.respond`, whose weights these are."""
+        if not self:
+            return
+        self.call(at.motion, drive, with_slopes=True, exact=True)
+        motion, lane = at.motion, lane_tuple(self._system.lanes)
+        fields, places = (motion.position, motion.velocity, motion.acceleration), self._system.solid.places
+        tables = self.tapes.tables
+        respond(tables, self.programs, True, fields, places, drive.signals, weights, self.terms, lane)
+        _, (_, *sites), (further, _, _) = self.terms
+        rate_alone = np.array([0.0, 1.0, 0.0])[:, None] * np.ones(self._system.lanes)
+        self.by_rate[:] = 0.0
+        for law, (_, program, _) in zip(self._laws, self.programs.tolist(), strict=True):
+            if isinstance(law, ForceLaw):
+                law.keep(self.tapes.rows(program))
+                if "contraction" in law.effect.depends_on:
+                    law.linearise(motion, drive)
+            elif "rate" in law.moving:
+                add_slopes(tables, program, -1, further, rate_alone, tuple(sites), self.by_rate, lane)
 
     def add_directions(self, rate: np.ndarray, acceleration: np.ndarray, out: np.ndarray) -> None:
         """Add the change of the forces out of balance along velocities and accelerations [columns, nodes, 2, lanes]."""

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from hasel_sim.effects.base import Effect
 from hasel_sim.errors import nearest_name
 
 OF_THE_DRIVE = ("voltage", "contraction", "time")
@@ -29,6 +30,27 @@ def grouped(values: Sequence[SimpleNamespace | None]) -> Groups:
         else:
             groups.append(([lane], own))
     return [(np.array(lanes), own) for lanes, own in groups]
+
+
+def around(
+    effect: Effect, name: str, values: Sequence[SimpleNamespace | None]
+) -> tuple[tuple[list[SimpleNamespace | None], ...], np.ndarray]:
+    """The values of all lanes with a little more and a little less of a parameter, and the widths between [lanes]."""
+    parameter = next(p for p in effect.parameters if p.name == name)
+    points = [None if one is None else parameter.around(getattr(one.own, name)) for one in values]
+
+    def changed(place: int) -> list[SimpleNamespace | None]:
+        pairs = zip(values, points, strict=True)
+        return [
+            None
+            if point is None
+            else SimpleNamespace(
+                **{**vars(one), "own": SimpleNamespace(**{**vars(one.own), name: point[place]})}
+            )
+            for one, point in pairs
+        ]
+
+    return (changed(0), changed(1)), np.array([1.0 if point is None else point[2] for point in points])
 
 
 def one_by_one(groups: Groups) -> Groups:

@@ -3,7 +3,8 @@
 The tuples that the functions share:
 `body`: solid as in `balance`, element masses, weight.
 `matrix`: band, reach, (diagonal, half bandwidth, held unknowns), whether factors that are no numbers lie in it [1].
-`laws`: what effects add, (nodal forces, sites of `law_terms`, further stress of `balance`).
+`laws`: what effects add, (nodal forces, sites of `law_terms`, further stress of `balance`), and what finds it: the
+tables and laws of `tape_loops.respond`.
 `scheme`: weights of every kind of step, first axis: to the balance, of the matrix, to the end, of the acceleration in
 the end position, length.
 `memory`: internal branches: stresses, C : E, what a step leaves and adds up to the balance and up to its end, moduli.
@@ -124,10 +125,10 @@ def march(
 
     parts: which of PREDICT, BALANCE and COMMIT to do; how: see `newton`. moving: position, velocity, acceleration and
     its rate [nodes, 2, lanes]. plan: the kind of every step, `scheme`, the solid's coefficients for every kind, the
-    contraction [steps, 1 + muscles, lanes], how many steps each lane makes [lanes]. Compiled as one function, which
-    takes a third of the time that many take.
+    drive [steps, 2 + 2 muscles, lanes] (see `DriveState.signals`), how many steps each lane makes [lanes]. Compiled as
+    one function, which takes a third of the time that many take.
     """
-    kinds, scheme, tables, contraction, ends = plan
+    kinds, scheme, tables, signals, ends = plan
     wanted, arrived, due, _ = progress
     state = moving[0], moving[1], moving[2]
     for step in range(steps[0], steps[1]):
@@ -139,7 +140,7 @@ def march(
             if memory[2].shape[1] > 0:
                 _history(memory, kind, history, lane)
         if parts & BALANCE:
-            drive = tables[min(kind, len(tables) - 1)], contraction[step], history
+            drive = tables[min(kind, len(tables) - 1)], signals[step], history
             newton(
                 state,
                 guess,

@@ -37,6 +37,12 @@ class Drives:
         """That of one step."""
         return DriveState(self.voltage[step], self.contraction[step], self.time[step])
 
+    @property
+    def signals(self) -> np.ndarray:
+        """`DriveState.signals` of every step, [steps, 2 + 2 muscles, lanes]."""
+        rest = np.zeros((len(self.time), 1, self.time.shape[-1]))
+        return np.concatenate([rest, self.contraction, self.voltage, self.time[:, None]], axis=1)
+
 
 class Marcher:
     """Steps a `System`; each lane takes the steps, and ends with the numbers, that it would alone.
@@ -95,9 +101,7 @@ class Marcher:
         none = np.zeros((0, 1, 1, 3, self.system.lanes)), np.zeros((1, 1, 3, self.system.lanes))
         stresses = branches if len(solid.branches) else none
         self._memory = *stresses, *self._factors, (solid.shear, solid.linear_lame)
-        rest = np.zeros((len(kinds), 1, self.system.lanes))
-        contraction = np.concatenate([rest, drives.contraction], axis=1)
-        self._plan = kinds, self._scheme, self._tables, contraction, ends
+        self._plan = kinds, self._scheme, self._tables, drives.signals, ends
 
     def _tabulate(self) -> None:
         """What depends on the kind of a step."""
@@ -135,7 +139,7 @@ class Marcher:
 
     def advance_with_one_matrix(self, first: int, last: int) -> int:
         """The same, with a single matrix for every step."""
-        if not self._laws:
+        if not self._laws.as_python:
             return self._march(PREDICT | BALANCE | COMMIT, (first, last))
         for step in range(first, last):
             self._march(PREDICT, (step, step + 1))
@@ -177,7 +181,7 @@ class Marcher:
             self._plan,
             self._body,
             self._matrix,
-            self._laws.terms,
+            (self._laws.terms, self._laws.tapes.tables, self._laws.programs),
             self._memory,
             self._history,
             self.stress,
@@ -190,9 +194,9 @@ class Marcher:
         )
 
     def _balance(self, step: int, one_matrix: bool) -> None:
-        """Find the acceleration at the end of a step; effects are called before every correction."""
+        """Find the acceleration at the end of a step; effects that run as Python are called before every correction."""
         most = MOST_WITH_ONE_MATRIX if one_matrix else MOST_ITERATIONS
-        if not self._laws:
+        if not self._laws.as_python:
             self._march(BALANCE, (step, step + 1), (0, most + 1, not one_matrix))
             return
         kind, drive = self._kinds[step], self.drives.at(step)
@@ -201,7 +205,6 @@ class Marcher:
             if not more and not self._due.any():
                 break
             fresh = more and (iteration == 0 or not one_matrix)
-            weights = self._scheme[1][kind] if fresh else None
             motion = balance_motion(self.state, self._guess, self._scheme[0][kind])
-            self._laws.call(motion, drive, weights)
+            self._laws.call(motion, drive, with_slopes=fresh)
             self._march(BALANCE, (step, step + 1), (iteration, iteration + 1, not one_matrix))

@@ -1,7 +1,7 @@
 """What a residual is evaluated at: motion of the nodes, drive of the muscles, memory of the material; in every lane."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -25,6 +25,12 @@ class DriveState:
         names = ("voltage", "contraction", "time")
         return DriveState(*(np.concatenate([getattr(d, name) for d in each], axis=-1) for name in names))
 
+    @property
+    def signals(self) -> np.ndarray:
+        """A zero, the contraction and the drive of every muscle, and the time, [2 + 2 muscles, lanes]."""
+        rest = np.zeros((1, self.contraction.shape[-1]))
+        return np.concatenate([rest, self.contraction, self.voltage, self.time[None]])
+
     def with_contraction(self, contraction: np.ndarray) -> "DriveState":
         """The same instant with another contraction."""
         return replace(self, contraction=contraction)
@@ -40,15 +46,11 @@ class DriveState:
 
 @dataclass(frozen=True)
 class Motion:
-    """Nodal positions [m], velocities [m/s] and accelerations [m/s^2], each [nodes, 2, lanes].
-
-    found: what was interpolated of it before, since several effects ask for the same.
-    """
+    """Nodal positions [m], velocities [m/s] and accelerations [m/s^2], each [nodes, 2, lanes]."""
 
     position: np.ndarray
     velocity: np.ndarray
     acceleration: np.ndarray
-    found: dict = field(default_factory=dict, compare=False, repr=False)
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from hasel_sim.mechanics import banded_lu
 from hasel_sim.mechanics.balance import balance
 from hasel_sim.mechanics.lane_loops import combine, copy_lanes, difference, subtract_lanes
 from hasel_sim.mechanics.law_terms import add_site_matrix
+from hasel_sim.mechanics.tape_loops import respond
 from hasel_sim.simd import store, zero
 
 SLOW_WITH_ONE_MATRIX, SLOW = 0.1, 1.0
@@ -119,7 +120,8 @@ def newton(
     """
     to_balance, matrix_weights, _, end_position, _ = scheme
     solid, masses, weight = body
-    forces, sites, further = laws
+    terms, tapes, programs = laws
+    forces, sites, further = terms
     x, v, a, vector, found, _, _ = room
     band, reach, (diagonal, _, _), spoilt = matrix
     wanted, arrived, due, _ = progress
@@ -131,6 +133,9 @@ def newton(
             break
         fresh = more and (iteration == 0 or always)
         combine(before[0], before[1], before[2], guess, to_balance[kind], x, v, a, lane)
+        if programs.shape[0] > 0:
+            weights = matrix_weights[kind]
+            respond(tapes, programs, fresh, (x, v, a), solid[:4], drive[1], weights, terms, lane)
         difference(forces, weight, vector, lane)
         if fresh and spoilt[0]:
             band[:] = 0.0

@@ -65,21 +65,38 @@ class ContractionSlope:
         return each[0]
 
 
+class LawSlope:
+    """A parameter of one force or stress effect that changes its laws and not where they act."""
+
+    def __init__(self, laws: Sequence[ForceLaw | StressLaw], name: str) -> None:
+        self._laws, self._name = laws, name
+
+    def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
+        """Add the derivative of the nodal forces out of balance."""
+        for law in self._laws:
+            law.add_slope(self._name, line, drive, load_factor, out)
+
+    @staticmethod
+    def beside(each: Sequence["LawSlope"]) -> "LawSlope":
+        """The same parameter of several bodies, one lane after the other."""
+        laws: list[ForceLaw | StressLaw] = []
+        for beside in zip(*(slope._laws for slope in each), strict=True):
+            if isinstance(beside[0], StressLaw):
+                laws.append(StressLaw.beside(beside))
+            else:
+                laws += ForceLaw.beside(beside)
+        return LawSlope(laws, each[0]._name)
+
+
 class ForceSlope:
-    """A parameter of one force effect: its laws for a little more and a little less, and the width between."""
+    """A parameter that moves the sites of a force: its laws for a little more and a little less, the width between."""
 
-    def __init__(self, more: list[ForceLaw], less: list[ForceLaw], width: float) -> None:
-        self._use(more, less, np.array([width]), len(more))
-
-    def _use(self, more: list[ForceLaw], less: list[ForceLaw], width: np.ndarray, parts: int) -> None:
-        self._more, self._less, self.width, self._parts = more, less, width, parts
-        pairs = zip(more, less, strict=False)
-        self._same_sites = len(more) == len(less) == parts and all(a.sites.same_as(b.sites) for a, b in pairs)
+    def __init__(self, more: list[ForceLaw], less: list[ForceLaw], width: float | np.ndarray) -> None:
+        self._more, self._less, self.width = more, less, np.atleast_1d(width)
 
     @staticmethod
     def beside(each: Sequence["ForceSlope"]) -> "ForceSlope":
         """Those of several bodies, one lane after the other."""
-        out = ForceSlope.__new__(ForceSlope)
         more, less = (
             [
                 law
@@ -88,19 +105,13 @@ class ForceSlope:
             ]
             for name in ("_more", "_less")
         )
-        out._use(more, less, np.concatenate([slope.width for slope in each]), each[0]._parts)
-        return out
+        return ForceSlope(more, less, np.concatenate([slope.width for slope in each]))
 
     def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
         """Subtract the derivative of the force, which stands on the right-hand side."""
-        factor = -load_factor / self.width
-        if self._same_sites:
-            for more, less in zip(self._more, self._less, strict=True):
-                more.add_excess(less, motion, drive, out, factor)
-            return
         for laws, sign in ((self._more, 1.0), (self._less, -1.0)):
             for law in laws:
-                law.add_force(motion, drive, out, sign * factor)
+                law.add_force(motion, drive, out, sign * -load_factor / self.width)
 
 
 class _Difference:
@@ -116,18 +127,6 @@ class _Difference:
         """Those of several bodies, one lane after the other."""
         more, less = (cls.kind.beside([getattr(slope, name) for slope in each]) for name in ("more", "less"))
         return cls(more, less, np.concatenate([slope.width for slope in each]))
-
-
-class StressSlope(_Difference):
-    """A parameter of one additional stress."""
-
-    kind = StressLaw
-
-    def add(self, motion, drive, line, state, at, out, load_factor=1.0) -> None:
-        """Add the nodal forces of the stress's derivative."""
-        P = np.zeros_like(line.F)
-        P[self.more.elements] = self.more.excess(self.less, line, drive) / self.width
-        line.system.solid.add_force(P, out)
 
 
 class SolidSlope(_Difference):

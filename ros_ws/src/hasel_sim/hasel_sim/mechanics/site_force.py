@@ -1,6 +1,6 @@
 """A force effect with its values, bound to a mesh: the forces at its sites, in all lanes at once."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from copy import copy
 from types import SimpleNamespace
 from typing import Any, TypeVar
@@ -12,6 +12,7 @@ from hasel_sim.mechanics.copies import ALONE, Copies
 from hasel_sim.mechanics.laws import (
     OF_THE_DRIVE,
     Groups,
+    around,
     by_group,
     by_point,
     grouped,
@@ -20,7 +21,10 @@ from hasel_sim.mechanics.laws import (
     repeated,
 )
 from hasel_sim.mechanics.motion import DriveState, Motion
+from hasel_sim.mechanics.tapes import Answers, Places
 from hasel_sim.mesh.sites import Sites
+from hasel_sim.tape.law import Law, alike, force_law
+from hasel_sim.tape.tracing import NotTraceableError
 
 DIFFERENCE = {
     "position": 1e-7,
@@ -31,13 +35,9 @@ DIFFERENCE = {
 }
 """Of the central differences by each quantity, in its unit."""
 _State = on_demand(SiteState)
+_CONTRACTION_DIFFERENCE = 1e-6
+NO_MESH = np.zeros((0, 8), dtype=np.intp), np.zeros((0, 0, 8, 2)), np.zeros((0, 0)), np.zeros((0, 0, 1))
 _SLOPE_OF = {"tangent": "position", "tangent_rate": "velocity"}
-_OF_A_LINE = ("velocity", "acceleration", "tangent", "tangent_rate")
-"""What effects at the centre line depend on."""
-_MOVED_LINE = Copies.one_sided({name: DIFFERENCE[name] for name in _OF_A_LINE}, 2)
-"""As it is moved for all of them together."""
-
-
 _Law = TypeVar("_Law", bound="SiteForce")
 
 
@@ -56,9 +56,11 @@ class SiteForce:
         gravity: tuple[float, float] = (0.0, 0.0),
         surroundings: Surroundings | None = None,
         flux: bool = False,
+        muscles: int = 2,
     ) -> None:
-        self.effect, self.sites = effect, sites
-        self._respond = effect.flux if flux else effect.force
+        self.effect, self.sites, self._muscles = effect, sites, muscles
+        self._method = "flux" if flux else "force"
+        self._respond = getattr(effect, self._method)
         self._gravity = np.array(gravity)
         self._reference = sites.value(reference[..., None])[..., 0]
         on_skin = effect.sites == "skin"
@@ -66,22 +68,33 @@ class SiteForce:
             normal(sites.tangent(reference[..., None])[..., 0]) if on_skin else np.zeros_like(self._reference)
         )
         self._unmoved: dict[int, dict[str, np.ndarray]] = {}
-        self._moved_by = tuple(name for name in effect.depends_on if name != "contraction")
-        steps = {name: DIFFERENCE[name] for name in self._moved_by}
+        self.k, self.points, self.per = 2, *sites.nodes.shape
+        self.numbers, self.reals = sites.nodes, np.stack([sites.shape, sites.slope, sites.weight])
+        self.moving = {name: 2 for name in DIFFERENCE if name in effect.depends_on}
+        steps = {name: DIFFERENCE[name] for name in self.moving}
         self._moved_once, self._moved_twice = Copies.one_sided(steps, 2), Copies.central(steps, 2)
         has_tangent = effect.sites in ("skin", "line")
-        self._asked = tuple(
-            name for name in _OF_A_LINE if name in effect.depends_on or (name == "tangent" and has_tangent)
-        )
+        self._asked = {*self.moving, "tangent"} if has_tangent else {*self.moving}
         self._use_lanes([SimpleNamespace(own=values, surroundings=surroundings)])
 
     @property
     def looks_along(self) -> bool:
         """Whether the force depends on the tangent of the body or on its rate."""
-        return any(name.startswith("tangent") for name in self._moved_by)
+        return any(name.startswith("tangent") for name in self.moving)
 
     def _use_lanes(self, values: list[SimpleNamespace | None]) -> None:
         self.values, self._groups = values, grouped(values)
+        self.answers = Answers(self, len(values), self._muscles)
+        try:
+            self.laws: list[Law | None] | None = alike(
+                [None if own is None else self._recorded(own.surroundings) for own in values]
+            )
+        except NotTraceableError:
+            self.laws = None
+
+    def _recorded(self, surroundings: Surroundings | None) -> Law:
+        gravity = tuple(self._gravity.tolist())
+        return force_law(self.effect, self._method, self._muscles, gravity, surroundings)
 
     @staticmethod
     def beside(each: Sequence[_Law]) -> list[_Law]:
@@ -96,23 +109,19 @@ class SiteForce:
             out[-1]._use_lanes([law.values[0] if law.sites.same_as(kind.sites) else None for law in each])
         return out
 
-    def _rows(
-        self, motion: Motion, copies: Copies, asked: Sequence[str] | None = None
-    ) -> Callable[[str], np.ndarray]:
-        """What moves, by name, in copies of the sites [copies, lanes, n, 2]; laws at the same sites share what was
-        interpolated. Zero beyond the position and what is asked for, by default what this effect depends on.
+    def _rows(self, motion: Motion, copies: Copies) -> Callable[[str], np.ndarray]:
+        """What moves, by name, in copies of the sites [copies, lanes, n, 2]; zero beyond the position and what this
+        effect depends on.
         """
-        known = motion.found.setdefault(id(self.sites.shape), {})
         made: dict[str, np.ndarray] = {}
 
         def rows(name: str) -> np.ndarray:
-            if name != "position" and name not in (self._asked if asked is None else asked):
+            if name != "position" and name not in self._asked:
                 return np.zeros((len(copies), len(self.values), *self._reference.shape))
-            if name not in known:
-                along, of = name.startswith("tangent"), _SLOPE_OF.get(name, name)
-                known[name] = (self.sites.tangent if along else self.sites.value)(getattr(motion, of))
             if name not in made:
-                made[name] = copies.rows(name, known[name])
+                along, of = name.startswith("tangent"), _SLOPE_OF.get(name, name)
+                field = (self.sites.tangent if along else self.sites.value)(getattr(motion, of))
+                made[name] = copies.rows(name, field)
             return made[name]
 
         return rows
@@ -165,73 +174,52 @@ class SiteForce:
             }
         return self._unmoved[times]
 
-    def _with_the_others(self, motion: Motion, drive: DriveState, moved: bool) -> np.ndarray | None:
-        """The force [copies, lanes, n, 2] at a state that all laws at the centre line share; None where they cannot.
-
-        moved: whether at one copy as it is and two with a little more of each quantity of `_OF_A_LINE`, or as it is.
-        """
-        lanes, values = self._groups[0] if self._groups else (np.zeros(0), None)
-        alike = self.effect.sites == "line" and len(lanes) == motion.position.shape[-1]
-        if not alike or values is None or not set(self._moved_by) <= set(_OF_A_LINE):
-            return None
-        copies = _MOVED_LINE if moved else ALONE
-        key = id(self.sites.shape), moved, values.surroundings
-        if key not in motion.found or motion.found[key][0] is not drive:
-            rows = self._rows(motion, copies, _OF_A_LINE)
-            state = self._state(rows, drive, len(copies), lanes, values.surroundings)
-            motion.found[key] = drive, state
-        state = motion.found[key][1]
-        force = np.asarray(self._respond(state, values.own))
-        if len(lanes) > 1 and state.looked:
-            return None
-        return np.ascontiguousarray(force, dtype=float).reshape(
-            len(copies), len(lanes), *self._reference.shape
-        )
+    def value(self, motion: Motion, drive: DriveState) -> np.ndarray:
+        """The effect's force at the sites, [n, 2, lanes]."""
+        return self.answers("value", motion, drive, NO_MESH).transpose(1, 0, 2)
 
     def add_force(
         self, motion: Motion, drive: DriveState, out: np.ndarray, factor: float | np.ndarray = 1.0
     ) -> None:
         """Add factor times the nodal forces to out [nodes, 2, lanes]."""
-        force = self._with_the_others(motion, drive, moved=False)
-        if force is None:
-            force = self._force(motion, drive)
-        self.sites.scatter(factor * by_point(force[0]), out)
+        self.sites.scatter(factor * self.value(motion, drive), out)
 
-    def add_excess(
-        self,
-        other: "SiteForce",
-        motion: Motion,
-        drive: DriveState,
-        out: np.ndarray,
-        factor: float | np.ndarray,
+    def fixed(self, name: str, place: int) -> np.ndarray:
+        """What does not move, [n, lanes]."""
+        fixed = {
+            "reference": self._reference,
+            "rest_normal": self._rest_normal,
+            "measure": self.sites.measure,
+        }
+        own = fixed[name].reshape(self.points, -1)[:, [place]]
+        return np.broadcast_to(own, (self.points, len(self.values)))
+
+    def fill(
+        self, of: Hashable, motion: Motion, drive: DriveState, mesh: Places, rows: np.ndarray, exact: bool
     ) -> None:
-        """Add factor times the nodal forces that this law has more than another of the same effect and sites."""
-        rows = self._rows(motion, ALONE)
-        excess = self._answer(rows, drive, 1, self._groups) - self._answer(rows, drive, 1, other._groups)
-        self.sites.scatter(factor * by_point(excess[0]), out)
-
-    def respond(
-        self,
-        motion: Motion,
-        drive: DriveState,
-        weights: np.ndarray,
-        out: np.ndarray,
-        by_value: np.ndarray,
-        by_tangent: np.ndarray,
-    ) -> None:
-        """Subtract the nodal forces from out [nodes, 2, lanes], and note how they change, in one call of the effect.
-
-        by_value, by_tangent [n, 2, 2, lanes]: less the derivatives at the sites by the value and by the tangent of the
-        end-of-step acceleration, which moves position, velocity and acceleration by weights [3, lanes]; one-sided
-        differences, which find a step as well as central ones.
+        """Write the rows [rows, n, lanes] of a program, called as Python; central differences where exact, else
+        one-sided ones, which find a step as well.
         """
-        force, copies = self._with_the_others(motion, drive, moved=True), _MOVED_LINE
-        if force is None:
-            copies = self._moved_once
-            force = self._force(motion, drive, copies)
-        self.sites.scatter(-by_point(force[0]), out)
-        by_value[:], by_tangent[:] = 0.0, 0.0
-        rows = {"position": 0, "velocity": 1, "acceleration": 2, "tangent": 0, "tangent_rate": 1}
-        for name in self._moved_by:
-            table = by_tangent if name.startswith("tangent") else by_value
-            copies.add_derivative(name, force, -weights[rows[name]], table)
+        if isinstance(of, tuple):
+            rows[:] = self._change_with(of, motion, drive).transpose(1, 0, 2)
+            return
+        copies = ALONE if of == "value" else self._moved_twice if exact else self._moved_once
+        force = self._force(motion, drive, copies)
+        rows[:2] = by_point(force[0]).transpose(1, 0, 2)
+        if of == "response":
+            found = np.zeros((len(self.moving), self.points, 2, 2, len(self.values)))
+            for name, slope in zip(self.moving, found, strict=True):
+                copies.add_derivative(name, force, np.ones(len(self.values)), slope)
+            rows[2:] = found.transpose(0, 3, 2, 1, 4).reshape(rows[2:].shape)
+
+    def _change_with(self, of: tuple, motion: Motion, drive: DriveState) -> np.ndarray:
+        """Derivative by a parameter or by a muscle's contraction, [n, 2, lanes]."""
+        rows = self._rows(motion, ALONE)
+        if of[0] == "contraction":
+            step = _CONTRACTION_DIFFERENCE * (np.arange(len(drive.contraction)) == of[1])[:, None]
+            drives = [drive.with_contraction(drive.contraction + sign * step) for sign in (1.0, -1.0)]
+            more, less = (self._answer(rows, each, 1, self._groups) for each in drives)
+            return by_point((more - less)[0]) / (2 * _CONTRACTION_DIFFERENCE)
+        values, width = around(self.effect, of[0][1], self.values)
+        more, less = (self._answer(rows, drive, 1, grouped(each)) for each in values)
+        return by_point((more - less)[0]) / width

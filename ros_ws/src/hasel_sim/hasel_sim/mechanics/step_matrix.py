@@ -23,7 +23,6 @@ class StepMatrix:
         shape = matrix.diagonal, matrix.half_bandwidth, matrix.held
         self.matrix = matrix.entries, matrix.reach, shape, np.zeros(1, dtype=bool)
         self._found = np.empty(system.weight.shape), np.empty((*solid.areas.shape, 3, system.lanes))
-        self._at_rest = np.zeros((1, system.lanes))
         self.more = matrix.half_bandwidth + 4
 
     def at_step(self, part: Part, at: StrainedSystem, transposed: bool = False) -> tuple:
@@ -38,12 +37,11 @@ class StepMatrix:
         by_rate = self.laws.by_rate
         if transposed:
             by_rate = np.ascontiguousarray(by_rate.swapaxes(2, 3))
-        contraction = np.concatenate([self._at_rest, drive.contraction])
         return (
             (motion.position, motion.velocity, motion.acceleration),
             c.matrix_weights,
             self._body,
-            (solid.table(c.at), contraction, solid.no_history if history is None else history),
+            (solid.table(c.at), drive.signals, solid.no_history if history is None else history),
             (sites, further, by_rate),
             self._found,
             self.matrix,

@@ -14,6 +14,11 @@ class Strained:
     def __init__(self, solid: Solid, motion: Motion) -> None:
         self._solid, self.motion = solid, motion
 
+    @property
+    def places(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """What the compiled loops know of the mesh."""
+        return self._solid.places
+
     @cached_property
     def F(self) -> np.ndarray:
         """Deformation gradient [1]."""

@@ -1,25 +1,42 @@
 """A material effect that adds stress, bound to the Gauss points of its regions."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from copy import copy
 from types import SimpleNamespace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from hasel_sim.effects.base import MaterialEffect, MaterialPoints
+from hasel_sim.mechanics import strain
 from hasel_sim.mechanics.copies import ALONE, Copies
-from hasel_sim.mechanics.laws import Groups, by_group, by_point, grouped, on_demand, one_by_one, repeated
-from hasel_sim.mechanics.motion import DriveState
+from hasel_sim.mechanics.laws import (
+    Groups,
+    around,
+    by_group,
+    by_point,
+    grouped,
+    on_demand,
+    one_by_one,
+    repeated,
+)
+from hasel_sim.mechanics.motion import DriveState, Motion
 from hasel_sim.mechanics.strained import Strained
+from hasel_sim.mechanics.tapes import Answers, Places
 from hasel_sim.mesh.mesh import Mesh
+from hasel_sim.simd import lane_tuple
+from hasel_sim.tape.law import Law, stress_law
+from hasel_sim.tape.tracing import NotTraceableError
+
+if TYPE_CHECKING:
+    from hasel_sim.mechanics.linearisation import StrainedSystem
 
 _DIFFERENCE = {"deformation": 1e-6, "rate": 1e-4}
 _Points = on_demand(MaterialPoints, ("time",))
 
 
 class StressLaw:
-    """One additional stress at the Gauss points of the elements it concerns; derivatives by central differences.
+    """One additional stress at the Gauss points of the elements it concerns, and its derivatives.
 
     points: Gauss points of an element; fibres: fibre stiffness [Pa] of each muscle behind a 0, [1 + muscles]; shear:
     modulus of every element [Pa]. Of one lane; more by `beside`.
@@ -39,14 +56,21 @@ class StressLaw:
         self._muscle = mesh.muscle[self.elements]
         self._element = np.repeat(np.arange(len(self.elements)), points)
         self._muscle_at = self._muscle[self._element]
-        steps = {name: _DIFFERENCE[name] for name in effect.depends_on}
+        steps = {name: step for name, step in _DIFFERENCE.items() if name in effect.depends_on}
         self._moved_once, self._moved_twice = Copies.one_sided(steps, 4), Copies.central(steps, 4)
-        self._use_lanes([values], fibres[:, None], shear[self.elements, None])
+        self.k, self.points, self.per, self.moving = 4, len(self._element), points, dict.fromkeys(steps, 4)
+        self.numbers, self.reals = np.concatenate([self.elements, self._muscle_at]), np.zeros(0)
+        self._use_lanes([SimpleNamespace(own=values)], fibres[:, None], shear[self.elements, None])
 
     def _use_lanes(self, values: list[SimpleNamespace], fibres: np.ndarray, shear: np.ndarray) -> None:
-        self.values, self._groups, self._fibres, self._shear = values, grouped(values), fibres, shear
+        self.values, self._fibres, self._shear = values, fibres, shear
+        self._groups = grouped([one.own for one in values])
         self._constant: dict[tuple[int, ...], dict[str, np.ndarray]] = {}
-        self._last: tuple[Strained | None, bool] = None, True
+        self.answers = Answers(self, len(values), len(fibres) - 1)
+        try:
+            self.laws: list[Law | None] | None = [stress_law(self.effect)] * len(values)
+        except NotTraceableError:
+            self.laws = None
 
     @staticmethod
     def beside(each: Sequence["StressLaw"]) -> "StressLaw":
@@ -63,25 +87,70 @@ class StressLaw:
 
     def stress(self, at: Strained, drive: DriveState) -> np.ndarray:
         """First Piola stress [elements here, points, 4, lanes]."""
-        return self._at_points(self._answer(self._rows(at), drive, self._groups), at)
+        return self._by_element(self.answers("value", at.motion, drive, at.places))
 
-    def excess(self, other: "StressLaw", at: Strained, drive: DriveState) -> np.ndarray:
-        """What of it this law has more than another of the same effect and points."""
-        rows = self._rows(at)
-        more, less = (self._answer(rows, drive, law._groups) for law in (self, other))
-        return self._at_points(more - less, at)
+    def _by_element(self, rows: np.ndarray) -> np.ndarray:
+        """Four rows [4, n, lanes] as [elements here, points, 4, lanes]."""
+        return rows.transpose(1, 0, 2).reshape(len(self.elements), self.per, 4, -1)
 
-    def _at_points(self, found: np.ndarray, at: Strained) -> np.ndarray:
-        return by_point(found[0]).reshape(len(self.elements), *at.F.shape[1:])
+    def fixed(self, name: str, place: int) -> np.ndarray:
+        """What does not move, [n, lanes]."""
+        return self._fibres[self._muscle_at] if name == "fibre" else self._shear[self._element]
 
-    def _rows(self, at: Strained, copies: Copies = ALONE) -> Callable[[str], np.ndarray]:
+    def fill(
+        self, of: Hashable, motion: Motion, drive: DriveState, mesh: Places, rows: np.ndarray, exact: bool
+    ) -> None:
+        """Write the rows [rows, n, lanes] of a program, called as Python; central differences where exact, else
+        one-sided ones, which find a step as well.
+        """
+        if isinstance(of, tuple):
+            rows[:] = self._change_with(of, self._rows(motion, mesh), drive).transpose(1, 0, 2)
+            return
+        copies = ALONE if of == "value" else self._moved_twice if exact else self._moved_once
+        P = self._answer(self._rows(motion, mesh, copies), drive, self._groups, len(copies))
+        rows[:4] = by_point(P[0]).transpose(1, 0, 2)
+        if of == "response":
+            found = np.zeros((len(self.moving), self.points, 4, 4, len(self.values)))
+            for name, slope in zip(self.moving, found, strict=True):
+                copies.add_derivative(name, P, np.ones(len(self.values)), slope)
+            rows[4:] = found.transpose(0, 3, 2, 1, 4).reshape(rows[4:].shape)
+
+    def _change_with(self, of: tuple, rows: Callable[[str], np.ndarray], drive: DriveState) -> np.ndarray:
+        """Derivative by a parameter or by the contraction, [n, 4, lanes]."""
+        if of[0] == "contraction":
+            drives = [drive.with_contraction(drive.contraction + step) for step in (1e-6, -1e-6)]
+            more, less = (self._answer(rows, each, self._groups) for each in drives)
+            return by_point((more - less)[0]) / 2e-6
+        values, width = around(self.effect, of[0][1], self.values)
+        more, less = (self._answer(rows, drive, grouped([one.own for one in each])) for each in values)
+        return by_point((more - less)[0]) / width
+
+    def add_slope(
+        self,
+        name: str,
+        line: "StrainedSystem",
+        drive: DriveState,
+        factor: float | np.ndarray,
+        out: np.ndarray,
+    ) -> None:
+        """Add the nodal forces of the derivative by a parameter to out [nodes, 2, lanes]; no load, whatever factor."""
+        P = np.zeros_like(line.F)
+        P[self.elements] = self._by_element(self.answers((("p", name), 0), line.motion, drive, line.places))
+        line.system.solid.add_force(P, out)
+
+    def _rows(self, motion: Motion, mesh: Places, copies: Copies = ALONE) -> Callable[[str], np.ndarray]:
         """F and its rate, by name, in copies of the points here, [copies, lanes, n, 4]."""
         made: dict[str, np.ndarray] = {}
+        elements, gradients, areas, stretch = mesh
 
         def rows(name: str) -> np.ndarray:
             if name not in made:
-                field = (at.F if name == "deformation" else at.rate)[self.elements]
-                made[name] = copies.rows(name, field.reshape(-1, 4, field.shape[-1]))
+                field = motion.position if name == "deformation" else motion.velocity
+                F = np.empty((*areas.shape, 4, field.shape[-1]))
+                strain.deformation(
+                    np.ascontiguousarray(field), elements, gradients, stretch, F, lane_tuple(field.shape[-1])
+                )
+                made[name] = copies.rows(name, F[self.elements].reshape(-1, 4, field.shape[-1]))
             return made[name]
 
         return rows
@@ -95,7 +164,6 @@ class StressLaw:
             at = self._points(rows, drive, lanes, copies)
             with np.errstate(invalid="ignore", divide="ignore"):  # inside out: NaN, and the step is refused
                 stress = np.asarray(self.effect.first_piola(at, values)).reshape(-1, 4)
-            self._last = None, at.asked_for(("contraction",))
             if len(lanes) == 1 or not at.looked:
                 return stress
             self._groups = one_by_one(self._groups)
@@ -138,44 +206,19 @@ class StressLaw:
 
     def moduli(self, at: Strained, drive: DriveState) -> dict[str, np.ndarray]:
         """Derivatives by F and by its rate as far as it depends on them, [elements here, points, 4, 4, lanes]."""
-        copies, shape = self._moved_twice, self._shape_of_moduli(at)
-        P = self._answer(self._rows(at, copies), drive, self._groups, len(copies))
-        self._last = at, self._last[1]
-        out = {}
-        for name in self.effect.depends_on:
-            out[name] = np.zeros(shape)
-            copies.add_derivative(name, P, np.ones(shape[-1]), out[name].reshape(-1, *shape[2:]))
-        return out
-
-    def respond(self, at: Strained, drive: DriveState, weights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """First Piola stress [elements here, points, 4, lanes] and how it changes, in one call of the effect.
-
-        The change, [elements here, points, 4, 4, lanes], is by the gradient of the end-of-step acceleration, which
-        moves position and velocity by the first two of weights [3, lanes]; one-sided differences, which find a step as
-        well as central ones.
-        """
-        copies, shape = self._moved_once, self._shape_of_moduli(at)
-        P = self._answer(self._rows(at, copies), drive, self._groups, len(copies))
-        by_motion = np.zeros(shape)
-        for name in self.effect.depends_on:
-            weight = weights[("deformation", "rate").index(name)]
-            copies.add_derivative(name, P, weight, by_motion.reshape(-1, *shape[2:]))
-        return self._at_points(P, at), by_motion
-
-    def _shape_of_moduli(self, at: Strained) -> tuple[int, ...]:
-        return len(self.elements), at.F.shape[1], 4, 4, at.F.shape[-1]
+        found = self.answers("response", at.motion, drive, at.places)[4:]
+        found = found.reshape(-1, 4, 4, *found.shape[1:]).transpose(0, 3, 2, 1, 4)
+        shape = len(self.elements), self.per, 4, 4, len(self.values)
+        return {name: slope.reshape(shape) for name, slope in zip(self.moving, found, strict=True)}
 
     def contraction_slopes(self, at: Strained, drive: DriveState) -> np.ndarray:
         """Derivative of the stress by the contraction of every muscle, [muscles, elements here, points, 4, lanes].
 
-        A point knows the contraction of the muscle it lies in only, so one difference serves all. Of no muscle where
-        the effect, when its moduli were found here, did not ask for the contraction.
+        A point knows the contraction of the muscle it lies in only, so one derivative serves all. Of no muscle where
+        the effect is known not to ask for the contraction.
         """
-        if self._last[0] is at and not self._last[1]:
+        if self.laws is not None and not self.laws[0].program(("contraction", 0)).outputs:
             return np.empty((0, len(self.elements), *at.F.shape[1:]))
-        more, less = (
-            self.stress(at, drive.with_contraction(drive.contraction + step)) for step in (1e-6, -1e-6)
-        )
-        change = (more - less) / 2e-6
+        change = self._by_element(self.answers(("contraction", 0), at.motion, drive, at.places))
         here = self._muscle == np.arange(1, len(self._fibres))[:, None]
         return here[:, :, None, None, None] * change

@@ -33,8 +33,9 @@ class System:
         gravity: np.ndarray,
         forces: list[ForceLaw],
         stresses: list[StressLaw],
+        muscles: int = 2,
     ) -> None:
-        self.mesh, self.nodes, self.solid = mesh, nodes, solid
+        self.mesh, self.nodes, self.solid, self.muscles = mesh, nodes, solid, muscles
         self.mass = mass
         self.forces, self.stresses = forces, stresses
         self.weight = mass.product(np.broadcast_to(gravity[:, None], (1, *nodes.shape, 1)))[0]

@@ -6,7 +6,7 @@ import numpy as np
 import torch
 
 from hasel_sim.adjoint import DifferentiableRun
-from hasel_sim.build import Builder, constant_parameter, difference_points
+from hasel_sim.build import Builder, constant_parameter
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 from hasel_sim.model.constants import constants
@@ -130,7 +130,7 @@ class DifferentiableSwim:
         for place, name in enumerate(run.parameters):
             if name not in known or not values.requires_grad:
                 continue
-            more, less, width = difference_points(constant_parameter(model, name), model.values[name])
+            more, less, width = constant_parameter(model, name).around(model.values[name])
             ends = [_Body.of(model.with_values({name: value})).arrays for value in (more, less)]
             step = values[place] - values[place].detach()
             found = [

@@ -1,0 +1,330 @@
+"""The compiled loop that does the operations of a law's program; see `hasel_sim.tape`.
+
+A register is WIDTH numbers in a row; the loop over them is what the processor does in vectors.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from hasel_sim.simd import add, load, store, zero
+
+WIDTH = 128
+"""Numbers of a register: enough that finding out what to do is nothing beside doing it, few enough for the cache."""
+
+
+@njit(cache=True, fastmath={"contract", "nsz"}, error_model="numpy")
+def operate(operations, first, last, registers):
+    """Do the operations [n, 5] from the first until before the last on the registers [n, WIDTH]."""
+    for n in range(first, last):
+        what, out = operations[n, 0], registers[operations[n, 1]]
+        a, b, c = registers[operations[n, 2]], registers[operations[n, 3]], registers[operations[n, 4]]
+        if what == 0:
+            for i in range(WIDTH):
+                out[i] = a[i] + b[i]
+        elif what == 1:
+            for i in range(WIDTH):
+                out[i] = a[i] - b[i]
+        elif what == 2:
+            for i in range(WIDTH):
+                out[i] = a[i] * b[i]
+        elif what == 3:
+            for i in range(WIDTH):
+                out[i] = a[i] / b[i]
+        elif what == 4:
+            for i in range(WIDTH):
+                divisor = b[i]
+                zero = divisor == 0.0
+                out[i] = (0.0 if zero else a[i]) / (1.0 if zero else divisor)
+        elif what == 5:
+            for i in range(WIDTH):
+                out[i] = -a[i]
+        elif what == 6:
+            for i in range(WIDTH):
+                out[i] = abs(a[i])
+        elif what == 7:
+            for i in range(WIDTH):
+                out[i] = (1.0 if a[i] > 0.0 else 0.0) - (1.0 if a[i] < 0.0 else 0.0)
+        elif what == 8:
+            for i in range(WIDTH):
+                out[i] = math.sqrt(a[i])
+        elif what == 9:
+            for i in range(WIDTH):
+                out[i] = a[i] ** b[i]
+        elif what == 10:
+            for i in range(WIDTH):
+                out[i] = math.exp(a[i])
+        elif what == 11:
+            for i in range(WIDTH):
+                out[i] = math.expm1(a[i])
+        elif what == 12:
+            for i in range(WIDTH):
+                out[i] = np.log(a[i])
+        elif what == 13:
+            for i in range(WIDTH):
+                out[i] = np.log1p(a[i])
+        elif what == 14:
+            for i in range(WIDTH):
+                out[i] = math.sin(a[i])
+        elif what == 15:
+            for i in range(WIDTH):
+                out[i] = math.cos(a[i])
+        elif what == 16:
+            for i in range(WIDTH):
+                out[i] = np.arcsin(a[i])
+        elif what == 17:
+            for i in range(WIDTH):
+                out[i] = np.arccos(a[i])
+        elif what == 18:
+            for i in range(WIDTH):
+                out[i] = math.atan(a[i])
+        elif what == 19:
+            for i in range(WIDTH):
+                out[i] = math.atan2(a[i], b[i])
+        elif what == 20:
+            for i in range(WIDTH):
+                out[i] = math.sinh(a[i])
+        elif what == 21:
+            for i in range(WIDTH):
+                out[i] = math.cosh(a[i])
+        elif what == 22:
+            for i in range(WIDTH):
+                out[i] = math.tanh(a[i])
+        elif what == 23:
+            for i in range(WIDTH):
+                out[i] = a[i] if a[i] >= b[i] else b[i]
+        elif what == 24:
+            for i in range(WIDTH):
+                out[i] = a[i] if a[i] <= b[i] else b[i]
+        elif what == 25:
+            for i in range(WIDTH):
+                out[i] = 1.0 if a[i] > b[i] else 0.0
+        elif what == 26:
+            for i in range(WIDTH):
+                out[i] = 1.0 if a[i] >= b[i] else 0.0
+        elif what == 27:
+            for i in range(WIDTH):
+                out[i] = 1.0 if a[i] == b[i] else 0.0
+        elif what == 28:
+            for i in range(WIDTH):
+                out[i] = b[i] if a[i] != 0.0 else c[i]
+
+
+POSITION, VELOCITY, ACCELERATION, TANGENT, TANGENT_RATE, DEFORMATION, RATE, FIXED, OF_MUSCLE = range(9)
+"""Where an input comes from."""
+HEAD = 15
+(
+    INPUTS,
+    INPUTS_END,
+    UNIFORM,
+    UNIFORM_END,
+    BEFORE,
+    OPERATIONS,
+    OPERATIONS_END,
+    OUTPUTS,
+    OUTPUTS_END,
+    POINTS,
+    PER,
+    NUMBERS,
+    REALS,
+    FOUND,
+    CONSTANTS,
+) = range(HEAD)
+"""What is noted of every program, see `tapes.Tapes`."""
+
+
+@njit(inline="always")
+def _at_sites(field, reals, nodes, weights, per, first, count, R, to_x, to_y, lane):
+    """Interpolate a nodal field at sites, its components into registers."""
+    lanes = len(lane)
+    for s in range(count):
+        x, y = zero(lane), zero(lane)
+        for k in range((first + s) * per, (first + s + 1) * per):
+            weight, at = reals[weights + k], 2 * nodes[k] * lanes
+            x, y = x + weight * load(field, at, lane), y + weight * load(field, at + lanes, lane)
+        store(R, to_x + s * lanes, x)
+        store(R, to_y + s * lanes, y)
+
+
+@njit(inline="always")
+def _at_points(field, component, mesh, chosen, per, first, count, R, to, lane):
+    """One component of the gradient of a nodal field at Gauss points, into a register."""
+    elements, gradients, _, stretch = mesh
+    lanes, row, column = len(lane), component // 2, component % 2
+    place, g = first // per, first % per - 1
+    for s in range(count):
+        g += 1
+        if g == per:
+            place, g = place + 1, 0
+        e, total = chosen[place], zero(lane)
+        for n in range(8):
+            along = gradients[e, g, n, column]
+            total = total + along * load(field, (2 * elements[e, n] + row) * lanes, lane)
+        if column == 0:
+            total = total / load(stretch, (e * per + g) * lanes, lane)
+        store(R, to + s * lanes, total)
+
+
+@njit(inline="always")
+def _gather(tables, head, n, motion, mesh, signals, first, count, lane):
+    """Write an input at some points into its register."""
+    _, inputs, _, _, _, numbers, reals, _, _, R = tables
+    source, component, lanes = inputs[n, 0], inputs[n, 1], len(lane)
+    to, to_y = inputs[n, 2] * WIDTH, inputs[n, 3] * WIDTH
+    points, per, places, weights = head[POINTS], head[PER], numbers[head[NUMBERS] :], head[REALS]
+    x, v, a = motion
+    if source == POSITION:
+        _at_sites(x, reals, places, weights, per, first, count, R, to, to_y, lane)
+    elif source == VELOCITY:
+        _at_sites(v, reals, places, weights, per, first, count, R, to, to_y, lane)
+    elif source == ACCELERATION:
+        _at_sites(a, reals, places, weights, per, first, count, R, to, to_y, lane)
+    elif source == TANGENT:
+        _at_sites(x, reals, places, weights + points * per, per, first, count, R, to, to_y, lane)
+    elif source == TANGENT_RATE:
+        _at_sites(v, reals, places, weights + points * per, per, first, count, R, to, to_y, lane)
+    elif source == DEFORMATION:
+        _at_points(x, component, mesh, places, per, first, count, R, to, lane)
+    elif source == RATE:
+        _at_points(v, component, mesh, places, per, first, count, R, to, lane)
+    elif source == FIXED:
+        start = component + first * lanes
+        for at in range(0, count * lanes, lanes):
+            store(R, to + at, load(reals, start + at, lane))
+    else:
+        muscle = places[points // per :]
+        for s in range(count):
+            own = muscle[first + s]
+            row = own + component if own > 0 else 0
+            store(R, to + s * lanes, load(signals, row * lanes, lane))
+
+
+@njit(cache=True, fastmath={"contract", "nsz"}, error_model="numpy")
+def evaluate(tables, program, motion, mesh, signals, lane):
+    """Do a program for all its points, and write its outputs.
+
+    motion: position, velocity, acceleration [nodes, 2, lanes]; mesh: elements, gradients, areas, stretch; signals: the
+    drive, see `DriveState.signals`.
+    """
+    heads, inputs, uniform, operations, outputs, _, _, constants, found, R = tables
+    head, lanes = heads[program], len(lane)
+    if head[OPERATIONS_END] < 0:
+        return
+    for n in range(head[UNIFORM], head[UNIFORM_END]):
+        value = load(signals, uniform[n, 1] * lanes, lane)
+        if uniform[n, 0] == 0:
+            value = load(constants, uniform[n, 1] * lanes, lane)
+        for at in range(uniform[n, 2] * WIDTH, (uniform[n, 2] + 1) * WIDTH, lanes):
+            store(R, at, value)
+    operate(operations, head[BEFORE], head[OPERATIONS], R)
+    points, most, present = head[POINTS], WIDTH // lanes, load(constants, head[CONSTANTS] * lanes, lane)
+    for first in range(0, points, most):
+        count = min(most, points - first)
+        for n in range(head[INPUTS], head[INPUTS_END]):
+            _gather(tables, head, n, motion, mesh, signals, first, count, lane)
+        operate(operations, head[OPERATIONS], head[OPERATIONS_END], R)
+        for n in range(head[OUTPUTS], head[OUTPUTS_END]):
+            to = head[FOUND] + (outputs[n, 0] * points + first) * lanes
+            register = outputs[n, 1] * WIDTH
+            for at in range(0, count * lanes, lanes):
+                store(found, to + at, present * load(R, register + at, lane))
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def subtract_forces(tables, program, out, lane):
+    """Subtract forces at sites, rows 0 and 1 of what a program found, from nodal ones [nodes, 2, lanes]."""
+    heads, _, _, _, _, numbers, reals, _, found, _ = tables
+    head, lanes = heads[program], len(lane)
+    points, per, nodes = head[POINTS], head[PER], numbers[head[NUMBERS] :]
+    weights, here = head[REALS] + 2 * points * per, head[FOUND]
+    for s in range(points):
+        x, y = load(found, here + s * lanes, lane), load(found, here + (points + s) * lanes, lane)
+        for k in range(s * per, (s + 1) * per):
+            weight, at = -reals[weights + k], 2 * nodes[k] * lanes
+            add(out, at, weight * x)
+            add(out, at + lanes, weight * y)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def add_stresses(tables, program, place, out, lane):
+    """Add stresses, rows 0 to 3, to those of the elements in their places, [n, points, 4, lanes]."""
+    heads, _, _, _, outputs, numbers, _, _, found, _ = tables
+    head, lanes = heads[program], len(lane)
+    points, per, elements = head[POINTS], head[PER], numbers[head[NUMBERS] :]
+    for n in range(head[OUTPUTS], head[OUTPUTS_END]):
+        row, i, of = outputs[n, 0], outputs[n, 2], outputs[n, 3]
+        if of >= 0:
+            continue
+        here = head[FOUND] + row * points * lanes
+        for e in range(points // per):
+            for g in range(per):
+                at = 4 * (place[elements[e]] * per + g) + i
+                add(out, at * lanes, load(found, here + (e * per + g) * lanes, lane))
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def add_slopes(tables, program, first, place, weights, site_matrices, stress_matrix, lane):
+    """Add the derivatives by the end-of-step acceleration, which moves position, velocity and acceleration by weights
+    [3, lanes]: less those of forces at sites, from number `first` on, by the value and by the tangent there
+    [sites, 2, 2, lanes]; those of stresses [n, points, 4, 4, lanes].
+    """
+    heads, _, _, _, outputs, numbers, _, _, found, _ = tables
+    by_value, by_tangent = site_matrices
+    head, lanes = heads[program], len(lane)
+    points, per, elements = head[POINTS], head[PER], numbers[head[NUMBERS] :]
+    for n in range(head[OUTPUTS], head[OUTPUTS_END]):
+        row, i, of, j = outputs[n, 0], outputs[n, 2], outputs[n, 3], outputs[n, 4]
+        if of < 0:
+            continue
+        here = head[FOUND] + row * points * lanes
+        weight = load(
+            weights,
+            (of if of < TANGENT else of - TANGENT if of < DEFORMATION else of - DEFORMATION) * lanes,
+            lane,
+        )
+        less = 0.0 - weight
+        if of < TANGENT:
+            for s in range(points):
+                add(
+                    by_value,
+                    (4 * (first + s) + 2 * i + j) * lanes,
+                    less * load(found, here + s * lanes, lane),
+                )
+        elif of < DEFORMATION:
+            for s in range(points):
+                add(
+                    by_tangent,
+                    (4 * (first + s) + 2 * i + j) * lanes,
+                    less * load(found, here + s * lanes, lane),
+                )
+        else:
+            for e in range(points // per):
+                for g in range(per):
+                    at = 16 * (place[elements[e]] * per + g) + 4 * i + j
+                    add(stress_matrix, at * lanes, weight * load(found, here + (e * per + g) * lanes, lane))
+
+
+@njit(cache=True, error_model="numpy")
+def respond(tables, laws, with_slopes, motion, mesh, signals, weights, terms, lane):
+    """What all laws add to a step; with their derivatives where wanted, weighted as in `add_slopes`.
+
+    laws [n, 3]: of every law the program of its value, that of its response, and its first site, or -1 for a stress;
+    terms: see `law_table.LawTable`.
+    """
+    forces, (_, by_value, by_tangent), (place, stress, matrix) = terms
+    forces[:] = 0.0
+    stress[:] = 0.0
+    if with_slopes:
+        by_value[:] = 0.0
+        by_tangent[:] = 0.0
+        matrix[:] = 0.0
+    for n in range(laws.shape[0]):
+        program, first = laws[n, 1] if with_slopes else laws[n, 0], laws[n, 2]
+        evaluate(tables, program, motion, mesh, signals, lane)
+        if first >= 0:
+            subtract_forces(tables, program, forces, lane)
+        else:
+            add_stresses(tables, program, place, stress, lane)
+        if with_slopes:
+            add_slopes(tables, program, first, place, weights, (by_value, by_tangent), matrix, lane)
