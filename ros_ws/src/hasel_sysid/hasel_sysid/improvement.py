@@ -85,6 +85,8 @@ def improve(
             add(_ended(problem, found.models[names].fitted.fit), order, None)
     reason, nothing_else = _why_the_last(found, policy, stages[0], opposed, constant)
     concluded = _conclude(stages, reason, nothing_else)
+    if concluded.status is Status.NOTHING_MISSING and (doubt := _unseen_runs_differ(stages[-1], said)):
+        concluded = replace(concluded, status=Status.UNEXPLAINED, unexplained_fraction=1.0, reason=doubt)
     if opposed:
         concluded = replace(concluded, status=Status.UNEXPLAINED)
     if concluded.status is Status.UNEXPLAINED:
@@ -97,6 +99,17 @@ def improve(
         opposed=bool(opposed),
         constant=constant,
         models=found.table,
+    )
+
+
+def _unseen_runs_differ(stage: Stage, said: Diagnosis) -> str:
+    """Why nothing is known to be missing though the fitted runs are described: the unseen ones are not."""
+    unseen = stage.mae_validation
+    if unseen is None or unseen <= POLICY.lack_of_fit * max(stage.mae_fit, said.noise.mean_absolute):
+        return ""
+    return (
+        f"The fitted runs are described ({stage.mae_fit:.2g}), the unseen ones are not ({unseen:.2g}): fit runs that are "
+        "more like them (levels and frequencies of the drive), or check their drive, times and units."
     )
 
 

@@ -1,53 +1,10 @@
-"""Where the search for an effect starts."""
+"""What a model may lack or have wrong."""
 
 import pytest
-from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import load_model
-from hasel_sysid.candidates import candidate_effects, resized, starts
+from hasel_sysid.candidates import Candidate, candidate_effects, compatible, constants_of, effects_of
 
-
-def test_what_is_one_sided_starts_at_its_typical_size():
-    """A slew limit at 2e-5 s/V, or at twice that."""
-    (start,) = starts(catalogue()["current_limit"])
-    assert start.values == {"current_limit.inverse_rate": 2e-5}
-    assert resized(start, 2.0).values == {"current_limit.inverse_rate": 4e-5}
-
-
-def test_what_may_have_either_sign_starts_at_its_null_only():
-    """Its derivatives there tell the sign."""
-    effect = catalogue()["muscle_asymmetry"]
-    (start,) = starts(effect)
-    assert start.changes_nothing
-    assert resized(start, 2.0).values == start.values
-
-
-def test_a_start_of_half_the_size_is_typical_of_its_own():
-    """A payload of 5 g, whose signature is that of 5 g; a relaxation time keeps its length."""
-    start = resized(starts(catalogue()["payload"])[0], 0.5)
-    assert start.values == start.typical == {"payload.mass": 0.005}
-    creep = starts(catalogue()["viscoelastic_creep"])[0]
-    half = resized(creep, 0.5).values
-    assert half["viscoelastic_creep.modulus_ratio"] == 0.5 * creep.values["viscoelastic_creep.modulus_ratio"]
-    assert half["viscoelastic_creep.relaxation_time"] == creep.values["viscoelastic_creep.relaxation_time"]
-
-
-def test_a_place_is_begun_from_everywhere_and_a_time_from_both_sides():
-    """Derivatives lead from one relaxation time to another, and not past a place that hardly moves."""
-    tether, creep = catalogue()["tether"], catalogue()["viscoelastic_creep"]
-    assert {s.values["tether.position"] for s in starts(tether)} == {0.005, 0.05, 0.094, 0.15}
-    assert len(starts(creep)) == 2
-
-
-@pytest.mark.parametrize("name", catalogue())
-def test_resized_starts_lie_within_the_range_and_leave_nuisances_alone(name):
-    """A relaxation time or a position is scanned as before."""
-    effect = catalogue()[name]
-    for start in starts(effect):
-        for p in effect.parameters:
-            value = resized(start, 100.0).values[f"{name}.{p.name}"]
-            assert p.lower <= value <= p.upper
-            if p.scan:
-                assert value == start.values[f"{name}.{p.name}"]
+DENSITY = "material.density_kg_per_m3"
 
 
 def test_a_plus_adds_to_the_catalogue_and_without_one_nothing_else_is_considered(tmp_path):
@@ -84,3 +41,44 @@ def test_forces_of_a_fluid_are_suspects_only_where_there_is_one():
         "finite_depth_added_mass",
     }
     assert wet - dry == {*of_fluids, "form_drag"} and dry < wet
+
+
+@pytest.fixture
+def candidates() -> dict[str, Candidate]:
+    """Effects and constants of the swimmer, by name."""
+    model = load_model("swimmer")
+    return {one.name: one for one in (*effects_of(model), *constants_of(model))}
+
+
+def test_what_does_the_same_goes_not_into_one_model(candidates):
+    """A camera's latency and a dead time exclude each other; a payload goes with either, and with itself not."""
+    latency, delay, payload = (candidates[n] for n in ("camera_latency", "transport_delay", "payload"))
+    assert not compatible([latency, delay])
+    assert compatible([latency, payload]) and compatible([delay, payload])
+    assert not compatible([payload, payload])
+
+
+def test_a_constant_of_the_file_is_a_candidate_alone(candidates):
+    """A number that is wrong is to be measured before effects are believed in beside it."""
+    assert compatible([candidates[DENSITY]])
+    assert not compatible([candidates[DENSITY], candidates["payload"]])
+
+
+def test_a_constant_ranges_around_what_the_file_says(candidates):
+    """Its null is the file's value, which it has when it is added; what is free already is no candidate."""
+    model, density = load_model("swimmer"), candidates[DENSITY]
+    (p,) = density.parameters
+    added = density.added_to(model)
+    assert added.values[DENSITY] == p.null == model.with_freed(DENSITY).values[DENSITY]
+    assert p.lower < p.null < p.typical < p.upper
+    assert density.is_constant and density.is_in(added) and not density.is_in(model)
+    assert DENSITY not in {one.name for one in constants_of(added)}
+
+
+def test_an_effect_is_added_at_its_null(candidates):
+    """And found there by its name; its size and its time are told apart."""
+    creep = candidates["viscoelastic_creep"]
+    added = creep.added_to(load_model("swimmer"))
+    assert creep.is_in(added) and not creep.is_in(load_model("swimmer"))
+    assert all(added.values[path] == p.null for path, p in creep.sizes.items())
+    assert list(creep.coordinates) == ["viscoelastic_creep.relaxation_time"]

@@ -1,12 +1,18 @@
 """What is said of an effect: one answer, and no number that nobody can believe."""
 
+import json
 import math
 
+import numpy as np
 import pytest
-from hasel_sysid.result import Diagnosis, Finding, Verdict
+from hasel_sim.model import load_model
 from hasel_sysid.noise.model import NoiseModel
+from hasel_sysid.result import Diagnosis, Finding, Verdict, diagnosis_json, open_values
+from hasel_sysid.testing.made_up_runs import made_up_fit
 
 RANGE = (0.0, 0.3)
+NAMES = ("soft_modulus.scale", "strain_softening.softening", "payload.mass")
+EFFECTS = ("soft_modulus", "strain_softening", "payload")
 
 
 def finding(verdict: Verdict, effect: str = "tilt", **changes) -> Finding:
@@ -65,17 +71,50 @@ def test_groups_of_what_is_ruled_out_are_not_told():
         finding(Verdict.ABSENT, "friction"),
     ]
     groups = [("drag", "friction"), ("sag", "tilt")]
-    found = Diagnosis(findings, groups, NoiseModel(1e-6, 0.0, 0.5), 0.0, 0.0, 0.0, 0.0)
-    assert found.groups_in_question == [("drag", "friction")]
-"""What an answer says of values that stay open."""
+    assert diagnosis(*findings, groups=groups).groups_in_question == [("drag", "friction")]
 
-import numpy as np
-import pytest
-from hasel_sim.model import load_model
-from hasel_sysid.improvement.open_values import open_values
 
-NAMES = ("soft_modulus.scale", "strain_softening.softening", "payload.mass")
-EFFECTS = ("soft_modulus", "strain_softening", "payload")
+def diagnosis(*findings: Finding, groups: list[tuple[str, ...]] = []) -> Diagnosis:  # noqa: B006
+    """Of a fitted beam."""
+    noise = NoiseModel(1e-6, 0.0, 0.5)
+    fit = made_up_fit(load_model("beam"), 0.01)
+    return Diagnosis(list(findings), groups, noise, noise, 0.0, 0.0, 0.0, 0.0, {}, fit)
+
+
+def test_of_a_model_that_describes_no_run_no_effect_is_absent():
+    """Nor undecided, nor invisible: nobody can know yet; what was added is missing, and nothing else is."""
+    said = diagnosis(
+        finding(Verdict.ABSENT),
+        finding(Verdict.MISSING, "drag"),
+        finding(Verdict.CANNOT_BE_SEEN, "sag"),
+        finding(Verdict.NOT_TRIED, "play"),
+    )
+    verdicts = [f.verdict for f in said.seen_beside(False, ("play",)).findings]
+    assert verdicts == [
+        Verdict.NOT_JUDGED,
+        Verdict.MISSING_IF_SIZE_MATTERS,
+        Verdict.NOT_JUDGED,
+        Verdict.MISSING,
+    ]
+    assert said.seen_beside(True).findings == said.findings
+    assert said.not_tried == ["play"]
+
+
+def test_where_no_effect_is_wrong_none_is_probable():
+    """Some could at most stand in its place."""
+    said = diagnosis(finding(Verdict.MISSING, probability=0.9)).of_no_effect()
+    assert said.probability_none == 1.0 and said.best is None
+    assert (said.findings[0].verdict, said.findings[0].probability) == (Verdict.MISSING_IF_SIZE_MATTERS, 0.0)
+
+
+def test_what_is_not_finite_is_null_in_json():
+    """A threshold or a standard error that no number tells."""
+    open_end = finding(
+        Verdict.CANNOT_BE_SEEN, visible_above=math.inf, expected={"tilt.angle": (0.1, math.inf)}
+    )
+    (row,) = diagnosis_json(diagnosis(open_end))["ranking"]
+    assert row["visible_above"] is None and row["expected"]["tilt.angle"]["std"] is None
+    json.dumps(row, allow_nan=False)
 
 
 def fitted(errors, correlation=0.0):

@@ -107,16 +107,11 @@ class Search:
         self.threshold = self.first.threshold
         if self.first.chance < self.policy.level:
             self._alone(self.screened, 0.2)
-            self._rounds(0.4)
-            if (
-                self._with_constants
-                and len(self._choose().chosen) != 1
-                and not self.problem.time_limit.is_over()
-            ):
-                self._say("numbers of the model file", 0.8)
+            if self._with_constants and self._tested(self._likeliest()).chance < self.policy.level:
+                self._say("numbers of the model file", 0.4)
                 self._constants, _ = screen_typical(self._low, constants_of(self.baseline.model))
-                self._alone(self._constants, 0.85)
-                self._rounds(0.9)
+                self._alone(self._constants, 0.45)
+            self._rounds(0.5)
         choice = self._choose()
         return Searched(
             self.models,

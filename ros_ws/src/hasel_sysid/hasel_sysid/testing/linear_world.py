@@ -61,6 +61,7 @@ class LinearWorld:
     ) -> None:
         """series [frames] of every effect; sizes: of those that are there; largest: plausible size of any."""
         self.runs = run_numbers() if runs is None else runs
+        self._model = load_model("beam").with_freed(_OWN)
         generator = np.random.default_rng([seed, 17])
         self._base = self._centred(smooth_series(generator, self.runs))
         self.series = {name: self._centred(one) for name, one in series.items()}
@@ -75,14 +76,15 @@ class LinearWorld:
         chosen = sorted(names)
         columns = np.column_stack([self._base, *(self.series[name] for name in chosen)])
         amounts = np.linalg.lstsq(columns, self.measured, rcond=None)[0]
-        model = with_made_up(
-            load_model("beam").with_freed(_OWN), *(self.candidates[name].effect for name in chosen)
-        )
+        model = with_made_up(self._model, *(self.candidates[name].effect for name in chosen))
         paths = [f"{name}.size" for name in chosen]
         unit = model.values[_OWN]
-        model = model.with_values({_OWN: unit * amounts[0], **dict(zip(paths, amounts[1:], strict=True))})
-        columns[:, 0] /= unit
-        residual = self.measured - self._base * amounts[0] - columns[:, 1:] @ amounts[1:]
+        amounts[0], columns[:, 0] = unit * amounts[0], columns[:, 0] / unit
+        known = self.likelihood.noise.standard_deviation / np.linalg.norm(columns, axis=0)
+        model = model.with_values(
+            *(dict(zip((_OWN, *paths), map(float, numbers), strict=True)) for numbers in (amounts, known))
+        )
+        residual = self.measured - columns @ amounts
         evaluation = evaluation_of_runs(
             [Run(f"run {n}", np.arange((self.runs == n).sum()) / 120.0) for n in np.unique(self.runs)],
             residual,

@@ -165,32 +165,29 @@ class MadeUpProblem(Problem):
 
     def _made_up(self, model: Model, names: tuple[str, ...]) -> Evaluation:
         series = self._of_experiments(self.world.sin_theta(model))
-        slopes = np.zeros((len(names), len(series), len(series[0])))
+        slopes = [np.zeros((len(own), len(names))) for own in series]
         for index, name in enumerate(names):
             step = 1e-6 * max(abs(model.values[name]), 1e-6)
             more, less = (
-                np.array(
-                    self._of_experiments(
-                        self.world.sin_theta_at(
-                            model.effects, {**model.values, name: model.values[name] + change}
-                        )
+                self._of_experiments(
+                    self.world.sin_theta_at(
+                        model.effects, {**model.values, name: model.values[name] + change}
                     )
                 )
                 for change in (step, -step)
             )
-            slopes[index] = (more - less) / (2 * step)
+            for of_run, above, below in zip(slopes, more, less, strict=True):
+                of_run[:, index] = (above - below) / (2 * step)
         simulations = [
-            Simulation(
-                one.run, own, names, slopes[:, number].T, np.zeros((len(own), 3, 2)), np.zeros((len(own), 2))
-            )
-            for number, (one, own) in enumerate(zip(self.experiments, series, strict=True))
+            Simulation(one.run, own, names, of_run, np.zeros((len(own), 3, 2)), np.zeros((len(own), 2)))
+            for one, own, of_run in zip(self.experiments, series, slopes, strict=True)
         ]
         return self._collect(model, names, simulations)
 
     def _of_experiments(self, of_runs: list[np.ndarray]) -> list[np.ndarray]:
-        """Of what is known of every run of the world, what belongs to the experiments."""
+        """Of what is known of every run of the world, what belongs to the experiments, or to their first frames."""
         number = {run.name: number for number, run in enumerate(self.world.runs)}
-        return [of_runs[number[one.run.name]] for one in self.experiments]
+        return [of_runs[number[one.run.name]][: len(one.run.time)] for one in self.experiments]
 
 
 def box_drive(voltage: float, frequency: float) -> DriveSchedule:

@@ -5,8 +5,7 @@ import pytest
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import load_model
 from hasel_sysid.errors import SysidError
-from hasel_sysid.estimation import METHODS, identify
-from hasel_sysid.estimation import FittedModel
+from hasel_sysid.estimation import METHODS, FittedModel, identify
 from hasel_sysid.testing.made_up_runs import made_up_evaluation
 
 NAME = "current_limit.inverse_rate"

@@ -5,8 +5,8 @@ import pytest
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import load_model
 from hasel_sim.run import Run
-from hasel_sysid.model_checking.constancy import trends
 from hasel_sysid.estimation import FittedModel
+from hasel_sysid.model_checking.constancy import trends
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.testing.made_up_runs import evaluation_of_runs
 

@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 from hasel_sim.model import load_model
 from hasel_sysid.command_line.summary import improvement_lines
-from hasel_sysid.diagnosis.goodness import Adequacy
-from hasel_sysid.result import Diagnosis, Finding, Verdict
 from hasel_sysid.estimation import FittedModel
-from hasel_sysid.result import Improvement, Stage, Status
-from hasel_sysid.result import WrongConstant
+from hasel_sysid.model_checking.lack_of_fit import GoodnessOfFit
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.report.from_diagnosis import diagnosis_content, ranked_rows
 from hasel_sysid.report.from_improvement import improvement_content, what_is_missing
 from hasel_sysid.report.write import render
+from hasel_sysid.result import Diagnosis, Finding, Improvement, Stage, Status, Verdict, WrongConstant
 from hasel_sysid.testing.made_up_runs import made_up_comparison, made_up_fit
 
 DRAG = {"quadratic_drag.coefficient": (0.25, 0.004)}
@@ -29,7 +27,8 @@ def diagnosis() -> Diagnosis:
         Finding("my_effect", Verdict.ABSENT, 0.01, 0.02, {}, {}, 0.1, 0.5),
     ]
     noise = NoiseModel(9e-6, 0.0, 0.5, "a test")
-    return Diagnosis(findings, [("quadratic_drag", "linear_drag")], noise, 0.0, 0.98, 0.99, 0.02)
+    groups, fit = [("quadratic_drag", "linear_drag")], _fit(load_model("swimmer").with_levels([4500.0]), 0.03)
+    return Diagnosis(findings, groups, noise, noise, 0.0, 0.98, 0.99, 0.02, {}, fit)
 
 
 @pytest.fixture
@@ -134,7 +133,7 @@ def test_a_wrong_number_is_a_stage_of_its_own(improvement):
         1.0,
         0.0024,
         str(constant),
-        adequacy=Adequacy(1.0, 0.0025),
+        goodness=GoodnessOfFit(1.0, 0.0025),
         constant=constant,
     )
     shown = [made_up_comparison(s.fit.model, "s", s.mae_fit, s.mae_validation) for s in stages]

@@ -1,10 +1,10 @@
-"""What a set is worth, against the predictive density computed run by run."""
+"""Elpd of left-out runs, against the predictive density computed run by run."""
 
 import numpy as np
 import pytest
 from hasel_sysid.projection import orthonormal
+from hasel_sysid.selection.cross_validation import Elpd, leave_one_run_out
 from hasel_sysid.selection.likelihood import Whitened
-from hasel_sysid.selection.worth import Worth, worth
 from scipy.stats import multivariate_normal
 
 RUNS = np.repeat(np.arange(5), 12)
@@ -31,7 +31,7 @@ def test_it_is_the_density_of_every_run_given_the_others():
         spread = np.eye(12) + columns[here] @ np.linalg.solve(information, columns[here].T)
         density = multivariate_normal(columns[here] @ mean, spread).logpdf(series[here])
         expected.append(density + 6 * np.log(2 * np.pi))
-    assert worth(fitted(columns, series), series, PRIOR_RUNS).densities == pytest.approx(expected)
+    assert leave_one_run_out(fitted(columns, series), series, PRIOR_RUNS).densities == pytest.approx(expected)
 
 
 def test_parameters_that_help_nobody_cost():
@@ -40,7 +40,9 @@ def test_parameters_that_help_nobody_cost():
     useless, series = generator.standard_normal((60, 6)), generator.standard_normal(60)
     few, many = (fitted(useless[:, :n], series) for n in (1, 6))
     assert many.logarithm > few.logarithm
-    assert worth(many, series, PRIOR_RUNS).total < worth(few, series, PRIOR_RUNS).total
+    assert (
+        leave_one_run_out(many, series, PRIOR_RUNS).total < leave_one_run_out(few, series, PRIOR_RUNS).total
+    )
 
 
 def test_an_amplitude_that_one_run_alone_shows_costs_a_few_units_only():
@@ -49,8 +51,8 @@ def test_an_amplitude_that_one_run_alone_shows_costs_a_few_units_only():
     own = np.where(RUNS == 2, np.sin(np.arange(60.0)), 0.0)
     nothing = fitted(np.zeros((60, 0)), series)
     cost = (
-        worth(nothing, series, PRIOR_RUNS).total
-        - worth(fitted(own[:, None], series), series, PRIOR_RUNS).total
+        leave_one_run_out(nothing, series, PRIOR_RUNS).total
+        - leave_one_run_out(fitted(own[:, None], series), series, PRIOR_RUNS).total
     )
     assert 0.0 < cost < 5.0
 
@@ -62,11 +64,13 @@ def test_the_standard_error_of_a_gain_is_how_it_varies():
     gains = []
     for _ in range(400):
         series = 0.4 * (one + other)[:, 0] + generator.standard_normal(60)
-        first, second = (worth(fitted(columns, series), np.ones(60), PRIOR_RUNS) for columns in (one, other))
+        first, second = (
+            leave_one_run_out(fitted(columns, series), np.ones(60), PRIOR_RUNS) for columns in (one, other)
+        )
         gains.append(first.over(second))
     scatter = np.std([gain.total for gain in gains])
     assert np.mean([gain.by_noise for gain in gains]) == pytest.approx(scatter, rel=0.25)
-    assert np.mean([gain.scatter for gain in gains]) == pytest.approx(scatter, rel=0.35)
+    assert scatter < np.mean([gain.error for gain in gains]) < 1.6 * scatter
 
 
 def test_runs_in_which_little_moves_are_no_disagreement():
@@ -74,10 +78,10 @@ def test_runs_in_which_little_moves_are_no_disagreement():
     power = np.array([1.0, 4.0, 9.0, 16.0, 25.0])
     nothing, every = np.zeros(60), np.zeros(5)
     by_power, alike = (
-        Worth(gains * power, nothing, powers) for gains, powers in ((2.0, power), (2.0, every + 1))
+        Elpd(gains * power, nothing, powers) for gains, powers in ((2.0, power), (2.0, every + 1))
     )
-    assert by_power.over(Worth(every, nothing, power)).scatter == pytest.approx(0.0, abs=1e-9)
-    assert alike.over(Worth(every, nothing, every + 1)).scatter == pytest.approx(
+    assert by_power.over(Elpd(every, nothing, power)).error == pytest.approx(0.0, abs=1e-9)
+    assert alike.over(Elpd(every, nothing, every + 1)).error == pytest.approx(
         5**0.5 * np.std(2 * power, ddof=1)
     )
 
@@ -86,8 +90,8 @@ def test_the_scatter_of_unequal_runs_is_how_their_sum_varies():
     """Gains with a variance in proportion to the power of their run, over many draws."""
     generator = np.random.default_rng(8)
     power = np.array([1.0, 4.0, 9.0, 16.0, 25.0])
-    nothing = Worth(np.zeros(5), np.zeros(60), power)
+    nothing = Elpd(np.zeros(5), np.zeros(60), power)
     drawn = 2.0 * power + np.sqrt(power) * generator.standard_normal((4000, 5))
-    gains = [Worth(gain, np.zeros(60), power).over(nothing) for gain in drawn]
+    gains = [Elpd(gain, np.zeros(60), power).over(nothing) for gain in drawn]
     variance = np.var([gain.total for gain in gains])
-    assert np.mean([gain.scatter**2 for gain in gains]) == pytest.approx(variance, rel=0.05)
+    assert np.mean([gain.error**2 for gain in gains]) == pytest.approx(variance, rel=0.05)

@@ -1,23 +1,13 @@
 """Which explanations a run is to tell apart."""
 
-from dataclasses import dataclass
-
 import pytest
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model, load_model
-from hasel_sysid.result import Diagnosis, Finding, Verdict
 from hasel_sysid.errors import SysidError
-from hasel_sysid.estimation import FittedModel
 from hasel_sysid.noise.model import NoiseModel
+from hasel_sysid.result import Diagnosis, Finding, Verdict
 from hasel_sysid.suggest import in_doubt, rivals
 from hasel_sysid.testing.made_up_runs import made_up_fit
-
-
-@dataclass
-class Baseline:
-    """Of a diagnosis's context, what a further explanation begins with."""
-
-    fit: FittedModel
 
 
 @pytest.fixture(scope="module")
@@ -38,8 +28,8 @@ def diagnosis(swimmer):
             )
             for effect, fitted in effects.items()
         ]
-        noise, baseline = NoiseModel(9e-6, 0.0, 0.5, "a test"), Baseline(made_up_fit(swimmer, 0.02))
-        return Diagnosis(findings, list(groups), noise, 0.0, 0.98, 0.99, 0.02, context=baseline)
+        noise, fit = NoiseModel(9e-6, 0.0, 0.5, "a test"), made_up_fit(swimmer, 0.02)
+        return Diagnosis(findings, list(groups), noise, noise, 0.0, 0.98, 0.99, 0.02, {}, fit)
 
     return make
 
