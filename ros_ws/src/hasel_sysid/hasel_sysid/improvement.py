@@ -108,8 +108,8 @@ def _unseen_runs_differ(stage: Stage, said: Diagnosis) -> str:
     if unseen is None or unseen <= POLICY.lack_of_fit * max(stage.mae_fit, said.noise.mean_absolute):
         return ""
     return (
-        f"The fitted runs are described ({stage.mae_fit:.2g}), the unseen ones are not ({unseen:.2g}): fit runs that are "
-        "more like them (levels and frequencies of the drive), or check their drive, times and units."
+        f"The fitted runs are described ({stage.mae_fit:.2g}), the unseen ones are not ({unseen:.2g}): fit runs "
+        "that are more like them (levels and frequencies of the drive), or check their drive, times and units."
     )
 
 

@@ -69,13 +69,16 @@ def _between(scan: Sequence[float]) -> list[float]:
     return [0.5 * (one + other) for one, other in zip(scan, scan[1:], strict=False)]
 
 
-def outward(candidate: Candidate) -> list[list[Start]]:
-    """Other than typical sizes, from the null outwards: a list for every time or place and either side of the null."""
+def from_typical(candidate: Candidate) -> list[list[Start]]:
+    """Other than typical sizes, going away from it: a list for every time or place, either side of the null, and either
+    way, towards the null and out to the end of the range.
+    """
     chains: dict[tuple, list[Start]] = {}
     for start in starts(candidate):
         if not start.typical:
-            chains.setdefault((start.place, start.factor > 0), []).append(start)
-    return [sorted(chain, key=lambda start: abs(start.factor)) for chain in chains.values()]
+            side = start.place, start.factor > 0, abs(start.factor) > 1
+            chains.setdefault(side, []).append(start)
+    return [sorted(chain, key=lambda start: abs(np.log(abs(start.factor)))) for chain in chains.values()]
 
 
 def _at(sizes: Mapping[str, EffectParameter], factor: float) -> dict[str, float]:
@@ -87,7 +90,7 @@ def _at(sizes: Mapping[str, EffectParameter], factor: float) -> dict[str, float]
 
 def _factors(p: EffectParameter) -> list[float]:
     """Multiples of the typical size over the plausible range: of a ratio evenly in its logarithm, else by sqrt(10) from
-    the typical size outwards, to either side of the null that the range has.
+    a tenth of the typical size outwards, to either side of the null that the range has.
     """
     step = p.typical - p.null
     if step == 0 or not np.isfinite([p.lower, p.upper]).all():
@@ -96,9 +99,10 @@ def _factors(p: EffectParameter) -> list[float]:
         return [float((value - p.null) / step) for value in np.geomspace(p.lower, p.upper, 7)[1:-1]]
     found, ends = [], ((p.lower - p.null) / step, (p.upper - p.null) / step)
     for side, end in ((-1.0, min(ends)), (1.0, max(ends))):
-        factor = _FACTOR
+        factor = 0.1
         while factor < side * end:
-            found.append(side * factor)
+            if side < 0 or not np.isclose(factor, 1.0):
+                found.append(side * factor)
             factor *= _FACTOR
     return found
 
@@ -106,13 +110,15 @@ def _factors(p: EffectParameter) -> list[float]:
 @dataclass(frozen=True, eq=False)
 class Screened:
     """A start, simulated once. change [frames]: of the simulated series by it; amount: by how many times that the sum
-    of squares is least, everything fitted followed to first order; predicted: the sum of squares there.
+    of squares is least, everything fitted followed to first order; predicted: the sum of squares there; strength: sum
+    of squares of the change over that of what is to be explained.
     """
 
     start: Start
     change: np.ndarray
     amount: float
     predicted: float
+    strength: float
 
     def values(self) -> dict[str, float]:
         """Of the candidate where a search from here begins: as it is, where its change alone promises nothing."""
@@ -146,4 +152,5 @@ def _screened(start: Start, residual: np.ndarray, basis: np.ndarray, change: np.
     if power > 0:
         amount = float(np.clip(own @ left / power, -_MOST if signed else 0.0, _MOST))
     beyond = left - amount * own
-    return Screened(start, change, amount, float(beyond @ beyond))
+    strength = float(change @ change) / max(float(residual @ residual), 1e-300)
+    return Screened(start, change, amount, float(beyond @ beyond), strength)

@@ -11,7 +11,7 @@ from hasel_sim.errors import SimulationError
 from hasel_sysid.candidates import Candidate
 from hasel_sysid.estimation.fit import TOLERANCE
 from hasel_sysid.estimation.least_squares import GaussNewton
-from hasel_sysid.estimation.starts import Screened, Start, outward, screen, starts
+from hasel_sysid.estimation.starts import Screened, Start, from_typical, screen, starts
 from hasel_sysid.problem import Evaluation, LowFidelityProblem
 from hasel_sysid.selection.likelihood import Likelihood
 
@@ -55,7 +55,7 @@ def race(
     worst = np.argsort(-np.bincount(about.runs, about.residual**2))[:_RUNS].tolist()
     few = problem.of_runs(worst)
     entries = [(one.predicted / about.sum_of_squares, one) for one in typical]
-    entries += _farther(few, typical)
+    entries += _other_sizes(few, typical)
     entries.sort(key=lambda entry: entry[0])
     best = min([to_beat, *(share for share, _ in entries)])
     needed = (1.0 - best) / _OPTIMISM
@@ -67,17 +67,17 @@ def race(
     return _run(problem, able[:_ENTRIES], likelihood, reach)
 
 
-def _farther(problem: LowFidelityProblem, typical: Sequence[Screened]) -> list[tuple[float, Screened]]:
-    """Other sizes with the share that each promises to leave: outwards for as long as the best amount lies beyond; of
-    what acts at a place all of them.
+def _other_sizes(problem: LowFidelityProblem, typical: Sequence[Screened]) -> list[tuple[float, Screened]]:
+    """Other sizes with the share that each promises to leave: outwards for as long as the best amount lies beyond,
+    and of what acts at a place to the end; towards the null as long as the change is more than what is to be explained.
     """
     going: list[tuple[Screened, list[Start]]] = []
     for one in typical:
-        for chain in outward(one.start.candidate):
+        for chain in from_typical(one.start.candidate):
             if chain[0].place == one.start.place:
                 going.append((one, chain))
     found: list[tuple[float, Screened]] = []
-    while going := [(one, chain) for one, chain in going if chain and _leads_beyond(one, chain[0])]:
+    while going := [(one, chain) for one, chain in going if chain and _leads_on(one, chain[0])]:
         if problem.time_limit.is_over():
             break
         seen = screen(problem, problem.known, [chain[0] for _, chain in going])
@@ -87,8 +87,10 @@ def _farther(problem: LowFidelityProblem, typical: Sequence[Screened]) -> list[t
     return found
 
 
-def _leads_beyond(one: Screened, farther: Start) -> bool:
-    return one.start.candidate.acts_at_a_place or one.amount * farther.factor >= abs(farther.factor)
+def _leads_on(one: Screened, to: Start) -> bool:
+    if abs(to.factor) < abs(one.start.factor):
+        return one.strength > 1.0
+    return one.start.candidate.acts_at_a_place or one.amount * to.factor >= abs(to.factor)
 
 
 def _run(
