@@ -29,8 +29,8 @@ def workers(options: argparse.Namespace, jobs: int | None = None) -> Iterator[Ex
 
 def usable_cores() -> int:
     """How many cores this process may use: by taskset, SLURM and a container's quota, not how many the machine has."""
-    counts = [len(os.sched_getaffinity(0)), os.environ.get("SLURM_CPUS_PER_TASK", ""), _quota()]
-    return max(1, min(int(count) for count in counts if str(count).isdecimal()))
+    counts = [str(len(os.sched_getaffinity(0))), os.environ.get("SLURM_CPUS_PER_TASK", ""), _quota()]
+    return max(1, min(int(count) for count in counts if count.isdecimal()))
 
 
 def _quota() -> str:

@@ -85,8 +85,8 @@ class VideoSource:
         )
         if self.size_px[0] * self.size_px[1] > MOST_PIXELS:
             raise TrackerError(
-                f"{self.path} says that its pictures are {self.size_px[0]} × {self.size_px[1]} px, which no camera takes; "
-                "its header is damaged: copy it again."
+                f"{self.path} says that its pictures are {self.size_px[0]} × {self.size_px[1]} px, which no camera "
+                "takes; its header is damaged: copy it again."
             )
         self._shaped = aspect != 1.0
         if self._shaped:
