@@ -3,7 +3,7 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help build test test-computing test-timed test-slow lint format docs demo bench bench-far bench-hidden soak clean
+.PHONY: help build test test-computing test-timed test-slow fuzz lint format docs demo bench bench-far bench-hidden soak clean
 
 ENVIRONMENT := . setup/environment.bash
 PACKAGES := hasel_recording hasel_driver hasel_tracker hasel_sim hasel_sysid hasel_bringup hasel_benchmark
@@ -43,6 +43,9 @@ test-timed:
 
 test-slow: build ## the slow tests
 	@$(ENVIRONMENT) && python -m pytest -m slow
+
+fuzz: build ## readers and parameters against 22,000 damaged inputs (FUZZ_SHARE=0.1: a tenth of them)
+	@$(ENVIRONMENT) && python -m pytest -q -o python_files='fuzz_*.py' -o python_functions='fuzz_*' -o timeout=7200 tests/fuzz
 
 docs: build ## write the reference from the docstrings, build/docs/index.html
 	@$(ENVIRONMENT) && python -m pip install --quiet --disable-pip-version-check -r docs/requirements.txt

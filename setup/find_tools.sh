@@ -6,6 +6,13 @@ missing() {
     exit 1
 }
 
+case "$(pwd)" in # colcon and CMake stumble over these after ten minutes, executables when they start
+    *[!A-Za-z0-9_./+@,-]*)
+        echo "The folder $(pwd) has a blank or another special sign in its path: move the checkout to a plain one." >&2
+        exit 1
+        ;;
+esac
+
 is_usable() { # is this a working Python 3.10, 3.11 or 3.12?
     "$1" -c 'import sys; sys.exit(not (3, 10) <= sys.version_info[:2] <= (3, 12))' 2>/dev/null
 }

@@ -105,7 +105,9 @@ def _table(path: Path, metadata: dict[str, str], top: str, rest: list[str], top_
     if padding:
         metadata = {key: value.removesuffix(padding) for key, value in metadata.items()}
     needed = max(n for n, name in enumerate(names, start=1) if name)
-    lines, cells, doubles = [], [], 0
+    lines: list[int] = []
+    cells: list[list[str]] = []
+    doubles = 0
     for line, text in enumerate(rest, start=top_line + 1):
         row = _split(path, text, separator, line)
         if not any(row):

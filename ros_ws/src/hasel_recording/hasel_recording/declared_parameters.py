@@ -1,10 +1,14 @@
 """Parameters of a node as a table, declared with description, unit and range as `ros2 param describe` lists them."""
 
+from array import array
 from collections.abc import Iterable
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 
+from hasel_recording.errors import nearest
 from hasel_recording.node_parameter import NodeParameter
 
 
@@ -31,9 +35,63 @@ def descriptor(parameter: NodeParameter, checked_elsewhere: bool = False) -> Par
 
 
 def declare(node: Node, table: Iterable[NodeParameter]) -> None:
-    """Declare every parameter; rclpy raises for a value given from outside that is out of range."""
-    for parameter in table:
-        node.declare_parameter(parameter.name, parameter.default, descriptor(parameter))
+    """Declare every parameter, with what was given from outside in the type that its default has.
+
+    The command line writes 30 for 30.0, and 0 for a source that is called "0": a whole number is taken for a number, a
+    number for a name. Ends the process with a sentence for a value that does not fit and for a name that is nearly one
+    of the table; rclpy raises for a default that is out of its own range.
+    """
+    by_name = {parameter.name: parameter for parameter in table}
+    given = node._parameter_overrides  # rclpy says nowhere else what was given
+    for name in [name for name in given if name not in by_name and "." not in name]:
+        near = nearest(name, by_name, similarity=0.8)
+        if near is not None and not node.has_parameter(name):
+            raise SystemExit(f"error: there is no parameter {name}: did you mean {near}?")
+    for name, parameter in by_name.items():
+        if name in given:
+            given[name] = _fitting(parameter, given[name])
+        try:
+            node.declare_parameter(name, parameter.default, descriptor(parameter))
+        except (InvalidParameterTypeException, InvalidParameterValueException):
+            if name not in given:
+                raise
+            raise SystemExit(f"error: {_refusal(parameter, given[name].value)}") from None
+    node.add_pre_set_parameters_callback(
+        lambda changes: [_fitting(by_name[c.name], c) if c.name in by_name else c for c in changes]
+    )
+
+
+def _fitting(parameter: NodeParameter, given: Parameter) -> Parameter:
+    """The same value in the type of the default, where that loses nothing; else as it is."""
+    value = given.value
+    if isinstance(parameter.default, list):
+        like = parameter.default[0] if parameter.default else ""
+        value = value if isinstance(value, (list, tuple, array)) else [value]
+        return Parameter(given.name, value=[_like(like, each) for each in value])
+    return Parameter(given.name, value=_like(parameter.default, value))
+
+
+def _like(default: object, value: object) -> object:
+    if isinstance(default, bool) or isinstance(value, bool):
+        return str(value).lower() if isinstance(default, str) else value
+    if isinstance(default, float) and isinstance(value, int):
+        return float(value)
+    if isinstance(default, int) and isinstance(value, float) and value.is_integer():
+        return int(value)
+    if isinstance(default, str) and isinstance(value, (int, float)):
+        return f"{value:.15g}"
+    return value
+
+
+def _refusal(parameter: NodeParameter, value: object) -> str:
+    kind = {bool: "true or false", int: "a whole number", float: "a number", str: "a text"}.get(
+        type(parameter.default), "a list"
+    )
+    span = "" if parameter.low is None else f" from {parameter.low:g} to {parameter.high:g}"
+    return (
+        f"the parameter {parameter.name} is {value!r}; expected {kind}{span}{' ' * bool(parameter.unit)}"
+        f"{parameter.unit} ({parameter.description}), such as {parameter.default!r}"
+    )
 
 
 def words(node: Node, name: str) -> tuple[str, ...]:

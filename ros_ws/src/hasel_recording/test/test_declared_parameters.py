@@ -1,12 +1,16 @@
 """Parameters as a table, and what ROS is told of them."""
 
+from contextlib import contextmanager
+
 import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
 
+import rclpy
 from hasel_recording.declared_parameters import declare, descriptor, words
 from hasel_recording.node_parameter import NodeParameter
 from hasel_recording.spinning import node_alone
+from rclpy.context import Context
 from rclpy.exceptions import InvalidParameterValueException
 from rclpy.parameter import Parameter
 
@@ -65,3 +69,67 @@ def test_usage_tells_unit_and_range():
     """For --help."""
     assert RATE.usage == ("rate", 120.0, "of the camera [1/s, 1 to 1000]")
     assert METHOD.usage == ("method", "blobs", "how markers are found")
+
+
+SOURCE = NodeParameter("source", "topic:/x", "camera, file or topic")
+COUNT = NodeParameter("queue_size", 8, "of frames", "", 1, 100)
+TABLE = [RATE, METHOD, NAMES, SOURCE, COUNT, NodeParameter("offsets", [0.0], "of channels", "V")]
+
+
+def started(**given):
+    """A node to which these parameters were given on the command line, declared."""
+    context = Context()
+    rclpy.init(context=context)
+    overrides = [Parameter(name, value=value) for name, value in given.items()]
+    node = rclpy.create_node("given", context=context, parameter_overrides=overrides)
+    try:
+        declare(node, TABLE)
+        yield node
+    finally:
+        node.destroy_node()
+        context.try_shutdown()
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "taken"),
+    [
+        ("source", 0, "0"),
+        ("source", 20261127, "20261127"),
+        ("source", 100000.0, "100000"),
+        ("source", True, "true"),
+        ("rate", 30, 30.0),
+        ("queue_size", 4.0, 4),
+        ("names", "drag", ["drag"]),
+        ("names", [1, 2], ["1", "2"]),
+        ("offsets", [1, 2], [1.0, 2.0]),
+    ],
+)
+def test_values_are_taken_as_they_are_typed(name, given, taken):
+    """A whole number where a number is wanted, a number where a name is, one word for a list; later too."""
+    with contextmanager(started)(**{name: given}) as node:
+        value = node.get_parameter(name).value
+        assert (list(value) if isinstance(taken, list) else value) == taken
+        if name == "rate":
+            assert node.set_parameters([Parameter("rate", value=25)])[0].successful
+            assert node.get_parameter("rate").value == 25.0
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "said"),
+    [
+        ("queue_size", 0, "the parameter queue_size is 0; expected a whole number from 1 to 100"),
+        ("rate", "fast", "the parameter rate is 'fast'; expected a number from 1 to 1000 1/s"),
+        ("queue_size", 2.5, "the parameter queue_size is 2.5; expected a whole number"),
+        ("sorce", "x", "there is no parameter sorce: did you mean source"),
+    ],
+)
+def test_what_does_not_fit_ends_the_node_in_a_sentence(name, given, said):
+    """Out of range, of another type, or misspelt: no stack trace."""
+    with pytest.raises(SystemExit, match=said), contextmanager(started)(**{name: given}):
+        pass
+
+
+def test_names_of_others_are_left_alone():
+    """A parameter file for all nodes may hold what this one does not know."""
+    with contextmanager(started)(wingspan=3.0, use_sim_time=False) as node:
+        assert node.get_parameter("rate").value == 120.0

@@ -5,7 +5,6 @@ import sys
 from collections.abc import Sequence
 
 from hasel_sim.model import Model
-from hasel_sim.parallel import executor
 
 from hasel_sysid.command_line.inputs import chosen_model, load_all
 from hasel_sysid.command_line.json_file import write_json
@@ -13,6 +12,7 @@ from hasel_sysid.command_line.parsers import compare_parser
 from hasel_sysid.command_line.progress import progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import code_after, show
+from hasel_sysid.command_line.workers import workers
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.dataset import Experiment, for_model
 from hasel_sysid.report.from_results import comparison_content, never_fitted
@@ -40,8 +40,8 @@ def _compare(options: argparse.Namespace) -> int:
     comparisons: list[Comparison] = []
     firsts: list[str] = []
     try:
-        jobs = options.jobs or _worth_it(models, [*experiments, *unseen])
-        with executor(jobs, options.scheduler) as pool, progress_bar("compare") as progress:
+        jobs = _worth_it(models, [*experiments, *unseen])
+        with workers(options, jobs) as pool, progress_bar("compare") as progress:
             for done, (label, model) in enumerate(models):
                 firsts.append(never_fitted(label, model))
                 if firsts[-1]:

@@ -4,8 +4,6 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from hasel_sim.parallel import executor
-
 from hasel_sysid.command_line.inputs import load_inputs
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import diagnose_parser
@@ -13,6 +11,7 @@ from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import code_after, show, summarise, tell
 from hasel_sysid.command_line.summary import diagnosis_lines
+from hasel_sysid.command_line.workers import workers
 from hasel_sysid.compare import compare
 from hasel_sysid.estimation import fit_baseline
 from hasel_sysid.improvement import diagnose
@@ -35,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _diagnose(options: argparse.Namespace) -> int:
     given, limit = load_inputs(options), TimeLimit(options.seconds)
-    with executor(options.jobs, options.scheduler) as pool, progress_bar("diagnose") as progress:
+    with workers(options) as pool, progress_bar("diagnose") as progress:
         problem = Problem(given.experiments, pool, given.noise, limit)
         fit = fit_baseline(problem, given.model, part(progress, "fit: ", 0.0, 0.3))
         found = diagnose(problem, fit, options.effects, part(progress, "diagnosis: ", 0.3, 0.95))

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hasel_sim.model import Model, save_model
-from hasel_sim.parallel import executor
 
 from hasel_sysid.command_line.best_so_far import BestSoFar
 from hasel_sysid.command_line.inputs import load_inputs
@@ -15,6 +14,7 @@ from hasel_sysid.command_line.parsers import fit_parser
 from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import code_after, show
+from hasel_sysid.command_line.workers import workers
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.data_gate import Finding
 from hasel_sysid.errors import SysidError
@@ -44,7 +44,7 @@ def _fit(options: argparse.Namespace) -> int:
         )
     problem = None
     try:
-        with executor(options.jobs, options.scheduler) as pool, progress_bar("fit") as progress:
+        with workers(options) as pool, progress_bar("fit") as progress:
             problem = BestSoFar(given.experiments, pool)
             result = identify(problem, given.model, options.method, part(progress, "", 0.0, 0.9))
             label, last = f"{given.label}, fitted", part(progress, "", 0.95, 1.0)

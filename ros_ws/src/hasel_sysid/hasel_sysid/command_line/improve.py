@@ -7,7 +7,7 @@ from concurrent.futures import Executor
 from pathlib import Path
 
 from hasel_sim.model import Model, save_model
-from hasel_sim.parallel import executor, simulate_all
+from hasel_sim.parallel import simulate_all
 
 from hasel_sysid.command_line.inputs import load_inputs
 from hasel_sysid.command_line.json_file import write_json
@@ -16,6 +16,7 @@ from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import code_after, show, summarise, tell
 from hasel_sysid.command_line.summary import improvement_lines
+from hasel_sysid.command_line.workers import workers
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.compare.compare import comparison_of
 from hasel_sysid.dataset import Experiment
@@ -54,7 +55,7 @@ def _improve(options: argparse.Namespace) -> int:
         written.append(stage)
 
     try:
-        with executor(options.jobs, options.scheduler) as pool, progress_bar("improve") as progress:
+        with workers(options) as pool, progress_bar("improve") as progress:
             start = compare(model, experiments, pool, unseen, label, part(progress, "start: ", 0.0, 0.03))
             found = improve(
                 Problem(experiments, pool, given.noise, limit),

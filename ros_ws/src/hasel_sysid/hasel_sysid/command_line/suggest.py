@@ -7,7 +7,6 @@ from functools import partial
 
 from hasel_recording import HASEL_PAIR
 from hasel_sim.model import Model
-from hasel_sim.parallel import executor
 from ruamel.yaml import YAML
 
 from hasel_sysid.command_line.inputs import load_inputs
@@ -15,6 +14,7 @@ from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import suggest_parser
 from hasel_sysid.command_line.progress import progress_bar
 from hasel_sysid.command_line.running import run_command
+from hasel_sysid.command_line.workers import workers
 from hasel_sysid.drive_match import drive_unit
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import fit_baseline
@@ -39,7 +39,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _suggest(options: argparse.Namespace) -> None:
     given = load_inputs(options)
-    with executor(options.jobs, options.scheduler) as pool, progress_bar("suggest") as progress:
+    with workers(options) as pool, progress_bar("suggest") as progress:
         problem = Problem(given.experiments, pool, given.noise)
         named = any(not name.startswith("+") for name in options.effects or ())
         fit = fit_baseline(problem, given.model, lambda text, share: progress(text, 0.15 * share))

@@ -12,6 +12,7 @@ from hasel_sim.parallel import executor
 
 from hasel_sysid.command_line.parsers import workbench_parser
 from hasel_sysid.command_line.running import run_command
+from hasel_sysid.command_line.workers import workers
 from hasel_sysid.errors import SysidError
 
 
@@ -47,7 +48,7 @@ def _serve(options: argparse.Namespace) -> int:
     folder = options.output.resolve()
     jobs, rig = Jobs(), Rig()
     with ExitStack() as open_:
-        pool = open_.enter_context(executor(options.jobs, options.scheduler))
+        pool = open_.enter_context(workers(options))
         hand = open_.enter_context(
             executor(2)
         )  # processes of their own: what is dragged never waits for a search

@@ -49,7 +49,7 @@ def write_run(
 def _write_csv(path: Path, run: TrackedRun, drive: Drive | None, metadata: dict[str, str]) -> str:
     time_s = run.time_s - run.time_s[0]
     signal, channels = (None, HASEL_PAIR) if drive is None else (drive.at(time_s), drive.channels)
-    switches = {} if drive is None else _switches(drive, time_s)
+    when, values = (None, None) if drive is None else _switches(drive, time_s)
     markers, unit = (run.markers_px, "px") if run.markers_m is None else (run.markers_m, "m")
     names = marker_names(markers.shape[1])
     recording = Recording(
@@ -62,7 +62,8 @@ def _write_csv(path: Path, run: TrackedRun, drive: Drive | None, metadata: dict[
         metadata,
         channels=channels,
         marker_names=names,
-        **switches,
+        drive_time_s=when,
+        drive_values=values,
     )
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", RecordingWarning)
@@ -70,12 +71,12 @@ def _write_csv(path: Path, run: TrackedRun, drive: Drive | None, metadata: dict[
     return " ".join(str(each.message) for each in caught)
 
 
-def _switches(drive: Drive, time_s: np.ndarray) -> dict[str, np.ndarray]:
-    """When the drive of a Recording changes, where that is not at frames, and to what."""
+def _switches(drive: Drive, time_s: np.ndarray) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """When the drive changes and to what, for a Recording; None, None where that is at frames."""
     when = _changes(drive, time_s[-1])
     if np.abs(when[:, None] - time_s).min(axis=1).max() < AT_FRAME_S:
-        return {}
-    return {"drive_time_s": when, "drive_values": drive.at(when)}
+        return None, None
+    return when, drive.at(when)
 
 
 def _changes(drive: Drive, end_s: float) -> np.ndarray:

@@ -23,6 +23,7 @@ START_STAMP = re.compile(r"start_stamp_ns=(\d+)")
 CAPTURE_RATES = ("com.android.capture.fps",)
 """Metadata in which phones say how fast a slow-motion or time-lapse video was taken."""
 SAME_RATE = 0.05
+MOST_PIXELS = 60_000_000
 NO_TIMES = 0x80  # AVFMT_NOTIMESTAMPS
 FIELDS = "mode=send_field:deint=interlaced"
 
@@ -82,6 +83,11 @@ class VideoSource:
             round(stream.width * max(aspect, 1.0)),
             round(stream.height * max(1.0 / aspect, 1.0)),
         )
+        if self.size_px[0] * self.size_px[1] > MOST_PIXELS:
+            raise TrackerError(
+                f"{self.path} says that its pictures are {self.size_px[0]} × {self.size_px[1]} px, which no camera "
+                "takes; its header is damaged: copy it again."
+            )
         self._shaped = aspect != 1.0
         if self._shaped:
             width, height = self.size_px
