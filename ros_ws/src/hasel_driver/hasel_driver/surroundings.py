@@ -55,7 +55,9 @@ class Surroundings:
                 " End it, or give each a namespace of its own."
             )
         if not inputs.rivals.known:
-            raise RefusedError("Whether another driver answers to these names is not known yet: arm again in a moment.")
+            raise RefusedError(
+                "Whether another driver answers to these names is not known yet: arm again in a moment."
+            )
         commanders = inputs.commanders()
         if len(commanders) > 1:
             raise RefusedError(
