@@ -27,7 +27,6 @@ from hasel_driver.errors import DriverError, PortError, PortInUseError, RefusedE
 from hasel_driver.experiment_server import ExperimentServer
 from hasel_driver.fault_store import FaultStore
 from hasel_driver.faults import Fault, FaultCode
-from hasel_driver.graph_names import UNNAMED
 from hasel_driver.limits import Limits
 from hasel_driver.messages import to_diagnostics, to_supply_state
 from hasel_driver.middleware import prepare, reach
@@ -35,17 +34,15 @@ from hasel_driver.node_parameters import declare, values
 from hasel_driver.parameter_files import check_files
 from hasel_driver.parent import end_with_parent
 from hasel_driver.realtime import middleware_threads, request_realtime
-from hasel_driver.rivals import NOT_TOLD
 from hasel_driver.status import Status
 from hasel_driver.supervisor import Supervisor
 from hasel_driver.supply_history import SupplyHistory
 from hasel_driver.supply_thread import SupplyThread
+from hasel_driver.surroundings import Surroundings
 from hasel_driver.urgent_inputs import ALIVE_PERIOD_S, STEADY, UrgentInputs
 
 THREAD_SWITCH_S = 0.0005  # Python's 5 ms would let the executor hold up the supply's thread
 RETRY_PERIOD_S = 2.0  # between attempts to open a port that could not be opened at the start
-DISCOVERY_S = 1.0  # for which a new publisher may be known and not yet connected
-NAMING_S = 0.3  # within which another driver's name and host are learnt
 REFUSED_LOG_S = 2.0
 LAST_STATE_S = 0.2  # for which the end waits until the last state has been heard
 
@@ -61,8 +58,6 @@ class DriverNode(LifecycleNode):
         self._store: FaultStore | None = None
         self._last_problem = ""
         self._configured_s = 0.0
-        self._unheard_s: float | None = None
-        self._rival_s: float | None = None  # since when there is another driver
         self._last_limits: Limits | None = None
         self._claim = Claim(time.monotonic)
         self.end_reason: str | None = None  # why the process must end
@@ -81,12 +76,13 @@ class DriverNode(LifecycleNode):
             self._on_inputs_alive,
             values(self)["realtime_priority"],
         )
+        self._surroundings = Surroundings(self._inputs)
         self._trigger_services = DriverServices(
             self,
             slow,
             lambda: self._thread,
             self._check_arming,
-            self._check_clearing,
+            self._surroundings.check_clearing,
             self._inputs.holders.release,
             lambda: self._claim.hand_out(self._inputs.commanders()),
             self._inputs.rivals.found,
@@ -269,27 +265,10 @@ class DriverNode(LifecycleNode):
         if not thread.is_alive():
             self._publish(thread.supervisor.status())
         thread.host_is_alive("services")
-        self._watch_rivals(thread)
-        self._watch_stop_publishers(thread)
-
-    def _watch_rivals(self, thread: SupplyThread) -> None:
-        rivals, now_s = self._inputs.rivals.found() if thread.supervisor.armed else [], time.monotonic()
-        if not rivals:
-            self._rival_s = None
-            return
-        self._rival_s = now_s if self._rival_s is None else self._rival_s
-        named = not any(NOT_TOLD in words or UNNAMED in words for words in rivals)
-        if named or now_s - self._rival_s > NAMING_S:
-            self.fail(Fault(FaultCode.TWO_DRIVERS, ", ".join(rivals)))
-
-    def _watch_stop_publishers(self, thread: SupplyThread) -> None:
-        unheard, now_s = self._inputs.stop_topic.unheard(), time.monotonic()
-        if unheard is None:
-            self._unheard_s = None
-        elif self._unheard_s is None:
-            self._unheard_s = now_s
-        elif now_s - self._unheard_s > DISCOVERY_S and thread.supervisor.armed:
-            self.fail(Fault(FaultCode.STOP_NOT_HEARD, unheard))
+        if not thread.supervisor.armed:
+            self._surroundings.calm()
+        elif (threat := self._surroundings.threat()) is not None:
+            self.fail(threat)
 
     def _on_diagnostics(self) -> None:
         thread = self._thread
@@ -318,10 +297,7 @@ class DriverNode(LifecycleNode):
         thread = self._thread
         if not self._lifecycle_active or thread is None:
             raise RefusedError("The node is not active: activate it (lifecycle) first.")
-        self._check_clearing()
-        unheard = self._inputs.stop_topic.unheard()
-        if unheard is not None:
-            raise RefusedError(f"An emergency stop might not be heard: {unheard}. Correct that, then arm.")
+        self._surroundings.check_arming()
         waited_s = time.monotonic() - self._configured_s
         discovery_s = self.get_parameter("discovery_time").value
         if waited_s < discovery_s:
@@ -329,31 +305,10 @@ class DriverNode(LifecycleNode):
                 "An emergency stop sent before may still arrive:"
                 f" wait {discovery_s - waited_s:.1f} s and arm again."
             )
-        rivals = self._inputs.rivals
-        if not rivals.known or rivals.found():
-            others = ", ".join(rivals.found()) or "perhaps one that is not known yet"
-            raise RefusedError(
-                f"Another driver answers to the names of this one: {others}."
-                " End it, or give each a namespace of its own."
-            )
-        commanders = self._inputs.commanders()
-        if len(commanders) > 1:
-            raise RefusedError(
-                f"More than one node publishes {self._inputs.command_topic}: {', '.join(sorted(commanders.values()))}."
-                " End all but one, then arm."
-            )
         if not thread.supervisor.capabilities.deadman and not self.get_parameter("accept_no_deadman").value:
             raise RefusedError(
                 "This supply stays live when its host dies:"
                 " set the parameter accept_no_deadman if that is acceptable."
-            )
-
-    def _check_clearing(self) -> None:
-        inputs = self._inputs
-        if inputs.holders:
-            raise RefusedError(
-                f"The emergency stop is held by {', '.join(inputs.holders.names(inputs.stop_topic.present()))}:"
-                " publish false there first, or call the service release_emergency_stop."
             )
 
     # Faults
