@@ -1,5 +1,7 @@
 """What all effects of a model add to a step, side by side for the compiled loops of `march`."""
 
+from functools import cached_property
+
 import numpy as np
 
 from hasel_sim.mechanics.force_law import ForceLaw
@@ -52,10 +54,15 @@ class LawTable:
         """Whether there are any effects to call."""
         return bool(self._laws)
 
-    @property
+    @cached_property
     def as_python(self) -> bool:
         """Whether any of them runs as Python, and must be called before the compiled loops go on."""
         return any(law.laws is None for law in self._laws)
+
+    def python_laws(self) -> dict[str, str]:
+        """Names of effects that run as Python, with why they do."""
+        as_python = [law for law in self._laws if law.laws is None]
+        return {law.effect.source or law.effect.id: law.why_python for law in as_python}
 
     def call(self, motion: Motion, drive: DriveState, with_slopes: bool, exact: bool = False) -> None:
         """Call every effect that runs as Python once, with its derivatives where wanted."""

@@ -66,11 +66,12 @@ class StressLaw:
         self.values, self._fibres, self._shear = values, fibres, shear
         self._groups = grouped([one.own for one in values])
         self._constant: dict[tuple[int, ...], dict[str, np.ndarray]] = {}
+        self.why_python = ""
         self.answers = Answers(self, len(values), len(fibres) - 1)
         try:
             self.laws: list[Law | None] | None = [stress_law(self.effect)] * len(values)
-        except NotTraceableError:
-            self.laws = None
+        except NotTraceableError as error:
+            self.laws, self.why_python = None, str(error)
 
     @staticmethod
     def beside(each: Sequence["StressLaw"]) -> "StressLaw":
@@ -108,7 +109,8 @@ class StressLaw:
             return
         copies = ALONE if of == "value" else self._moved_twice if exact else self._moved_once
         P = self._answer(self._rows(motion, mesh, copies), drive, self._groups, len(copies))
-        rows[:4] = by_point(P[0]).transpose(1, 0, 2)
+        as_it_is = self._answer(self._rows(motion, mesh), drive, self._groups) if copies is self._moved_twice else P
+        rows[:4] = by_point(as_it_is[0]).transpose(1, 0, 2)
         if of == "response":
             found = np.zeros((len(self.moving), self.points, 4, 4, len(self.values)))
             for name, slope in zip(self.moving, found, strict=True):

@@ -31,13 +31,14 @@ class BoundLaw(Protocol):
     """A law at its points, in all lanes.
 
     laws: as recorded, one per lane (None in a lane without it), or None where it runs as Python; k: how many numbers it
-    gives at a point; moving: see `Law`; points: how many; per: nodes of a site, or points of an element; numbers, reals:
-    of the sites (their nodes; shape, slope and weight) or of the elements (their numbers, then the muscle of every
-    point; nothing).
+    gives at a point; moving: see `Law`; points: how many; per: nodes of a site, or points of an element; numbers,
+    reals: of the sites (their nodes; shape, slope and weight) or of the elements (their numbers, then the muscle of
+    every point; nothing). why_python: why it is not recorded.
     """
 
     effect: Effect
     laws: list[Law | None] | None
+    why_python: str
     k: int
     moving: dict[str, int]
     points: int
@@ -58,10 +59,10 @@ class BoundLaw(Protocol):
 class Tapes:
     """Programs of bound laws.
 
-    tables: what `tape_loops` takes: heads of all programs; inputs (source, component,
-    register; both components of what interpolates at sites at once, with two registers); what is uniform (0 a
-    constant or 1 a signal, its row, register); operations; outputs (row, register, number, quantity it is the derivative
-    by or -1, component); numbers and reals; constants [n, lanes]; what is found; registers.
+    tables: what `tape_loops` takes: heads of all programs; inputs (source, component, register, second
+    register of what is interpolated at sites, both components at once); what is uniform (0 a constant or 1 a signal,
+    its row, register); operations; outputs (row, register, number, quantity that it is the derivative by or -1,
+    component); numbers and reals; constants [n, lanes]; what is found; registers.
     """
 
     def __init__(self, wanted: Sequence[tuple[BoundLaw, Hashable]], lanes: int, muscles: int) -> None:

@@ -11,8 +11,8 @@ from hasel_sim.tape.expressions import OPERATIONS, Node
 class Program:
     """What computes some outputs; everything that is the same at all points is computed once, before the points.
 
-    inputs: (name, register) of what differs from point to point; uniform: the same of what does not, (None, value) being
-    a constant; before, operations: [n, 5], number in `OPERATIONS`, result, up to three operands; outputs: (row,
+    inputs: (name, register) of what differs from point to point; uniform: the same of what does not, (None, value)
+    being a constant; before, operations: [n, 5], number in `OPERATIONS`, result, up to three operands; outputs: (row,
     register); registers: how many there are.
     """
 
@@ -66,7 +66,7 @@ class Program:
         return same and all(np.array_equal(*pair) for pair in pairs)
 
     def run(self, given: Callable[[Hashable], np.ndarray | float], points: int, rows: int) -> np.ndarray:
-        """The outputs [rows, points], zero where there is none, for what is given by name, each [points] or a number."""
+        """The outputs [rows, points], zero where there is none; given: what a name stands for, [points] or a number."""
         padded = -(-points // WIDTH) * WIDTH
         found, values = np.zeros((rows, points)), np.zeros((self.registers, padded))
         for name, register in [*self.inputs, *self.uniform]:
