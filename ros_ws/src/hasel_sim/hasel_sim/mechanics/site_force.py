@@ -1,6 +1,6 @@
 """A force effect with its values, bound to a mesh: the forces at its sites, in all lanes at once."""
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
 from copy import copy
 from types import SimpleNamespace
 from typing import Any, TypeVar
@@ -196,7 +196,7 @@ class SiteForce:
         return np.broadcast_to(own, (self.points, len(self.values)))
 
     def fill(
-        self, of: Hashable, motion: Motion, drive: DriveState, mesh: Places, rows: np.ndarray, exact: bool
+        self, of: Any, motion: Motion, drive: DriveState, mesh: Places, rows: np.ndarray, exact: bool
     ) -> None:
         """Write the rows [rows, n, lanes] of a program, called as Python; central differences where exact, else
         one-sided ones, which find a step as well.

@@ -1,6 +1,6 @@
 """A material effect that adds stress, bound to the Gauss points of its regions."""
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
 from copy import copy
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -99,7 +99,7 @@ class StressLaw:
         return self._fibres[self._muscle_at] if name == "fibre" else self._shear[self._element]
 
     def fill(
-        self, of: Hashable, motion: Motion, drive: DriveState, mesh: Places, rows: np.ndarray, exact: bool
+        self, of: Any, motion: Motion, drive: DriveState, mesh: Places, rows: np.ndarray, exact: bool
     ) -> None:
         """Write the rows [rows, n, lanes] of a program, called as Python; central differences where exact, else
         one-sided ones, which find a step as well.
@@ -109,7 +109,9 @@ class StressLaw:
             return
         copies = ALONE if of == "value" else self._moved_twice if exact else self._moved_once
         P = self._answer(self._rows(motion, mesh, copies), drive, self._groups, len(copies))
-        as_it_is = self._answer(self._rows(motion, mesh), drive, self._groups) if copies is self._moved_twice else P
+        as_it_is = (
+            self._answer(self._rows(motion, mesh), drive, self._groups) if copies is self._moved_twice else P
+        )
         rows[:4] = by_point(as_it_is[0]).transpose(1, 0, 2)
         if of == "response":
             found = np.zeros((len(self.moving), self.points, 4, 4, len(self.values)))

@@ -1,6 +1,6 @@
 """The law of an effect, recorded at one point: its value, and what it changes with the motion or with a parameter."""
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any
@@ -56,15 +56,15 @@ class Law:
         uniform: frozenset[str] = frozenset(),
     ) -> None:
         self._graph, self._outputs, self._uniform = graph, outputs, uniform
-        self.moving, self._programs = moving, dict[Hashable, Program]()
+        self.moving, self._programs = moving, dict[Any, Program]()
 
-    def program(self, of: Hashable) -> Program:
+    def program(self, of: Any) -> Program:
         """What computes "value" (rows [k]), "response" (the value and its derivatives by all that moves, rows
         [1 + components, k]), or the derivative by the input of this name (rows [k]).
         """
         if of not in self._programs:
-            by = [(name, place) for name, count in self.moving.items() for place in range(count)]
-            by = {"value": [], "response": by}.get(of, [of])
+            moved_by: list[Any] = [(name, place) for name, n in self.moving.items() for place in range(n)]
+            by: list[Any] = [] if of == "value" else moved_by if of == "response" else [of]
             outputs = list(self._outputs) if of in ("value", "response") else []
             for name in by:
                 outputs += self._graph.derivatives(self._outputs, self._graph.input(name))
@@ -106,12 +106,12 @@ def _parameters(graph: Graph, effect: Effect) -> SimpleNamespace:
 
 
 def _recorded(
-    effect: Effect,
+    effect: ForceEffect | MaterialEffect,
     method: str,
     k: int,
-    moving: dict[str, int],
+    moving: Mapping[str, int],
     uniform: Sequence[str],
-    shapes: dict[str, tuple[int, ...]],
+    shapes: Mapping[str, tuple[int, ...]],
     points: Callable[[dict[str, Any]], Any],
 ) -> Law:
     """The law that a method computes, once it was seen to give what the method gives at random states.
@@ -157,8 +157,13 @@ def force_law(
     surroundings: Surroundings | None,
 ) -> Law:
     """The law of a force or a flux. Raises NotTraceableError."""
-    shapes = dict.fromkeys((*OF_THE_SITES, "reference", "rest_normal"), (1, 2))
-    shapes |= {"measure": (1,), "voltage": (muscles,), "contraction": (muscles,), "time": ()}
+    shapes: dict[str, tuple[int, ...]] = {
+        **dict.fromkeys((*OF_THE_SITES, "reference", "rest_normal"), (1, 2)),
+        "measure": (1,),
+        "voltage": (muscles,),
+        "contraction": (muscles,),
+        "time": (),
+    }
 
     def points(given: dict[str, Any]) -> SiteState:
         return SiteState(**given, gravity=np.array(gravity), surroundings=surroundings)
@@ -170,8 +175,11 @@ def force_law(
 @lru_cache(maxsize=512)
 def stress_law(effect: MaterialEffect) -> Law:
     """The law of a further stress. Raises NotTraceableError."""
-    shapes = dict.fromkeys(("deformation", "rate"), (1, 2, 2)) | {"time": ()}
-    shapes |= dict.fromkeys(("contraction", "voltage", "fibre", "shear"), (1,))
+    shapes: dict[str, tuple[int, ...]] = {
+        **dict.fromkeys(("deformation", "rate"), (1, 2, 2)),
+        **dict.fromkeys(("contraction", "voltage", "fibre", "shear"), (1,)),
+        "time": (),
+    }
 
     def points(given: dict[str, Any]) -> MaterialPoints:
         return MaterialPoints(**given)

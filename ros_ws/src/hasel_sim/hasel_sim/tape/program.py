@@ -1,6 +1,7 @@
 """Expressions as a list of operations on registers, each of which holds one number for every point and lane."""
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -16,11 +17,11 @@ class Program:
     register); registers: how many there are.
     """
 
-    def __init__(self, outputs: Sequence[tuple[int, Node]], is_uniform: Callable[[Hashable], bool]) -> None:
+    def __init__(self, outputs: Sequence[tuple[int, Node]], is_uniform: Callable[[Any], bool]) -> None:
         outputs = [(row, node) for row, node in outputs if not node.is_constant(0.0)]
         nodes, last_use = _needed([node for _, node in outputs])
-        self.inputs: list[tuple[Hashable, int]] = []
-        self.uniform: list[tuple[Hashable, int]] = []
+        self.inputs: list[tuple[Any, int]] = []
+        self.uniform: list[tuple[Any, int]] = []
         self.registers = 0
         self._free: list[int] = []
         before: list[list[int]] = []
@@ -65,7 +66,7 @@ class Program:
         same = self.inputs == other.inputs and self.outputs == other.outputs and names[0] == names[1]
         return same and all(np.array_equal(*pair) for pair in pairs)
 
-    def run(self, given: Callable[[Hashable], np.ndarray | float], points: int, rows: int) -> np.ndarray:
+    def run(self, given: Callable[[Any], np.ndarray | float], points: int, rows: int) -> np.ndarray:
         """The outputs [rows, points], zero where there is none; given: what a name stands for, [points] or a number."""
         padded = -(-points // WIDTH) * WIDTH
         found, values = np.zeros((rows, points)), np.zeros((self.registers, padded))
