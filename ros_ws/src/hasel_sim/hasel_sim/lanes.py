@@ -120,6 +120,7 @@ def step_together(
                 errors[index], ends[index] = error, 0
         seen.note(step, state, slopes)
         last = int(ends.max())
+    marcher.say_what_runs_as_python()
     return seen, errors
 
 

@@ -1,4 +1,4 @@
-"""`bench`: speed beside its bars, of everything or of swims only, against another revision, or convergence."""
+"""`bench`: speed of everything, of effects or of swims beside its bars, against another revision, or convergence."""
 
 import argparse
 import json
@@ -10,6 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from hasel_sim.bench.cases import fitted_swimmer
 from hasel_sim.bench.convergence import mesh_errors, step_errors
+from hasel_sim.bench.effects import EffectsReport, measure_effects
 from hasel_sim.bench.in_turns import InTurns, measure_in_turns
 from hasel_sim.bench.report import ConvergenceReport, SpeedReport
 from hasel_sim.bench.speed import by_nodes, by_parameters, free_swim_factor, measure_side_by_side
@@ -48,7 +49,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def run(options: argparse.Namespace) -> int:
     """Print the tables; 0 when every bar is met, else 1."""
     console = Console()
-    report: ConvergenceReport | InTurns | SwimmingReport | SpeedReport
+    report: ConvergenceReport | EffectsReport | InTurns | SwimmingReport | SpeedReport
     with threadpool_limits(1):
         if options.convergence:
             report = ConvergenceReport(mesh_errors(), step_errors())
@@ -59,6 +60,9 @@ def run(options: argparse.Namespace) -> int:
             except HaselSimError as error:
                 print(error, file=sys.stderr)
                 return 1
+        elif options.effects:
+            with console.status("timing every effect"):
+                report = measure_effects()
         elif options.swimming:
             with console.status("timing swims"):
                 report = measure_swimming()

@@ -18,6 +18,7 @@ def bench_parser() -> argparse.ArgumentParser:
     options = argparse.ArgumentParser(prog="bench", description="Speed beside its bars, or convergence.")
     what = options.add_mutually_exclusive_group()
     what.add_argument("--convergence", action="store_true", help="errors under refinement instead of speed")
+    what.add_argument("--effects", action="store_true", help="only what every effect of the catalogue costs")
     what.add_argument(
         "--swimming",
         action="store_true",

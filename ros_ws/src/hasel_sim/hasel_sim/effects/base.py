@@ -2,7 +2,8 @@
 
 An effect is one class in one file. It holds no state: its parameter values come as the argument `p`, with one attribute
 per parameter. At the parameters' null values the model is exactly the one without the effect. No effect writes a
-derivative; the simulator differentiates what the methods below return by central differences at single points.
+derivative; the simulator records what the methods below compute and differentiates it (`hasel_sim.tape`), or takes
+central differences where that cannot be.
 """
 
 from dataclasses import dataclass

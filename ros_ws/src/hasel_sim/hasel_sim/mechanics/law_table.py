@@ -1,14 +1,17 @@
 """What all effects of a model add to a step, side by side for the compiled loops of `march`."""
 
+from functools import cached_property
+
 import numpy as np
 
 from hasel_sim.mechanics.force_law import ForceLaw
 from hasel_sim.mechanics.law_terms import site_groups
 from hasel_sim.mechanics.linearisation import StrainedSystem
 from hasel_sim.mechanics.motion import DriveState, Motion
+from hasel_sim.mechanics.stress_law import StressLaw
 from hasel_sim.mechanics.system import System
 from hasel_sim.mechanics.tape_loops import add_slopes, respond
-from hasel_sim.mechanics.tapes import Tapes
+from hasel_sim.mechanics.tapes import BoundLaw, Tapes
 from hasel_sim.simd import lane_tuple
 
 
@@ -40,22 +43,27 @@ class LawTable:
             (site_groups(sites), slopes[0], slopes[1]),
             (further, stress, matrix),
         )
-        self._laws = [*system.forces, *system.stresses]
+        self._laws: list[ForceLaw | StressLaw] = [*system.forces, *system.stresses]
         firsts = [0, *np.cumsum([law.points for law in system.forces])][: len(system.forces)]
         firsts += [-1] * len(system.stresses)
         rows = [(2 * n, 2 * n + 1, first) for n, first in enumerate(firsts)]
         self.programs = np.array(rows, dtype=np.intp).reshape(-1, 3)
-        wanted = [(law, of) for law in self._laws for of in ("value", "response")]
+        wanted: list[tuple[BoundLaw, str]] = [(law, of) for law in self._laws for of in ("value", "response")]
         self.tapes = Tapes(wanted, lanes, system.muscles)
 
     def __bool__(self) -> bool:
         """Whether there are any effects to call."""
         return bool(self._laws)
 
-    @property
+    @cached_property
     def as_python(self) -> bool:
         """Whether any of them runs as Python, and must be called before the compiled loops go on."""
         return any(law.laws is None for law in self._laws)
+
+    def python_laws(self) -> dict[str, str]:
+        """Names of effects that run as Python, with why they do."""
+        as_python = [law for law in self._laws if law.laws is None]
+        return {law.effect.source or law.effect.id: law.why_python for law in as_python}
 
     def call(self, motion: Motion, drive: DriveState, with_slopes: bool, exact: bool = False) -> None:
         """Call every effect that runs as Python once, with its derivatives where wanted."""

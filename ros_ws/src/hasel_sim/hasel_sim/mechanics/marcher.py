@@ -1,5 +1,6 @@
 """Bodies that step together: what the compiled loops of `march` work on, and the calls of effects between them."""
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from operator import is_not
@@ -19,6 +20,7 @@ from hasel_sim.mechanics.march import (
 )
 from hasel_sim.mechanics.motion import DriveState
 from hasel_sim.mechanics.part import balance_motion
+from hasel_sim.mechanics.python_laws import say_once
 from hasel_sim.mechanics.seen import Seen
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.system import System
@@ -70,6 +72,7 @@ class Marcher:
         )
         self._wanted, self.arrived, self._due = (np.zeros(lanes, dtype=bool) for _ in range(3))
         self.coefficients: Sequence[StepCoefficients] = ()
+        self._seconds = [0.0, 0.0]
         self._progress = self._wanted, self.arrived, self._due, np.zeros(lanes)
 
     def begin(self, state: State, stress: np.ndarray, jerk: np.ndarray) -> None:
@@ -200,11 +203,21 @@ class Marcher:
             self._march(BALANCE, (step, step + 1), (0, most + 1, not one_matrix))
             return
         kind, drive = self._kinds[step], self.drives.at(step)
+        start = time.process_time()
         for iteration in range(most + 1):
             more = bool((self._wanted & ~self.arrived).any())
             if not more and not self._due.any():
                 break
             fresh = more and (iteration == 0 or not one_matrix)
             motion = balance_motion(self.state, self._guess, self._scheme[0][kind])
+            before = time.process_time()
             self._laws.call(motion, drive, with_slopes=fresh)
+            self._seconds[0] += time.process_time() - before
             self._march(BALANCE, (step, step + 1), (iteration, iteration + 1, not one_matrix))
+        self._seconds[1] += time.process_time() - start
+
+    def say_what_runs_as_python(self) -> None:
+        """One line for every effect that does, the first time, with how many times as long the steps take by all."""
+        called, all_in_all = self._seconds
+        if all_in_all > called:
+            say_once(self._laws.python_laws(), all_in_all / (all_in_all - called))

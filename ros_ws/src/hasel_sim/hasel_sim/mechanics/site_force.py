@@ -1,6 +1,6 @@
 """A force effect with its values, bound to a mesh: the forces at its sites, in all lanes at once."""
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
 from copy import copy
 from types import SimpleNamespace
 from typing import Any, TypeVar
@@ -83,14 +83,15 @@ class SiteForce:
         return any(name.startswith("tangent") for name in self.moving)
 
     def _use_lanes(self, values: list[SimpleNamespace | None]) -> None:
+        self.why_python = ""
         self.values, self._groups = values, grouped(values)
         self.answers = Answers(self, len(values), self._muscles)
         try:
             self.laws: list[Law | None] | None = alike(
                 [None if own is None else self._recorded(own.surroundings) for own in values]
             )
-        except NotTraceableError:
-            self.laws = None
+        except NotTraceableError as error:
+            self.laws, self.why_python = None, str(error)
 
     def _recorded(self, surroundings: Surroundings | None) -> Law:
         gravity = tuple(self._gravity.tolist())
@@ -195,7 +196,7 @@ class SiteForce:
         return np.broadcast_to(own, (self.points, len(self.values)))
 
     def fill(
-        self, of: Hashable, motion: Motion, drive: DriveState, mesh: Places, rows: np.ndarray, exact: bool
+        self, of: Any, motion: Motion, drive: DriveState, mesh: Places, rows: np.ndarray, exact: bool
     ) -> None:
         """Write the rows [rows, n, lanes] of a program, called as Python; central differences where exact, else
         one-sided ones, which find a step as well.
@@ -205,8 +206,9 @@ class SiteForce:
             return
         copies = ALONE if of == "value" else self._moved_twice if exact else self._moved_once
         force = self._force(motion, drive, copies)
-        rows[:2] = by_point(force[0]).transpose(1, 0, 2)
-        if of == "response":
+        as_it_is = self._force(motion, drive) if copies is self._moved_twice else force
+        rows[:2] = by_point(as_it_is[0]).transpose(1, 0, 2)
+        if of == "response" and self.moving:
             found = np.zeros((len(self.moving), self.points, 2, 2, len(self.values)))
             for name, slope in zip(self.moving, found, strict=True):
                 copies.add_derivative(name, force, np.ones(len(self.values)), slope)

@@ -1,6 +1,6 @@
 """A material effect that adds stress, bound to the Gauss points of its regions."""
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
 from copy import copy
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -66,11 +66,12 @@ class StressLaw:
         self.values, self._fibres, self._shear = values, fibres, shear
         self._groups = grouped([one.own for one in values])
         self._constant: dict[tuple[int, ...], dict[str, np.ndarray]] = {}
+        self.why_python = ""
         self.answers = Answers(self, len(values), len(fibres) - 1)
         try:
             self.laws: list[Law | None] | None = [stress_law(self.effect)] * len(values)
-        except NotTraceableError:
-            self.laws = None
+        except NotTraceableError as error:
+            self.laws, self.why_python = None, str(error)
 
     @staticmethod
     def beside(each: Sequence["StressLaw"]) -> "StressLaw":
@@ -98,7 +99,7 @@ class StressLaw:
         return self._fibres[self._muscle_at] if name == "fibre" else self._shear[self._element]
 
     def fill(
-        self, of: Hashable, motion: Motion, drive: DriveState, mesh: Places, rows: np.ndarray, exact: bool
+        self, of: Any, motion: Motion, drive: DriveState, mesh: Places, rows: np.ndarray, exact: bool
     ) -> None:
         """Write the rows [rows, n, lanes] of a program, called as Python; central differences where exact, else
         one-sided ones, which find a step as well.
@@ -108,7 +109,10 @@ class StressLaw:
             return
         copies = ALONE if of == "value" else self._moved_twice if exact else self._moved_once
         P = self._answer(self._rows(motion, mesh, copies), drive, self._groups, len(copies))
-        rows[:4] = by_point(P[0]).transpose(1, 0, 2)
+        as_it_is = (
+            self._answer(self._rows(motion, mesh), drive, self._groups) if copies is self._moved_twice else P
+        )
+        rows[:4] = by_point(as_it_is[0]).transpose(1, 0, 2)
         if of == "response":
             found = np.zeros((len(self.moving), self.points, 4, 4, len(self.values)))
             for name, slope in zip(self.moving, found, strict=True):

@@ -173,21 +173,17 @@ def _gather(tables, head, n, motion, mesh, signals, first, count, lane):
     source, component, lanes = inputs[n, 0], inputs[n, 1], len(lane)
     to, to_y = inputs[n, 2] * WIDTH, inputs[n, 3] * WIDTH
     points, per, places, weights = head[POINTS], head[PER], numbers[head[NUMBERS] :], head[REALS]
-    x, v, a = motion
-    if source == POSITION:
-        _at_sites(x, reals, places, weights, per, first, count, R, to, to_y, lane)
-    elif source == VELOCITY:
-        _at_sites(v, reals, places, weights, per, first, count, R, to, to_y, lane)
+    field = motion[0]
+    if source in (VELOCITY, TANGENT_RATE, RATE):
+        field = motion[1]
     elif source == ACCELERATION:
-        _at_sites(a, reals, places, weights, per, first, count, R, to, to_y, lane)
-    elif source == TANGENT:
-        _at_sites(x, reals, places, weights + points * per, per, first, count, R, to, to_y, lane)
-    elif source == TANGENT_RATE:
-        _at_sites(v, reals, places, weights + points * per, per, first, count, R, to, to_y, lane)
-    elif source == DEFORMATION:
-        _at_points(x, component, mesh, places, per, first, count, R, to, lane)
-    elif source == RATE:
-        _at_points(v, component, mesh, places, per, first, count, R, to, lane)
+        field = motion[2]
+    if source in (TANGENT, TANGENT_RATE):
+        weights += points * per
+    if source <= TANGENT_RATE:
+        _at_sites(field, reals, places, weights, per, first, count, R, to, to_y, lane)
+    elif source <= RATE:
+        _at_points(field, component, mesh, places, per, first, count, R, to, lane)
     elif source == FIXED:
         start = component + first * lanes
         for at in range(0, count * lanes, lanes):
@@ -207,7 +203,7 @@ def evaluate(tables, program, motion, mesh, signals, lane):
     motion: position, velocity, acceleration [nodes, 2, lanes]; mesh: elements, gradients, areas, stretch; signals: the
     drive, see `DriveState.signals`.
     """
-    heads, inputs, uniform, operations, outputs, _, _, constants, found, R = tables
+    heads, _, uniform, operations, outputs, _, _, constants, found, R = tables
     head, lanes = heads[program], len(lane)
     if head[OPERATIONS_END] < 0:
         return
@@ -278,11 +274,8 @@ def add_slopes(tables, program, first, place, weights, site_matrices, stress_mat
         if of < 0:
             continue
         here = head[FOUND] + row * points * lanes
-        weight = load(
-            weights,
-            (of if of < TANGENT else of - TANGENT if of < DEFORMATION else of - DEFORMATION) * lanes,
-            lane,
-        )
+        derivative = of if of < TANGENT else of - TANGENT if of < DEFORMATION else of - DEFORMATION
+        weight = load(weights, derivative * lanes, lane)
         less = 0.0 - weight
         if of < TANGENT:
             for s in range(points):

@@ -1,6 +1,6 @@
 """The programs of laws side by side, with the points and constants they need, as the compiled loop takes them."""
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Sequence
 from typing import Any, Protocol
 
 import numpy as np
@@ -31,13 +31,13 @@ class BoundLaw(Protocol):
     """A law at its points, in all lanes.
 
     laws: as recorded, one per lane (None in a lane without it), or None where it runs as Python; k: how many numbers it
-    gives at a point; moving: see `Law`; points: how many; per: nodes of a site, or points of an element; numbers, reals:
-    of the sites (their nodes; shape, slope and weight) or of the elements (their numbers, then the muscle of every
-    point; nothing).
+    gives at a point; moving: see `Law`; points: how many; per: nodes of a site, or points of an element; numbers,
+    reals: of the sites (their nodes; shape, slope and weight) or of the elements (their numbers, then the muscle of
+    every point; nothing). why_python: why it is not recorded.
     """
 
-    effect: Effect
     laws: list[Law | None] | None
+    why_python: str
     k: int
     moving: dict[str, int]
     points: int
@@ -46,11 +46,15 @@ class BoundLaw(Protocol):
     reals: np.ndarray
     values: list[Any]
 
+    @property
+    def effect(self) -> Effect:
+        """Whose law it is."""
+
     def fixed(self, name: str, place: int) -> np.ndarray:
         """What does not move, [points, lanes]."""
 
     def fill(
-        self, of: Hashable, motion: Motion, drive: DriveState, mesh: "Places", rows: np.ndarray, exact: bool
+        self, of: Any, motion: Motion, drive: DriveState, mesh: "Places", rows: np.ndarray, exact: bool
     ) -> None:
         """Write the rows [rows, points, lanes] of a program, called as Python."""
 
@@ -58,13 +62,13 @@ class BoundLaw(Protocol):
 class Tapes:
     """Programs of bound laws.
 
-    tables: what `tape_loops` takes: heads of all programs; inputs (source, component,
-    register; both components of what interpolates at sites at once, with two registers); what is uniform (0 a
-    constant or 1 a signal, its row, register); operations; outputs (row, register, number, quantity it is the derivative
-    by or -1, component); numbers and reals; constants [n, lanes]; what is found; registers.
+    tables: what `tape_loops` takes: heads of all programs; inputs (source, component, register, second
+    register of what is interpolated at sites, both components at once); what is uniform (0 a constant or 1 a signal,
+    its row, register); operations; outputs (row, register, number, quantity that it is the derivative by or -1,
+    component); numbers and reals; constants [n, lanes]; what is found; registers.
     """
 
-    def __init__(self, wanted: Sequence[tuple[BoundLaw, Hashable]], lanes: int, muscles: int) -> None:
+    def __init__(self, wanted: Sequence[tuple[BoundLaw, Any]], lanes: int, muscles: int) -> None:
         """wanted: laws and what of them, see `Law.program`."""
         self._lane, self._muscles, self._wanted = lane_tuple(lanes), muscles, list(wanted)
         self._places: dict[int, tuple[int, int]] = {}
@@ -101,11 +105,11 @@ class Tapes:
         self._counts[kind] += len(parts[-1])
         return self._counts[kind] - len(parts[-1])
 
-    def _constant(self, value: np.ndarray | float) -> int:
+    def _constant(self, value: np.ndarray | Sequence[float]) -> int:
         self._constants.append(np.broadcast_to(np.asarray(value, dtype=float), (len(self._lane),)))
         return len(self._constants) - 1
 
-    def _append(self, law: BoundLaw, of: Hashable) -> int:
+    def _append(self, law: BoundLaw, of: Any) -> int:
         """How many registers the program takes."""
         if id(law) not in self._places:
             numbers = self._kept("numbers", self._numbers, np.asarray(law.numbers))
@@ -136,7 +140,7 @@ class Tapes:
         return registers
 
     def _write(
-        self, law: BoundLaw, of: Hashable, programs: list[Program | None], head: list[int]
+        self, law: BoundLaw, of: Any, programs: list[Program | None], head: list[int]
     ) -> tuple[list[tuple[int, int]], int]:
         present = [program is not None for program in programs]
         first = present.index(True)
@@ -213,9 +217,9 @@ class Answers:
 
     def __init__(self, law: BoundLaw, lanes: int, muscles: int) -> None:
         self._law, self._lanes, self._muscles = law, lanes, muscles
-        self._tapes: dict[Hashable, Tapes] = {}
+        self._tapes: dict[Any, Tapes] = {}
 
-    def __call__(self, of: Hashable, motion: Motion, drive: DriveState, mesh: Places) -> np.ndarray:
+    def __call__(self, of: Any, motion: Motion, drive: DriveState, mesh: Places) -> np.ndarray:
         """Rows [rows, points, lanes] of one of them, see `Law.program`."""
         if of not in self._tapes:
             self._tapes[of] = Tapes([(self._law, of)], self._lanes, self._muscles)

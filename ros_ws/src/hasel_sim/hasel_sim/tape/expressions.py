@@ -1,10 +1,11 @@
 """Expressions of numbers that are known later, and their derivatives.
 
-A graph grows as arithmetic is done with its nodes. Equal expressions are one node, and what is known at once (constants,
-sums with 0, products with 1) is done at once.
+A graph grows as arithmetic is done with its nodes. Equal expressions are one node, and what is known at once
+(constants, sums with 0, products with 1) is done at once.
 """
 
 from collections.abc import Callable, Hashable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -45,11 +46,11 @@ is 0, for derivatives of roots and powers, which vanish in every product there t
 
 
 class Node:
-    """One number: a constant, an input with a name, or an operation on other nodes; see `tracing` for its arithmetic."""
+    """One number: a constant, an input with a name, or an operation on others; `tracing` gives it arithmetic."""
 
     __slots__ = ("graph", "operands", "operation", "place", "value")
 
-    def __init__(self, graph: "Graph", operation: str, operands: tuple["Node", ...], value: Hashable) -> None:
+    def __init__(self, graph: "Graph", operation: str, operands: tuple["Node", ...], value: Any) -> None:
         self.graph, self.operation, self.operands, self.value = graph, operation, operands, value
         self.place = len(graph.nodes)
         graph.nodes.append(self)
@@ -170,6 +171,11 @@ def _power_partials(f: Apply, node: Node, base: Node, exponent: Node) -> tuple:
     )
 
 
+def _quotient_partials(f: Apply, operation: str, quotient: Node, divisor: Node) -> tuple:
+    inverse = f(operation, 1.0, divisor)
+    return lambda: inverse, lambda: f("negative", f("multiply", quotient, inverse))
+
+
 def _flat(f: Apply, node: Node, *x: Node) -> tuple:
     return tuple(lambda: 0.0 for _ in x)
 
@@ -178,14 +184,8 @@ _PARTIAL: dict[str, Callable[..., tuple]] = {
     "add": lambda f, y, a, b: (lambda: 1.0, lambda: 1.0),
     "subtract": lambda f, y, a, b: (lambda: 1.0, lambda: -1.0),
     "multiply": lambda f, y, a, b: (lambda: b, lambda: a),
-    "divide": lambda f, y, a, b: (
-        lambda: f("divide", 1.0, b),
-        lambda: f("negative", f("multiply", y, f("divide", 1.0, b))),
-    ),
-    "divide_or_zero": lambda f, y, a, b: (
-        lambda: f("divide_or_zero", 1.0, b),
-        lambda: f("negative", f("multiply", y, f("divide_or_zero", 1.0, b))),
-    ),
+    "divide": lambda f, y, a, b: _quotient_partials(f, "divide", y, b),
+    "divide_or_zero": lambda f, y, a, b: _quotient_partials(f, "divide_or_zero", y, b),
     "negative": lambda f, y, a: (lambda: -1.0,),
     "absolute": lambda f, y, a: (lambda: f("sign", a),),
     "sign": _flat,

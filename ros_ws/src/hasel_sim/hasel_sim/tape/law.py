@@ -1,19 +1,44 @@
 """The law of an effect, recorded at one point: its value, and what it changes with the motion or with a parameter."""
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
-from hasel_sim.effects.base import ForceEffect, MaterialEffect, MaterialPoints, SiteState, Surroundings
+from hasel_sim.effects.base import (
+    Effect,
+    ForceEffect,
+    MaterialEffect,
+    MaterialPoints,
+    SiteState,
+    Surroundings,
+)
 from hasel_sim.tape.expressions import Graph, Node
 from hasel_sim.tape.program import Program
 from hasel_sim.tape.tracing import NotTraceableError, Traced
 
 OF_THE_SITES = ("position", "velocity", "acceleration", "tangent", "tangent_rate")
-_FIXED_AT_SITES = {"reference": (1, 2), "rest_normal": (1, 2), "measure": (1,)}
-_FIXED_AT_POINTS = {"fibre": (1,), "shear": (1,)}
+_STATES = 7
+_USUAL: dict[str, tuple[Any, float]] = {
+    "position": (0.1, 0.03),
+    "velocity": (0.0, 0.2),
+    "acceleration": (0.0, 2.0),
+    "tangent": ((1.0, 0.0), 0.1),
+    "tangent_rate": (0.0, 3.0),
+    "reference": (0.1, 0.03),
+    "rest_normal": ((0.0, 1.0), 0.1),
+    "measure": (0.01, 0.001),
+    "deformation": (((1.0, 0.0), (0.0, 1.0)), 0.05),
+    "rate": (0.0, 1.0),
+    "fibre": (65e3, 1e3),
+    "shear": (22e3, 1e3),
+    "contraction": (0.05, 0.01),
+    "voltage": (0.0, 4e3),
+    "time": (0.3, 0.1),
+}
+"""Middle and spread of the states at which a law is compared with the method that was recorded."""
 
 
 class Law:
@@ -31,15 +56,15 @@ class Law:
         uniform: frozenset[str] = frozenset(),
     ) -> None:
         self._graph, self._outputs, self._uniform = graph, outputs, uniform
-        self.moving, self._programs = moving, dict[Hashable, Program]()
+        self.moving, self._programs = moving, dict[Any, Program]()
 
-    def program(self, of: Hashable) -> Program:
+    def program(self, of: Any) -> Program:
         """What computes "value" (rows [k]), "response" (the value and its derivatives by all that moves, rows
         [1 + components, k]), or the derivative by the input of this name (rows [k]).
         """
         if of not in self._programs:
-            by = [(name, place) for name, count in self.moving.items() for place in range(count)]
-            by = {"value": [], "response": by}.get(of, [of])
+            moved_by: list[Any] = [(name, place) for name, n in self.moving.items() for place in range(n)]
+            by: list[Any] = [] if of == "value" else moved_by if of == "response" else [of]
             outputs = list(self._outputs) if of in ("value", "response") else []
             for name in by:
                 outputs += self._graph.derivatives(self._outputs, self._graph.input(name))
@@ -68,7 +93,7 @@ def _outputs(effect, method: str, at, p: SimpleNamespace, count: int, graph: Gra
             found = np.asarray(getattr(effect, method)(at, p), dtype=object).reshape(-1)
     except NotTraceableError:
         raise
-    except Exception as error:  # noqa: BLE001  what a method does with arrays that are no plain ones may fail anyhow
+    except Exception as error:
         raise NotTraceableError(f"recording it fails ({type(error).__name__}: {error})") from error
     if len(found) != count:
         raise NotTraceableError("its answer at one point has another shape than at several")
@@ -76,8 +101,51 @@ def _outputs(effect, method: str, at, p: SimpleNamespace, count: int, graph: Gra
     return [x if isinstance(x, Node) else graph.constant(x) for x in found]
 
 
-def _parameters(graph: Graph, effect) -> SimpleNamespace:
+def _parameters(graph: Graph, effect: Effect) -> SimpleNamespace:
     return SimpleNamespace(**{p.name: Traced.of(graph.input((("p", p.name), 0))) for p in effect.parameters})
+
+
+def _recorded(
+    effect: ForceEffect | MaterialEffect,
+    method: str,
+    k: int,
+    moving: Mapping[str, int],
+    uniform: Sequence[str],
+    shapes: Mapping[str, tuple[int, ...]],
+    points: Callable[[dict[str, Any]], Any],
+) -> Law:
+    """The law that a method computes, once it was seen to give what the method gives at random states.
+
+    shapes: of what a single point is given, with first axis 1 where it is one row of many; points: the argument of the
+    method made of these.
+    """
+    graph = Graph()
+    given = {name: Traced.inputs(graph, name, shape) for name, shape in shapes.items()}
+    law = Law(
+        graph,
+        _outputs(effect, method, points(given), _parameters(graph, effect), k, graph),
+        {name: count for name, count in moving.items() if name in effect.depends_on},
+        frozenset(uniform),
+    )
+    random = np.random.default_rng(0).standard_normal
+    states: dict[str, Any] = {}
+    for name, shape in shapes.items():
+        drawn = random((_STATES, *shape[1:]) if shape[:1] == (1,) and name not in uniform else shape)
+        states[name] = np.asarray(_USUAL[name][0]) + _USUAL[name][1] * drawn
+    p = SimpleNamespace(**effect.typical())
+    with np.errstate(all="ignore"):
+        expected = np.asarray(getattr(effect, method)(points(states), p), dtype=float).reshape(_STATES, k)
+
+    def value(name: tuple) -> np.ndarray | float:
+        if isinstance(name[0], tuple):
+            return getattr(p, name[0][1])
+        state = np.asarray(states[name[0]])
+        return state.ravel()[name[1]] if name[0] in uniform else state.reshape(_STATES, -1)[:, name[1]]
+
+    found = law.program("value").run(value, _STATES, k).T
+    if not np.allclose(found, expected, rtol=1e-12, atol=1e-12 * np.abs(expected).max(), equal_nan=True):
+        raise NotTraceableError("recorded at one point it gives other numbers than at several")
+    return law
 
 
 @lru_cache(maxsize=512)
@@ -89,22 +157,32 @@ def force_law(
     surroundings: Surroundings | None,
 ) -> Law:
     """The law of a force or a flux. Raises NotTraceableError."""
-    graph = Graph()
-    names = {name: (1, 2) for name in OF_THE_SITES} | _FIXED_AT_SITES
-    names |= {"voltage": (muscles,), "contraction": (muscles,), "time": ()}
-    given = {name: Traced.inputs(graph, name, shape) for name, shape in names.items()}
-    at = SiteState(**given, gravity=np.array(gravity), surroundings=surroundings)
-    outputs = _outputs(effect, method, at, _parameters(graph, effect), 2, graph)
-    moving = {name: 2 for name in OF_THE_SITES if name in effect.depends_on}
-    return Law(graph, outputs, moving, frozenset(("voltage", "contraction", "time")))
+    shapes: dict[str, tuple[int, ...]] = {
+        **dict.fromkeys((*OF_THE_SITES, "reference", "rest_normal"), (1, 2)),
+        "measure": (1,),
+        "voltage": (muscles,),
+        "contraction": (muscles,),
+        "time": (),
+    }
+
+    def points(given: dict[str, Any]) -> SiteState:
+        return SiteState(**given, gravity=np.array(gravity), surroundings=surroundings)
+
+    uniform = ("voltage", "contraction", "time")
+    return _recorded(effect, method, 2, dict.fromkeys(OF_THE_SITES, 2), uniform, shapes, points)
 
 
 @lru_cache(maxsize=512)
 def stress_law(effect: MaterialEffect) -> Law:
     """The law of a further stress. Raises NotTraceableError."""
-    graph = Graph()
-    names = {"deformation": (1, 2, 2), "rate": (1, 2, 2), "contraction": (1,), "voltage": (1,), "time": ()}
-    given = {name: Traced.inputs(graph, name, shape) for name, shape in (names | _FIXED_AT_POINTS).items()}
-    outputs = _outputs(effect, "first_piola", MaterialPoints(**given), _parameters(graph, effect), 4, graph)
-    moving = {name: 4 for name in ("deformation", "rate") if name in effect.depends_on}
-    return Law(graph, outputs, moving, frozenset(("time",)))
+    shapes: dict[str, tuple[int, ...]] = {
+        **dict.fromkeys(("deformation", "rate"), (1, 2, 2)),
+        **dict.fromkeys(("contraction", "voltage", "fibre", "shear"), (1,)),
+        "time": (),
+    }
+
+    def points(given: dict[str, Any]) -> MaterialPoints:
+        return MaterialPoints(**given)
+
+    moving = {"deformation": 4, "rate": 4}
+    return _recorded(effect, "first_piola", 4, moving, ("time",), shapes, points)

@@ -1,6 +1,7 @@
 """Expressions as a list of operations on registers, each of which holds one number for every point and lane."""
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -11,16 +12,16 @@ from hasel_sim.tape.expressions import OPERATIONS, Node
 class Program:
     """What computes some outputs; everything that is the same at all points is computed once, before the points.
 
-    inputs: (name, register) of what differs from point to point; uniform: the same of what does not, (None, value) being
-    a constant; before, operations: [n, 5], number in `OPERATIONS`, result, up to three operands; outputs: (row,
+    inputs: (name, register) of what differs from point to point; uniform: the same of what does not, (None, value)
+    being a constant; before, operations: [n, 5], number in `OPERATIONS`, result, up to three operands; outputs: (row,
     register); registers: how many there are.
     """
 
-    def __init__(self, outputs: Sequence[tuple[int, Node]], is_uniform: Callable[[Hashable], bool]) -> None:
+    def __init__(self, outputs: Sequence[tuple[int, Node]], is_uniform: Callable[[Any], bool]) -> None:
         outputs = [(row, node) for row, node in outputs if not node.is_constant(0.0)]
         nodes, last_use = _needed([node for _, node in outputs])
-        self.inputs: list[tuple[Hashable, int]] = []
-        self.uniform: list[tuple[Hashable, int]] = []
+        self.inputs: list[tuple[Any, int]] = []
+        self.uniform: list[tuple[Any, int]] = []
         self.registers = 0
         self._free: list[int] = []
         before: list[list[int]] = []
@@ -65,8 +66,8 @@ class Program:
         same = self.inputs == other.inputs and self.outputs == other.outputs and names[0] == names[1]
         return same and all(np.array_equal(*pair) for pair in pairs)
 
-    def run(self, given: Callable[[Hashable], np.ndarray | float], points: int, rows: int) -> np.ndarray:
-        """The outputs [rows, points], zero where there is none, for what is given by name, each [points] or a number."""
+    def run(self, given: Callable[[Any], np.ndarray | float], points: int, rows: int) -> np.ndarray:
+        """The outputs [rows, points], zero where there is none; given: what a name stands for, [points] or a number."""
         padded = -(-points // WIDTH) * WIDTH
         found, values = np.zeros((rows, points)), np.zeros((self.registers, padded))
         for name, register in [*self.inputs, *self.uniform]:

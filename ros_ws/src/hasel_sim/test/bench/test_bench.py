@@ -14,6 +14,7 @@ from hasel_sim.bench.cases import (
     with_nodes,
 )
 from hasel_sim.bench.convergence import mesh_errors, step_errors
+from hasel_sim.bench.effects import measure_effects
 from hasel_sim.bench.report import Bar, SpeedReport
 from hasel_sim.bench.speed import (
     SideBySide,
@@ -26,10 +27,13 @@ from hasel_sim.bench.swimming import measure_swimming
 from hasel_sim.bench.timing import first_run_seconds, processor_seconds
 from hasel_sim.bench.where_time_goes import shares
 from hasel_sim.commands import bench
+from hasel_sim.effects.registry import catalogue
 from hasel_sim.mechanics.banded import BandMatrix
 from hasel_sim.model_mesh import model_mesh
-from hasel_sim.simulate import simulate
+from hasel_sim.simulate import simulate, simulate_many
 from threadpoolctl import threadpool_limits
+
+QUADRATIC_DRAG = catalogue()["quadratic_drag"]
 
 
 def test_a_mesh_of_about_so_many_nodes_is_found():
@@ -182,3 +186,40 @@ def test_a_free_swim_costs_little_more_than_its_effects_must():
         factor = free_swim_factor(0.5)
     assert wet_time < 14 * dry_time
     assert factor == pytest.approx(0.5 / wet_time, rel=0.6)
+
+
+def test_every_effect_is_timed_over_the_run_without_it(monkeypatch):
+    """In the catalogue's order; forward over the baseline's forward, sensitivities over the same forward run."""
+    monkeypatch.setattr(
+        "hasel_sim.bench.effects.catalogue", lambda: dict.fromkeys(["quadratic_drag"], QUADRATIC_DRAG)
+    )
+    monkeypatch.setattr(
+        "hasel_sim.bench.effects.processor_seconds", lambda works, repeats: [2.0, 4.0, 3.0, 7.5]
+    )
+    report = measure_effects(1, 0.05)
+    assert (report.baseline_s, report.baseline_sensitivities) == (2.0, 2.0)
+    (cost,) = report.effects
+    assert (cost.id, cost.forward, cost.sensitivities) == ("quadratic_drag", 1.5, 2.5)
+    assert [bar.met for bar in report.bars()] == [False, False, False]
+
+
+def test_what_is_timed_of_an_effect_runs(monkeypatch):
+    """Four runs forward and with all sensitivities, with the effect at its typical values."""
+    monkeypatch.setattr(
+        "hasel_sim.bench.effects.catalogue", lambda: dict.fromkeys(["quadratic_drag"], QUADRATIC_DRAG)
+    )
+    asked = []
+
+    def timed(works, repeats):
+        for work in works:
+            work()
+        return [1.0] * len(works)
+
+    def counted(cases, names):
+        asked.append((len(cases), sorted(cases[0][0].effects, key=str) != [], len(names)))
+        return simulate_many(cases, names)
+
+    monkeypatch.setattr("hasel_sim.bench.effects.processor_seconds", timed)
+    monkeypatch.setattr("hasel_sim.bench.effects.simulate_many", counted)
+    measure_effects(1, 0.05)
+    assert asked == [(4, False, 0), (4, False, 4), (4, True, 0), (4, True, 5)]
