@@ -26,7 +26,13 @@ def state(upper: float, lower: float) -> dict:
         "measured_voltage": unknown,
         "current": unknown,
     }
-    safety = {"grounded": False, "interlock": [0, 0], "emergency_stop_holders": []}
+    safety = {
+        "grounded": False,
+        "ground": 0,
+        "commander": "",
+        "interlock": [0, 0],
+        "emergency_stop_holders": [],
+    }
     limits = dict.fromkeys(("maximum_voltage", "slew_rate", "trip_current", "heartbeat_timeout"), math.nan)
     return supply | {"mode": 2, "fault_code": 0, "fault_text": ""} | safety | limits
 

@@ -2,13 +2,16 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.report.provenance import Provenance
 from hasel_sysid.report.shape import Shapes
-from hasel_sysid.selection.choose import ComparedModel
+
+if TYPE_CHECKING:
+    from hasel_sysid.selection.choose import ComparedModel
 
 
 @dataclass(frozen=True)
@@ -112,7 +115,7 @@ class ReportContent:
     noise_floor: float | None = None
     ranking: Sequence[RankedRow] = ()
     groups: Sequence[Sequence[str]] = ()
-    models: Sequence[ComparedModel] = ()
+    models: "Sequence[ComparedModel]" = ()
     parameters: Sequence[ParameterRow] = ()
     remains: Sequence[str] = ()
     next_runs: Sequence[NextRun] = ()

@@ -66,11 +66,15 @@ class LowFidelity(FormulaProblem):
         )
 
 
-def test_of_several_starts_the_best_end_is_taken(problem):
+def test_of_several_starts_the_best_end_is_taken():
     """Multi-start: beside a start that ends in another valley, wherever it stands in the list."""
-    low = LowFidelityProblem(problem, problem.evaluate(body(0.3, 0.03), (MASS, DAMPING)))
-    lost, near = body(9.0, 0.0), body(0.25, 0.02)
+    time = np.arange(0.0, 6.0, 0.01)
+    noise = 0.001 * np.random.default_rng(0).standard_normal(len(time))
+    problem = FormulaProblem(swing, time, swing(body(0.3, 0.005), time) + noise)
+    low = LowFidelityProblem(problem, problem.evaluate(body(0.3, 0.005), (MASS, DAMPING)))
+    lost, near = body(9.0, 0.005), body(0.25, 0.005)
     alone = fit(problem, low, [near])
+    assert alone.model.values[MASS] == pytest.approx(0.3, rel=0.01)
     assert fit(problem, low, [lost]).evaluation.sum_of_squares > 10 * alone.evaluation.sum_of_squares
     for models in ([lost, near], [near, lost]):
         both = fit(problem, low, models)

@@ -2,60 +2,52 @@
 
 import numpy as np
 import pytest
-from hasel_sim.errors import SimulationError
-from hasel_sim.model import load_model
+from hasel_sim.model import Model, load_model
 from hasel_sysid.errors import SysidError
-from hasel_sysid.estimation import METHODS, FittedModel, identify
-from hasel_sysid.testing.made_up_runs import made_up_evaluation
+from hasel_sysid.estimation import identify
+from hasel_sysid.testing.formula_problem import FormulaProblem
 
-NAME = "current_limit.inverse_rate"
-
-
-@pytest.fixture
-def method(monkeypatch):
-    """A method that moves nothing: it only tells how good a start is."""
-
-    def install(squares):
-        def stay(problem, model, progress):
-            value = model.values[NAME]
-            residual = np.array([np.sqrt(squares(value))])
-            evaluation = made_up_evaluation(residual[None], np.zeros(1), names=(NAME,), model=model)
-            at_bound = (NAME,) if value == 0 else ()
-            return FittedModel(model, evaluation, at_bound, (), 1, "nothing")
-
-        monkeypatch.setitem(METHODS, "least_squares", stay)
-
-    return install
+NAME, MASS = "material_damping.retardation_time", "payload.mass"
+TIME = np.arange(0.0, 2.0, 0.01)
 
 
-class Unsimulated:
-    """A problem of which nothing can be simulated on finer numerics either."""
-
-    @staticmethod
-    def evaluate_each(models, names):
-        """What comes of it, model by model."""
-        return [SimulationError("too fine") for _ in models]
-
-
-@pytest.fixture
-def added():
-    """The swimmer with an effect as `add` writes it."""
-    return load_model("swimmer").with_levels([4500.0]).with_effects("current_limit")
+def sleeping(model: Model, time: np.ndarray) -> np.ndarray:
+    """A body that is let go; its damping does nothing below a millisecond. Steps of half the length move it faster."""
+    finer = (
+        model.description.numerics.steps_per_second > model_with(0.0).description.numerics.steps_per_second
+    )
+    rate = (1.001 if finer else 1.0) * 6 / np.sqrt(1 + model.values.get(MASS, 0.0))
+    return 0.2 * np.exp(-40 * max(0.0, model.values.get(NAME, 0.0) - 1e-3) * time) * np.cos(rate * time)
 
 
-def test_an_effect_that_sleeps_at_its_null_is_tried_from_its_typical_size(method, added):
-    """The better of the two is kept."""
-    method(lambda value: 1.0 if value == 0 else 0.2)
-    assert identify(Unsimulated(), added, "least_squares").model.values[NAME] == pytest.approx(2e-5)
+def model_with(damping: float) -> Model:
+    """The beam with a payload and with damping, as `add` writes them."""
+    return load_model("beam").with_effects("payload", "material_damping").with_values({NAME: damping})
 
 
-def test_an_effect_that_is_not_there_stays_out(method, added):
-    """From its typical size it fits worse."""
-    method(lambda value: 0.2 if value == 0 else 1.0)
-    assert identify(Unsimulated(), added, "least_squares").model.values[NAME] == 0.0
+def measured(damping: float) -> FormulaProblem:
+    """A swing with a payload of 0.2 kg/m and this damping."""
+    noise = 0.001 * np.random.default_rng(0).standard_normal(len(TIME))
+    truth = model_with(damping).with_values({MASS: 0.2})
+    return FormulaProblem(sleeping, TIME, sleeping(truth, TIME) + noise)
 
 
-def test_an_unknown_method_is_refused_with_the_nearest_name(added):
+@pytest.mark.parametrize("damping", [0.0, 0.02])
+def test_an_effect_that_sleeps_at_its_null_is_tried_from_its_standard_starts(damping):
+    """There no derivative shows it; one that is not there stays out."""
+    found = identify(measured(damping), model_with(0.0))
+    assert found.model.values[MASS] == pytest.approx(0.2, rel=0.02)
+    assert max(1e-3, found.model.values[NAME]) == pytest.approx(max(1e-3, damping), rel=0.05)
+
+
+def test_standard_errors_hold_the_discretisation():
+    """What shorter time steps would move the mass by is one standard error more, far above that by noise here."""
+    found = identify(measured(0.02), model_with(0.0))
+    assert set(found.changes_by_refinement) >= {"mesh", "time_step"}
+    assert found.model.parameters[MASS].standard_error == pytest.approx(2 * 0.001 * 1.2, rel=0.3)
+
+
+def test_an_unknown_method_is_refused_with_the_nearest_name():
     """Before anything is simulated."""
     with pytest.raises(SysidError, match="least_squares"):
-        identify(None, added, "least_square")
+        identify(None, model_with(0.0), "least_square")

@@ -89,7 +89,7 @@ def test_a_stranger_leaves_something_missing():
 def test_what_has_a_twin_is_found_with_it():
     """Each of two that look alike to a tenth is fitted, and they are a group where noise does not tell them apart."""
     world = MadeUpWorld(2, alike={"linear_drag": "payload"})
-    problem = world.measured(world.with_typical("payload"), noise=0.02)
+    problem = world.measured(world.with_typical("payload"), noise=0.05)
     found = searched(problem)
     assert {frozenset({"payload"}), frozenset({"linear_drag"})} <= set(found.models)
     assert found.choice.groups == (("linear_drag", "payload"),)
