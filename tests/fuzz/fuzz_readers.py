@@ -5,6 +5,7 @@ silent difference: what is read is what an independent reader reads (pandas, mca
 import io
 import os
 import resource
+import struct
 import tempfile
 import time
 import warnings
@@ -175,7 +176,7 @@ def fuzz_mcap(data):
         return
     try:
         records = list(StreamReader(io.BytesIO(content), validate_crcs=True).records)
-    except (McapError, ValueError, RuntimeError):
+    except (McapError, ValueError, RuntimeError, OverflowError, struct.error):
         return
     theirs = sorted((r.log_time, r.data) for r in records if isinstance(r, Message))
     assert sorted((m.log_time, m.data) for ms in file.messages.values() for m in ms) == theirs

@@ -75,7 +75,9 @@ def read_text(path: Path) -> CsvText:
             key, colon, value = stripped[1:].partition(":")
             if colon:
                 metadata[key.strip()] = value.strip()
-        elif stripped and not stripped.lower().startswith("sep="):  # a spreadsheet's own first line
+        elif stripped.strip("".join(SEPARATORS)) and not stripped.lower().startswith(
+            "sep="
+        ):  # a spreadsheet's own first line
             top = line.removesuffix("Comment") if skipped >= 0 else line  # of which most rows have none
             return _table(path, metadata, top.strip(" "), lines[number + 1 :], number + 1)
     raise RecordingError(f"{path} is empty: give a file with a row of column names and a row per frame.")

@@ -29,7 +29,7 @@ READERS = {
 RECORD = re.compile(rb"[\x02-\x0f].{4}\x00{4}", re.DOTALL)
 """How a record of less than 4 GiB begins."""
 LARGEST_CHUNK = 1 << 28
-UNREADABLE = (EndOfFile, struct.error, UnicodeDecodeError, ValueError, RuntimeError)
+UNREADABLE = (EndOfFile, struct.error, OverflowError, UnicodeDecodeError, ValueError, RuntimeError)
 """What reading a record raises whose bytes make no sense."""
 Bytes = bytes | mmap.mmap
 

@@ -69,6 +69,11 @@ def test_columns_without_a_name(tmp_path):
     assert run.drive_signal[:, 0].tolist() == [5000, 5000]
 
 
+def test_blank_rows_on_top_are_passed_over(tmp_path):
+    """A spreadsheet's empty first rows are separators only."""
+    assert read(tmp_path, ",,\n\n,,\n" + TOP + "0,5000,0.1\n").sin_theta.tolist() == [0.1]
+
+
 def test_older_spreadsheets_text(tmp_path):
     """Dots, dashes and quotes of Windows in header lines end no line: the line that is wrong is named."""
     head = "#note: tail \u2026 \u201cnew\u201d \u2013 5 \u20ac\n"

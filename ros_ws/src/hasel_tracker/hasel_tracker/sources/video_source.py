@@ -57,6 +57,8 @@ class VideoSource:
 
     def _look(self, container: InputContainer, given_hz: float | None, unsaid_hz: float | None) -> None:
         stream = container.streams.video[0]
+        if stream.codec_context is None:
+            raise ValueError("its codec is not known")
         stored_hz = float(stream.average_rate or stream.guessed_rate or 0.0)
         seconds = float(container.duration or 0) / av.time_base
         count = stream.frames or round(seconds * stored_hz)
