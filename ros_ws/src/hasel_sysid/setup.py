@@ -25,8 +25,9 @@ setup(
     ],
     extras_require={
         "adam": ["torch>=2"],
+        "cluster": ["distributed"],
         "workbench": ["nicegui>=3,<4", "fastapi", "websockets"],
-        "test": ["pytest", "pytest-timeout", "statsmodels", "websockets"],
+        "test": ["fastapi", "pytest", "pytest-timeout", "statsmodels", "websockets"],
     },
     zip_safe=False,
     maintainer="HASEL swimmer maintainers",

@@ -218,3 +218,13 @@ def test_a_single_effect_is_as_simple_as_a_number():
     found = improve(world.measured(world.with_typical(TOGETHER[0])), world.model)
     assert found.constant is None
     assert found.missing == TOGETHER[:1]
+
+
+def test_a_number_may_do_what_no_effect_does():
+    """It is named with its value where no effect is."""
+    world = MadeUpWorld(1, constants={DENSITY: ("stranger",)})
+    truth = world.with_typical().with_freed(DENSITY).with_values({DENSITY: 1000.0})
+    found = improve(world.measured(truth), world.model)
+    assert (found.status, found.missing) == (Status.UNEXPLAINED, ())
+    assert found.constant.name == DENSITY
+    assert found.constant.parameter.value == pytest.approx(1000.0, rel=0.01)

@@ -4,23 +4,21 @@ import pytest
 from hasel_sysid.errors import SysidError
 
 pytest.importorskip("nicegui", reason="NiceGUI is not installed: the extra `workbench`")
+from fastapi import FastAPI, Request, WebSocket, WebSocketDisconnect
+from fastapi.responses import PlainTextResponse
+from fastapi.testclient import TestClient
 from hasel_sysid.workbench.page.door import LARGEST_REQUEST, Door
 from hasel_sysid.workbench.page.server import opening
-from starlette.applications import Starlette
-from starlette.responses import PlainTextResponse
-from starlette.routing import Mount, Route, WebSocketRoute
-from starlette.testclient import TestClient
-from starlette.websockets import WebSocketDisconnect
 
 TOKEN, SITE = "a-token-of-the-test", "http://127.0.0.1:8477"
 COOKIE = {"Cookie": f"hasel_workbench_8477={TOKEN}"}
 
 
-async def _answered(_request) -> PlainTextResponse:
+async def _answered(request: Request) -> PlainTextResponse:
     return PlainTextResponse("inside")
 
 
-async def _hears(socket) -> None:
+async def _hears(socket: WebSocket) -> None:
     await socket.accept()
     await socket.send_text("inside")
     await socket.close()
@@ -29,9 +27,11 @@ async def _hears(socket) -> None:
 @pytest.fixture
 def client() -> TestClient:
     """A page, data, files and a socket behind the door, as the workbench has them."""
-    inner = Starlette(routes=[WebSocketRoute("/socket.io/", _hears)])
-    routes = [Route("/{path:path}", _answered, methods=["GET", "POST"])]
-    app = Starlette(routes=[Mount("/_nicegui_ws", inner), *routes])
+    inner = FastAPI()
+    inner.add_api_websocket_route("/socket.io/", _hears)
+    app = FastAPI(docs_url=None, redoc_url=None, openapi_url=None)
+    app.mount("/_nicegui_ws", inner)
+    app.add_api_route("/{path:path}", _answered, methods=["GET", "POST"])
     app.add_middleware(Door, token=TOKEN, port=8477)
     return TestClient(app, base_url=SITE, follow_redirects=False)
 

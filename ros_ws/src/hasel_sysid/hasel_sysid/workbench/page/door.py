@@ -6,8 +6,8 @@ from http.cookies import CookieError, SimpleCookie
 from typing import Any
 from urllib.parse import parse_qs, urlencode, urlsplit
 
-from starlette.datastructures import Headers
-from starlette.responses import PlainTextResponse, RedirectResponse
+from fastapi.datastructures import Headers
+from fastapi.responses import PlainTextResponse, RedirectResponse
 
 LARGEST_REQUEST = 1 << 30
 """Bytes that one request, such as an upload, may have."""
