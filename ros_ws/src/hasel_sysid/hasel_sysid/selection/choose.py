@@ -117,8 +117,11 @@ def _is_better(models: Models, one: Names, other: Names, policy: Policy) -> bool
 
 
 def _is_needed(models: Models, whole: Names, part: Names, policy: Policy, threshold: float) -> bool:
+    """Whether it is likelier, predicts better, and leaves less of the squares by what matters: no mesh is exact."""
     gain = models[whole].whitened.logarithm - models[part].whitened.logarithm
-    return gain > threshold * len(whole - part) and _is_better(models, whole, part, policy)
+    left = [models[names].fitted.fit.evaluation.sum_of_squares for names in (whole, part)]
+    matters = left[0] <= (1 - policy.matters) * left[1]
+    return matters and gain > threshold * len(whole - part) and _is_better(models, whole, part, policy)
 
 
 def _parts(models: Models, names: Names) -> list[Names]:
