@@ -120,7 +120,7 @@ def _is_needed(models: Models, whole: Names, part: Names, policy: Policy, thresh
     """Whether it is likelier, predicts better, and leaves less of the squares by what matters: no mesh is exact."""
     gain = models[whole].whitened.logarithm - models[part].whitened.logarithm
     left = [models[names].fitted.fit.evaluation.sum_of_squares for names in (whole, part)]
-    matters = left[0] <= (1 - policy.matters) * left[1]
+    matters = left[0] <= (1 - 2 * policy.matters) * left[1]  # of squares: a tenth of the error
     return matters and gain > threshold * len(whole - part) and _is_better(models, whole, part, policy)
 
 
