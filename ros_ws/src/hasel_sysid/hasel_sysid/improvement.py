@@ -16,6 +16,7 @@ from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
 from hasel_sysid.policy import POLICY, Policy
 from hasel_sysid.problem import Problem
 from hasel_sysid.result import Diagnosis, Improvement, Stage, Status, Verdict, WrongConstant
+from hasel_sysid.selection.choose import is_better
 from hasel_sysid.selection.likelihood import FittedSet, Likelihood
 from hasel_sysid.selection.search import IsLaw, Search, Searched
 from hasel_sysid.verdict import diagnosis, near_noise, share_left, status_with
@@ -62,27 +63,29 @@ def improve(
     policy = replace(POLICY, most_effects=1 if opposed else most_effects)
     fit = fit_baseline(problem, model, _part(progress, "fit", 0.0, 0.15))
     effects = effects_of(fit.model, only)
+    stages: list[Stage] = []
+
+    def add(fitted: FittedModel, names: Sequence[str], freed: str = "") -> None:
+        error = None if validation is None else validation.evaluate(fitted.model).mean_absolute_error
+        stages.append(Stage(tuple(names), fitted, error, None, freed))
+        if on_stage:
+            on_stage(stages[-1])
+
+    add(refined(problem, fit), ())
     begun = [] if in_phase(fit.evaluation) or opposed else _on_growing_horizons(problem, fit, effects, policy)
     report = _part(progress, "search", 0.15, 0.95)
     constants = not opposed and not only
     found = Search(problem, fit, effects, policy, _laws(problem), report, constants, begun).run()
     said = diagnosis(found, effects)
-    constant = None if opposed else _wrong_constant(found)
-    stages: list[Stage] = []
+    constant = None if opposed else _wrong_constant(found, policy)
 
-    def add(fitted: FittedModel, names: Sequence[str], diagnosed: Diagnosis | None, freed: str = "") -> None:
-        error = None if validation is None else validation.evaluate(fitted.model).mean_absolute_error
-        stages.append(Stage(tuple(names), fitted, error, diagnosed, freed))
-        if on_stage:
-            on_stage(stages[-1])
-
-    add(refined(problem, fit), (), said.of_no_effect() if constant else said)
+    stages[0] = replace(stages[0], diagnosis=said.of_no_effect() if constant else said)
     if constant:
-        add(constant.fit, (), None, constant.name)
+        add(constant.fit, (), constant.name)
     elif not opposed:
         for names in found.choice.path[1:]:
             order = [name for name in found.choice.in_order if name in names]
-            add(_ended(problem, found.models[names].fitted.fit), order, None)
+            add(_ended(problem, found.models[names].fitted.fit), order)
     reason, nothing_else = _why_the_last(found, policy, stages[0], opposed, constant)
     concluded = _conclude(stages, reason, nothing_else)
     if concluded.status is Status.NOTHING_MISSING and (doubt := _unseen_runs_differ(stages[-1], said)):
@@ -187,14 +190,16 @@ def _opposed_runs(problem: Problem, model: Model) -> list[SetUpFault]:
     ]
 
 
-def _wrong_constant(found: Searched) -> WrongConstant | None:
-    """The number of the model file that is the answer, beside the effects that come to no more."""
+def _wrong_constant(found: Searched, policy: Policy) -> WrongConstant | None:
+    """The number of the model file that is the answer, beside the effects that do as much, if any do."""
     (name,) = found.choice.chosen if len(found.choice.chosen) == 1 else ("",)
     answer = found.answer
     if not name or not answer.candidates[name].is_constant:
         return None
     effects = [n for n, m in found.models.items() if n and not m.fitted.has_constant]
     best = max(effects, key=lambda names: found.models[names].elpd.total, default=frozenset())
+    if best and is_better(found.models, found.choice.chosen, best, policy):
+        best = frozenset()
     (parameter,) = answer.candidates[name].parameters
     return WrongConstant(name, parameter.null, answer.fit, best)
 

@@ -24,8 +24,7 @@ class Policy:
         apart, and of a value within which it may lie at the end of its range though it seems to lie beyond: 95 %.
     odds: to one, below which two models are not told apart in any case.
     matters: share of a value by which a law may differ from its mean at either end of a range (no rig is exact), and
-        of the error above the noise that an explanation may leave, and of the error that a
-        candidate must take away.
+        of the error above the noise that an explanation may leave.
     part: share of the error above the noise that effects must remove to be part of an explanation.
     fits: models that are fitted in full in a round of the search, side by side.
     """

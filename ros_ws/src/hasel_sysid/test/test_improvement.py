@@ -180,8 +180,7 @@ def test_one_wrong_number_comes_before_two_effects(denser):
     assert found.constant is not None
     assert found.constant.name == DENSITY
     assert abs(found.constant.parameter.value - 1080.0) < 3 * found.constant.parameter.standard_error
-    elpd = {frozenset(model.effects): model.elpd for model in found.models}
-    assert elpd[found.constant.instead_of] < elpd[frozenset({DENSITY})]
+    assert found.constant.instead_of == frozenset()  # each effect alone predicts far worse
     assert (found.status, found.missing) == (Status.UNEXPLAINED, ())
     assert [stage.added for stage in found.stages] == [(), (DENSITY,)]
     assert found.stages[-1].mae_validation < 0.2 * found.stages[0].mae_validation
@@ -228,3 +227,26 @@ def test_a_number_may_do_what_no_effect_does():
     assert (found.status, found.missing) == (Status.UNEXPLAINED, ())
     assert found.constant.name == DENSITY
     assert found.constant.parameter.value == pytest.approx(1000.0, rel=0.01)
+    assert found.constant.instead_of == frozenset()
+    assert "does what no listed effect does" in found.reason
+
+
+def test_an_effect_is_missing_however_loud_the_noise_if_runs_left_out_are_predicted_by_far_better():
+    """Its share of all squares is small then, and the difference in elpd many times its error."""
+    world = MadeUpWorld(2)
+    loud = world.measured(world.with_typical("payload"), noise=0.05)
+    assert improve(loud, world.model, only=("payload", "pre_bend")).missing == ("payload",)
+
+
+def test_who_stops_a_search_keeps_the_fitted_baseline():
+    """Ctrl-C in the middle: the first stage was handed over before anything was searched for."""
+    world, written = MadeUpWorld(1, shared=16), []
+    problem = world.measured(world.with_typical("payload"))
+
+    def stopped(text, share):
+        if "each alone" in text:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        improve(problem, world.model, progress=stopped, on_stage=written.append)
+    assert [stage.effects for stage in written] == [()]

@@ -20,11 +20,14 @@ _RESAMPLED = 2000
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """A fitted model in the one currency. elpd: of its left-out runs; whitened: its residual."""
+    """A fitted model in the one currency. elpd: of its left-out runs; whitened: its residual; discrepancy: rms of what
+    no model has.
+    """
 
     fitted: FittedSet
     whitened: Whitened
     elpd: Elpd
+    discrepancy: float = 0.0
 
 
 Models = Mapping[Names, Judged]
@@ -99,10 +102,11 @@ def best_of(models: Models) -> Names:
 
 def smallest(models: Models, policy: Policy, threshold: float) -> Names:
     """The smallest set within one standard error of the best; and no candidate stays whose removal, refitted, costs
-    less than that, or less than noise alone makes of the best of all candidates (backward check).
+    less than that, or less than noise alone makes of the best of all candidates, or changes less than what no model
+    has (backward check).
     """
     best = best_of(models)
-    as_good = [n for n in plausible(models) if not _is_better(models, best, n, policy)]
+    as_good = [n for n in plausible(models) if not is_better(models, best, n, policy)]
     found = min(as_good, key=lambda names: (len(names), -models[names].elpd.total))
     while parts := [
         part for part in _parts(models, found) if not _is_needed(models, found, part, policy, threshold)
@@ -111,17 +115,20 @@ def smallest(models: Models, policy: Policy, threshold: float) -> Names:
     return found
 
 
-def _is_better(models: Models, one: Names, other: Names, policy: Policy) -> bool:
+def is_better(models: Models, one: Names, other: Names, policy: Policy) -> bool:
+    """Whether one set predicts left-out runs better than another, by more than the error of the difference."""
     difference = models[one].elpd.over(models[other].elpd)
     return difference.total > policy.standard_errors * difference.error
 
 
 def _is_needed(models: Models, whole: Names, part: Names, policy: Policy, threshold: float) -> bool:
-    """Whether it is likelier, predicts better, and leaves less of the squares by what matters: no mesh is exact."""
+    """Whether it is likelier, predicts better, and changes the series by more than what no model has: the discrepancy
+    is the same in every run, where a likelihood takes it for independent.
+    """
     gain = models[whole].whitened.logarithm - models[part].whitened.logarithm
-    left = [models[names].fitted.fit.evaluation.sum_of_squares for names in (whole, part)]
-    matters = left[0] <= (1 - 2 * policy.matters) * left[1]  # of squares: a tenth of the error
-    return matters and gain > threshold * len(whole - part) and _is_better(models, whole, part, policy)
+    change = models[whole].fitted.residual - models[part].fitted.residual
+    beyond = float(np.sqrt(np.mean(change**2))) > models[whole].discrepancy
+    return beyond and gain > threshold * len(whole - part) and is_better(models, whole, part, policy)
 
 
 def _parts(models: Models, names: Names) -> list[Names]:
@@ -152,7 +159,7 @@ def confidence_set(models: Models, chosen: Names, policy: Policy) -> list[Names]
 def _may_stand_for(models: Models, chosen: Names, other: Names, policy: Policy) -> bool:
     if other == chosen:
         return True
-    if any(not _is_better(models, other, part, policy) for part in _parts(models, other)):
+    if any(not is_better(models, other, part, policy) for part in _parts(models, other)):
         return False
     more = models[chosen].elpd.over(models[other].elpd)
     return more.total <= max(policy.confidence * more.by_noise, float(np.log(policy.odds)))

@@ -148,7 +148,7 @@ class Search:
                 continue  # a number that somebody measured is doubted only where it alone describes the runs
             white = self.likelihood.whitened(fitted)
             elpd = leave_one_run_out(white, measured, self.policy.prior_runs)
-            self.models[names] = Judged(fitted, white, elpd)
+            self.models[names] = Judged(fitted, white, elpd, discrepancy)
 
     def _refinement_changes(self, names: Names) -> dict[str, np.ndarray]:
         """By finer numerics at a fitted set; none of a model that is out of phase, where they mean nothing."""
