@@ -49,7 +49,7 @@ def test_a_fit_is_given_up(tmp_path, environment, listener, number, jobs):
         listener.until(client.service_is_ready, 60.0, processes.check)
         client.call_async(FitModel.Request(recordings=[str(path) for path in RUNS]))
         said = processes.output("sysid")
-        listener.until(lambda: "fit" in said.read_text(), 120.0, processes.check)
+        listener.until(lambda: "low-fidelity" in said.read_text(), 120.0, processes.check)
         sysid = processes.process_id("sysid")
         workers = descendants(sysid)
         assert len(workers) >= (0 if jobs == 1 else jobs)

@@ -35,7 +35,7 @@ def stack(tmp_path, environment, listener, model_file):
     """Simulator and identification, ready and connected to each other."""
     with Processes(tmp_path, environment) as stack:
         model = ("--ros-args", "-p", f"model:={model_file}")
-        stack.start("hasel_sim", "simulator", *model)
+        stack.start("hasel_sim", "simulator", *model, "-p", f"own_files:={tmp_path}")
         stack.start("hasel_sysid", "sysid", *model, "-p", f"output:={tmp_path}")
 
         def connected() -> bool:

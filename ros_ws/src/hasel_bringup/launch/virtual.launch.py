@@ -41,7 +41,8 @@ def generate_launch_description() -> LaunchDescription:
     ]
     port = str(Path(tempfile.gettempdir()) / f"hasel_supply_{os.getpid()}")
     own = {"history_file": f"{port}_history.jsonl", "state_folder": f"{port}_state"}
-    supply = {"port": port, "recorded_topics": [""], **own}
+    beside = PathJoinSubstitution([output, ".."])  # a folder in use already gets a number
+    supply = {"port": port, "recorded_topics": [""], "recording_directory": beside, **own}
     folder = {"folder": PathJoinSubstitution([output, "recordings"])}
 
     def node(package: str, executable: str, *parameters: dict, **options) -> Node:
@@ -67,7 +68,7 @@ def generate_launch_description() -> LaunchDescription:
             node("hasel_driver", "driver_node", supply),
             node("hasel_bringup", "virtual_camera", {"hidden": hidden}, prefix=_LATER),
             node("hasel_tracker", "tracker_node", TRACKER, prefix=_LATER),
-            node("hasel_sim", "simulator", prefix=_LATER),
+            node("hasel_sim", "simulator", {"own_files": beside}, prefix=_LATER),
             node("hasel_sysid", "sysid", prefix=_LATER),
             node("hasel_bringup", "recorder", folder, prefix=_LATER),
             experimenter,

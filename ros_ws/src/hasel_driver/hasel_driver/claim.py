@@ -43,7 +43,7 @@ class Claim:
         with self._lock:
             now_s, holder = self._clock(), self._holder
             if holder is not None and holder.publisher == publisher:
-                holder.heard_s = now_s
+                holder.heard_s, holder.name = now_s, name  # which the graph may have told only now
                 return True, False
             back = holder is not None and holder.name == name and now_s - holder.heard_s > SILENT_S
             if holder is None or back:

@@ -1,5 +1,6 @@
 """`ros2 run hasel_driver driver_node`: lifecycle node on top of the supply's thread."""
 
+import math
 import os
 import signal
 import sys
@@ -34,6 +35,7 @@ from hasel_driver.node_parameters import declare, values
 from hasel_driver.parameter_files import check_files
 from hasel_driver.parent import end_with_parent
 from hasel_driver.realtime import middleware_threads, request_realtime
+from hasel_driver.serial_port import check_not_in_use
 from hasel_driver.status import Status
 from hasel_driver.supervisor import Supervisor
 from hasel_driver.supply_history import SupplyHistory
@@ -60,9 +62,11 @@ class DriverNode(LifecycleNode):
         self._configured_s = 0.0
         self._last_limits: Limits | None = None
         self._claim = Claim(time.monotonic)
+        self._refused_s: dict[str, float] = {}  # when it was last said, by the other commander's name
         self.end_reason: str | None = None  # why the process must end
         check_files(self.get_name(), self.get_fully_qualified_name(), sys.argv)
         declare(self, lambda: self._thread is not None, self._lower_maximum)
+        check_not_in_use(values(self)["port"])  # before anything of this node answers to the names of the other
         slow = ReentrantCallbackGroup()
         self._state = publisher(self, SupplyState, STATE, Role.SAMPLES)
         self._frame_id = frame_of(self, "supply")
@@ -105,7 +109,7 @@ class DriverNode(LifecycleNode):
             supervisor.fault = store.load()
             supervisor.connect()
         except PortInUseError as error:
-            self.end_reason = f"{error} This node ends, so that its services do not answer for the other's."
+            self.end_reason = str(error)
             rclpy.try_shutdown()
             return TransitionCallbackReturn.FAILURE
         except PortError as error:
@@ -215,10 +219,12 @@ class DriverNode(LifecycleNode):
             return
         obeyed, new = self._claim.take(publisher, name) if thread.supervisor.armed else (True, False)
         if not obeyed:
-            self.get_logger().warning(
-                f"Commands of {name} are refused: {self._claim.holder} holds the claim. End that one, or arm anew.",
-                throttle_duration_sec=REFUSED_LOG_S,
-            )
+            said_s = self._refused_s.get(name, -math.inf)
+            if time.monotonic() - said_s > REFUSED_LOG_S:
+                self._refused_s[name] = time.monotonic()
+                self.get_logger().warning(
+                    f"Commands of {name} are refused: {self._claim.holder} holds the claim. End that one, or arm anew."
+                )
             return
         if new:
             thread.call(thread.supervisor.await_zero)

@@ -1,6 +1,7 @@
 """A serial port opened for one host alone, read and written without waiting."""
 
 import contextlib
+import fcntl
 import os
 import select
 
@@ -8,6 +9,27 @@ import serial
 
 from hasel_driver.errors import PortError, PortInUseError
 from hasel_driver.faults import FaultCode, SupplyFaultError
+
+
+def check_not_in_use(path: str) -> None:
+    """Raises PortInUseError where another program has locked the port; what else is wrong shows when it is opened."""
+    try:
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOCTTY | os.O_NONBLOCK)
+    except OSError:
+        return
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError as error:
+        raise _in_use(path) from error
+    finally:
+        os.close(descriptor)
+
+
+def _in_use(path: str) -> PortInUseError:
+    return PortInUseError(
+        f"The serial port {path} cannot be opened: another program has it open; end that first. This node ends, so that"
+        " its services do not answer for the other's."
+    )
 
 
 class SerialPort:
@@ -28,9 +50,7 @@ class SerialPort:
             self._serial = serial.Serial(self.path, self._baud, timeout=0, write_timeout=0, exclusive=True)
         except (OSError, ValueError) as error:
             if "lock" in str(error):
-                raise PortInUseError(
-                    f"The serial port {self.path} cannot be opened: another program has it open; end that first."
-                ) from error
+                raise _in_use(self.path) from error
             raise PortError(
                 f"The serial port {self.path} cannot be opened ({error}): check the cable, the parameter"
                 " `port`, that the user is in the group dialout, and that no other program uses it."

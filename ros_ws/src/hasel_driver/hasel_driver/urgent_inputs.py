@@ -69,8 +69,9 @@ class UrgentInputs:
     def commanders(self) -> dict[bytes, str]:
         """The nodes that publish commands, by the identifier of their publisher; a node started anew counts once."""
         publishers = self._node.get_publishers_info_by_topic(self._commands.topic_name)
-        by_name = {full_name(info): bytes(info.endpoint_gid[:IDENTIFIER_BYTES]) for info in publishers}
-        return {identifier: name for name, identifier in by_name.items()}
+        found = {bytes(info.endpoint_gid[:IDENTIFIER_BYTES]): full_name(info) for info in publishers}
+        latest = {name: identifier for identifier, name in found.items()}
+        return {one: name for one, name in found.items() if name == UNNAMED or latest[name] == one}
 
     def close(self) -> None:
         """End the thread."""

@@ -283,8 +283,9 @@ def test_the_driver_ends_grounded_with_its_parent(virtual_rig, ros, tmp_path, gr
     finally:
         parent.kill()
         parent.wait()
+    time.sleep(1.0)  # what is under way arrives
     ros.states.clear()
-    time.sleep(1.5)
+    time.sleep(1.0)
     assert ros.states == []
 
 

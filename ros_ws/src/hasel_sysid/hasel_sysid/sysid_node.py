@@ -124,7 +124,7 @@ class SysidNode(Node):
             save_model(result.model, path)
             response.fit = fit_message(result, str(path.resolve()), self._header())
             self._fit.publish(response.fit)
-            return f"{result} Written to {path}; the simulator takes it by load_model."
+            return f"{result} Written to {path}; a simulator with own_files above it takes it by load_model."
 
         return self._serve(fit, response)
 

@@ -26,7 +26,7 @@ class LiveError:
     """
 
     def __init__(self, model: Path, folder: Path, domain: int) -> None:
-        self._model, self._domain = model, domain
+        self._model, self._folder, self._domain = model, folder, domain
         environment = {"ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
         self._processes = Processes(folder, environment)
         self._connected = False
@@ -39,7 +39,7 @@ class LiveError:
         subscription(self._node, RunningError, ERROR, self._on_error, Role.EVERY_SAMPLE)
         subscription(self._node, DiagnosticArray, DIAGNOSTICS, self._on_diagnostics, Role.DIAGNOSTICS)
         model = ("--ros-args", "-p", f"model:={self._model}")
-        self._processes.start("hasel_sim", "simulator", *model)
+        self._processes.start("hasel_sim", "simulator", *model, "-p", f"own_files:={self._folder}")
         self._processes.start("hasel_sysid", "sysid", *model)
         try:
             self._until(lambda: self._connected, "simulator and sysid did not find each other")

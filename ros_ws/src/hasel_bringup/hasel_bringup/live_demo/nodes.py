@@ -23,13 +23,14 @@ def start_nodes(processes: Processes, folder: Path, hidden: str, seed: int) -> N
             "port": port,
             "history_file": folder / "supply_history.jsonl",
             "state_folder": folder / "supply_state",
+            "recording_directory": folder,
             "recorded_topics": "['']",  # the recorder's work
         },
     )
     for package, executable, parameters in (
         ("hasel_bringup", "virtual_camera", {"hidden": hidden, "seed": seed}),
         ("hasel_tracker", "tracker_node", TRACKER),
-        ("hasel_sim", "simulator", {}),
+        ("hasel_sim", "simulator", {"own_files": folder}),
         ("hasel_sysid", "sysid", {"output": folder}),
         ("hasel_bringup", "recorder", {"folder": folder / "recordings"}),
     ):

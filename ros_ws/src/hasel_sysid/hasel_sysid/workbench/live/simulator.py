@@ -23,7 +23,8 @@ class OwnSimulator:
         self.close()
         self._log = model.with_name("simulator.log")
         own = {} if self._domain is None else {"ROS_DOMAIN_ID": str(self._domain)}
-        given = ("-r", f"__ns:={self._namespace}", "-p", f"model:={model.resolve()}")
+        file = model.resolve()
+        given = ("-r", f"__ns:={self._namespace}", "-p", f"model:={file}", "-p", f"own_files:={file.parent}")
         with self._log.open("w") as output:
             self._process = subprocess.Popen(
                 [sys.executable, "-m", "hasel_sim.start_simulator", "--ros-args", *given],

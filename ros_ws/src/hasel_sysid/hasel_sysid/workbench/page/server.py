@@ -63,10 +63,10 @@ def serve(
     (session.folder / "export").mkdir(parents=True, exist_ok=True)
     app.add_static_files("/workbench", _STATIC)
     app.add_static_files("/export", session.folder / "export")
-    if host in LOOPBACK:  # a page elsewhere cannot reach it by giving its own name this machine's address
-        app.add_middleware(TrustedHostMiddleware, allowed_hosts=list(LOOPBACK))
     token = secrets.token_urlsafe(24)
-    app.add_middleware(Door, token=token, port=port)  # the outermost: nothing answers before it
+    app.add_middleware(Door, token=token, port=port)
+    if host in LOOPBACK:  # the outermost: a page elsewhere may give its own name this machine's address
+        app.add_middleware(TrustedHostMiddleware, allowed_hosts=list(LOOPBACK))
     head = '<link rel="stylesheet" href="/workbench/workbench.css">'
     head += "".join(f'<script src="/workbench/{name}"></script>' for name in _SCRIPTS)
 
