@@ -28,7 +28,7 @@ def test_nothing_is_missing_when_nothing_is_hidden(pool):
 @pytest.mark.parametrize(
     ("effect", "size"),
     # without its drag the body swings so much that the baseline is fitted with a third of the muscles' strength
-    [("muscle_asymmetry", -2.0), ("quadratic_drag", 1.0)],
+    [pytest.param("muscle_asymmetry", -2.0, marks=pytest.mark.slow), ("quadratic_drag", 1.0)],
 )
 def test_hidden_effect_is_named_and_added(pool, effect, size):
     """First in the ranking, added alone, and most of the error gone on runs that were not fitted."""

@@ -20,13 +20,8 @@ HIDDEN = {
 """Each passes every voltage, or stays below the onset that three amplitudes of a saturating muscle would suggest."""
 
 
-@pytest.mark.parametrize(
-    "effect",
-    [
-        "drive_hysteresis",
-        *(pytest.param(e, marks=pytest.mark.slow) for e in ("charging_lag", "current_limit")),
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("effect", HIDDEN)
 def test_what_sweeps_the_drive_is_found_to_the_noise(effect, pool):
     """In a truth of another mesh, step and muscle law; the intervals hold what is hidden, or are open.
 

@@ -37,9 +37,8 @@ def test_nothing_hidden_is_nothing_missing(pool):
 
 
 @pytest.mark.timeout(900)
-@pytest.mark.parametrize(
-    "effect", ["charging_lag", *(pytest.param(e, marks=slow) for e in ("quadratic_drag", "muscle_asymmetry"))]
-)
+@slow
+@pytest.mark.parametrize("effect", ["charging_lag", "quadratic_drag", "muscle_asymmetry"])
 def test_hidden_effect_is_named_first_and_added(effect, pool):
     """It leads the ranking, nothing else is added, and the error falls to the noise on fitted and unseen runs."""
     found = improved(effect, pool)

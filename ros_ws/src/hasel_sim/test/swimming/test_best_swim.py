@@ -52,6 +52,7 @@ def test_a_fish_is_steered_to_a_heading(lopsided):
     assert "The heading of -90° is not reached" in str(far)
 
 
+@pytest.mark.slow
 def test_a_better_body_is_found_and_described(lopsided):
     """Outline and fin: faster under the same boxes, with as much body as before, also on a mesh made for it."""
     fin, quick = "body.spine.fin_length_m", Boxes(5000.0, 5000.0, 2.0)
