@@ -66,7 +66,9 @@ class DriverNode(LifecycleNode):
         self.end_reason: str | None = None  # why the process must end
         check_files(self.get_name(), self.get_fully_qualified_name(), sys.argv)
         declare(self, lambda: self._thread is not None, self._lower_maximum)
-        check_not_in_use(values(self)["port"])  # before anything of this node answers to the names of the other
+        check_not_in_use(
+            values(self)["port"]
+        )  # before anything of this node answers to the names of the other
         slow = ReentrantCallbackGroup()
         self._state = publisher(self, SupplyState, STATE, Role.SAMPLES)
         self._frame_id = frame_of(self, "supply")
