@@ -2,26 +2,28 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
 from hasel_sysid.candidates import Candidate, effects_of
-from hasel_sysid.data_gate import Finding as SetUpFault
-from hasel_sysid.data_gate import check_against_model
 from hasel_sysid.estimation.fit import FittedModel, Progress, exact, fit_baseline, fitted_model, refined
 from hasel_sysid.estimation.growing_horizon import horizons, in_phase
 from hasel_sysid.model_checking.constancy import against_law
 from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
+from hasel_sysid.noise.bounds import bounded_noise
+from hasel_sysid.noise.model import allowed_noise
 from hasel_sysid.policy import POLICY, Policy
 from hasel_sysid.problem import Problem
 from hasel_sysid.result import Diagnosis, Improvement, Stage, Status, Verdict, WrongConstant
 from hasel_sysid.selection.choose import is_better
-from hasel_sysid.selection.likelihood import FittedSet, Likelihood
+from hasel_sysid.selection.cross_validation import leave_one_run_out
+from hasel_sysid.selection.likelihood import NOTHING, FittedSet, Likelihood
 from hasel_sysid.selection.search import IsLaw, Search, Searched
+from hasel_sysid.set_up import SetUpFault, hypotheses
 from hasel_sysid.verdict import diagnosis, near_noise, share_left, status_with
 
-_OPPOSED = "sign flip or swapped channels"
 OnStage = Callable[[Stage], None]
 
 
@@ -58,9 +60,7 @@ def improve(
     (default: the whole catalogue). on_stage: called with every stage as soon as it is known, to write its model file.
     Where the problem's time is over before the search is, the reason says what was not tried.
     """
-    opposed = _opposed_runs(problem, model)
-    # beside a fault of the set-up nothing is named: the ranking is all that a search is for
-    policy = replace(POLICY, most_effects=1 if opposed else most_effects)
+    policy = replace(POLICY, most_effects=most_effects)
     fit = fit_baseline(problem, model, _part(progress, "fit", 0.0, 0.15))
     effects = effects_of(fit.model, only)
     stages: list[Stage] = []
@@ -72,26 +72,29 @@ def improve(
             on_stage(stages[-1])
 
     add(refined(problem, fit), ())
-    begun = [] if in_phase(fit.evaluation) or opposed else _on_growing_horizons(problem, fit, effects, policy)
+    search = partial(_searched, effects=effects, policy=policy, with_constants=not only)
+    faults = _readings(problem, model, fit)
     report = _part(progress, "search", 0.15, 0.95)
-    constants = not opposed and not only
-    found = Search(problem, fit, effects, policy, _laws(problem), report, constants, begun).run()
+    found, fault = _likelier(problem, fit, faults, search, policy, report)
+    if fault:
+        problem = problem.with_experiments(fault.read(problem.experiments))
+        validation = validation and validation.with_experiments(fault.read(validation.experiments))
+        stages.clear()
+        add(refined(problem, found.models[NOTHING].fitted.fit), ())
     said = diagnosis(found, effects)
-    constant = None if opposed else _wrong_constant(found, policy)
+    constant = _wrong_constant(found, policy)
 
     stages[0] = replace(stages[0], diagnosis=said.of_no_effect() if constant else said)
     if constant:
         add(constant.fit, (), constant.name)
-    elif not opposed:
+    else:
         for names in found.choice.path[1:]:
             order = [name for name in found.choice.in_order if name in names]
             add(_ended(problem, found.models[names].fitted.fit), order)
-    reason, nothing_else = _why_the_last(found, policy, stages[0], opposed, constant)
+    reason, nothing_else = _why_the_last(found, policy, stages[0], constant)
     concluded = _conclude(stages, reason, nothing_else)
     if concluded.status is Status.NOTHING_MISSING and (doubt := _unseen_runs_differ(stages[-1], said)):
         concluded = replace(concluded, status=Status.UNEXPLAINED, unexplained_fraction=1.0, reason=doubt)
-    if opposed:
-        concluded = replace(concluded, status=Status.UNEXPLAINED)
     if concluded.status is Status.UNEXPLAINED:
         of_none = replace(concluded.stages[0], diagnosis=concluded.diagnosis.of_no_effect())
         concluded = replace(concluded, stages=[of_none, *concluded.stages[1:]])
@@ -99,7 +102,7 @@ def improve(
     return replace(
         concluded,
         reason=" ".join(filter(None, [concluded.reason, untried])),
-        opposed=bool(opposed),
+        set_up=fault,
         constant=constant,
         models=found.table,
     )
@@ -176,18 +179,76 @@ def _refitted(problem: Problem, sets: Sequence[FittedSet]) -> list[FittedSet]:
     return sorted(found, key=lambda one: one.fit.evaluation.sum_of_squares)
 
 
-def _opposed_runs(problem: Problem, model: Model) -> list[SetUpFault]:
-    """Runs that move against the model, as it is before any fit: afterwards it may not move at all."""
-    try:
-        simulations = problem.evaluate(model).simulations
-    except SimulationError:
-        return []
-    return [
-        fault
-        for experiment, simulation in zip(problem.experiments, simulations, strict=True)
-        for fault in check_against_model(experiment.recording, simulation.sin_theta)
-        if fault.fault == _OPPOSED
-    ]
+def _searched(
+    problem: Problem,
+    fit: FittedModel,
+    progress: Progress | None,
+    effects: Sequence[Candidate],
+    policy: Policy,
+    with_constants: bool,
+) -> Searched:
+    """What a fitted baseline lacks; where it is out of phase, first of its beginning."""
+    begun = [] if in_phase(fit.evaluation) else _on_growing_horizons(problem, fit, effects, policy)
+    return Search(problem, fit, effects, policy, _laws(problem), progress, with_constants, begun).run()
+
+
+def _readings(problem: Problem, model: Model, fit: FittedModel) -> list[tuple[SetUpFault, FittedModel]]:
+    """Faults of the set-up with the baseline fitted to the runs as they are then read, likeliest first."""
+    found: list[tuple[SetUpFault, FittedModel]] = []
+    if _describes(problem, fit):
+        return found
+    for fault in hypotheses(problem, [model, fit.model]):
+        try:
+            read = fit_baseline(problem.with_experiments(fault.read(problem.experiments)), model)
+        except SimulationError:
+            continue
+        if read.evaluation.sum_of_squares < fit.evaluation.sum_of_squares:
+            found.append((fault, read))
+    return sorted(found, key=lambda one: one[1].evaluation.sum_of_squares)
+
+
+def _likelier(
+    problem: Problem,
+    fit: FittedModel,
+    faults: Sequence[tuple[SetUpFault, FittedModel]],
+    search: Callable[[Problem, FittedModel, Progress | None], Searched],
+    policy: Policy,
+    progress: Progress | None,
+) -> tuple[Searched, SetUpFault | None]:
+    """The search of the runs as recorded, or as the likeliest fault of the set-up has them read.
+
+    The fault is believed where the answer beside it predicts better and is likelier than the answer without it; a
+    reading that alone describes the runs, or an answer as recorded that does, needs no second search.
+    """
+    if not faults:
+        return search(problem, fit, progress), None
+    fault, read = faults[0]
+    as_read = problem.with_experiments(fault.read(problem.experiments))
+    if _describes(as_read, read):
+        return search(as_read, read, progress), fault
+    recorded = search(problem, fit, progress)
+    if near_noise(recorded.answer.fit.mean_absolute_error, recorded.likelihood.allowed):
+        return recorded, None
+    found = search(as_read, read, progress)
+    return (found, fault) if _is_believed(fault, found, recorded, policy) else (recorded, None)
+
+
+def _describes(problem: Problem, fit: FittedModel) -> bool:
+    noise = problem.measured_noise or bounded_noise([fit.evaluation])
+    allowed = allowed_noise(noise, POLICY.discrepancy * problem.largest_swing)
+    return (
+        near_noise(fit.mean_absolute_error, allowed) and not goodness_of_fit(fit.evaluation, allowed).lacking
+    )
+
+
+def _is_believed(fault: SetUpFault, found: Searched, recorded: Searched, policy: Policy) -> bool:
+    """Both answers by the likelihood of the reading's search."""
+    measured = found.answer.fit.evaluation.measured()
+    with_it, without = (found.likelihood.whitened(one.answer) for one in (found, recorded))
+    gain = with_it.logarithm - without.logarithm
+    elpd, other = (leave_one_run_out(white, measured, policy.prior_runs) for white in (with_it, without))
+    better = elpd.over(other)
+    return gain > policy.reach * fault.size and better.total > policy.standard_errors * better.error
 
 
 def _wrong_constant(found: Searched, policy: Policy) -> WrongConstant | None:
@@ -263,12 +324,9 @@ def _why_the_last(
     found: Searched,
     policy: Policy,
     first: Stage,
-    opposed: Sequence[SetUpFault],
     constant: WrongConstant | None,
 ) -> tuple[str, bool]:
     """Why the last stage is the last, in a sentence, and whether nothing else is missing."""
-    if opposed:
-        return f"A fault of the set-up comes before any effect: {' '.join(map(str, opposed))}", False
     if constant:
         return str(constant), False
     reason, nothing_else = _why_here(found, policy, first)

@@ -14,6 +14,7 @@ from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.open_values import open_values
 from hasel_sysid.policy import POLICY
 from hasel_sysid.selection.choose import TABLE_HEAD, ComparedModel
+from hasel_sysid.set_up import SetUpFault
 
 
 class Status(str, Enum):
@@ -289,7 +290,7 @@ class Improvement:
     stages: baseline first; missing: effects found missing; unexplained_fraction: of the baseline's mean
     |Δ sin θ| above the noise; reason: why the improvement stopped, in a sentence; contradictions: what tells that an
     added effect is not the whole truth, in sentences; goodness: whether the last stage describes its runs; refused:
-    effects that were tried and not kept; opposed: whether runs move against the model, a fault of the set-up; constant:
+    effects that were tried and not kept; set_up: the fault of the set-up with which the runs were read; constant:
     that of the model file which the last stage has free instead of any effect; models: every model that was fitted,
     best first.
     """
@@ -303,9 +304,14 @@ class Improvement:
     contradictions: tuple[str, ...] = ()
     goodness: GoodnessOfFit | None = None
     refused: tuple[str, ...] = ()
-    opposed: bool = False
+    set_up: SetUpFault | None = None
     constant: WrongConstant | None = None
     models: tuple[ComparedModel, ...] = ()
+
+    @property
+    def why(self) -> str:
+        """How the runs were read, where that is not as recorded, and why the improvement stopped."""
+        return " ".join(filter(None, [str(self.set_up or ""), self.reason]))
 
     @property
     def model(self) -> Model:
@@ -341,10 +347,11 @@ class Improvement:
                 "unexplained_fraction": self.unexplained_fraction,
                 "probability_none_of_these": self.diagnosis.probability_none,
                 "explainable_at_all": self.diagnosis.ceiling,
-                "reason": self.reason,
+                "reason": self.why,
                 "contradictions": list(self.contradictions),
                 "open_values": list(self.open_values.values()),
                 "refused": list(self.refused),
+                "set_up": None if self.set_up is None else str(self.set_up),
                 "wrong_constant": None if self.constant is None else self.constant.to_json(),
                 "not_tried": self.not_tried,
                 "adequate": self.goodness is not None and self.goodness.adequate,
@@ -355,7 +362,7 @@ class Improvement:
     def __str__(self) -> str:
         judged = [] if self.goodness is None or self.goodness.adequate else [str(self.goodness)]
         return "\n".join(
-            [*map(str, self.stages), self.reason, *self.contradictions, *self.open_values.values(), *judged]
+            [*map(str, self.stages), self.why, *self.contradictions, *self.open_values.values(), *judged]
         )
 
 

@@ -8,12 +8,14 @@ from hasel_bringup.hidden_truth.hidden_values import draw_hidden_values
 
 from hasel_benchmark.bench_hidden.unlisted import UNLISTED
 
-KINDS = ("nothing", "single", "pair", "unlisted")
+KINDS = ("nothing", "single", "strong", "pair", "unlisted", "set_up")
 
 
 @dataclass(frozen=True)
 class Case:
-    """effects: ids of what is hidden; size: in typical values, negative for the other sign; seed: of every draw."""
+    """effects: ids of what is hidden; size: in typical values, negative for the other sign; seed: of every draw;
+    fault: of the set-up, that is hidden too.
+    """
 
     kind: str
     effects: tuple[str, ...]
@@ -21,11 +23,12 @@ class Case:
     seed: int
     colour: str
     numerics: str
+    fault: str = ""
 
     @property
     def name(self) -> str:
         """Unique, and fit for a file name."""
-        hidden = "+".join(self.effects) or "nothing"
+        hidden = "+".join(filter(None, [*self.effects, self.fault])) or "nothing"
         return f"{self.kind}-{hidden}-{self.size:+g}-{self.colour}-{self.numerics}-{self.seed}"
 
     def generator(self) -> np.random.Generator:
@@ -37,7 +40,7 @@ class Case:
         return {**asdict(self), "effects": list(self.effects)}
 
     def __str__(self) -> str:
-        hidden = " and ".join(self.effects) or "nothing"
+        hidden = " and ".join(filter(None, [*self.effects, self.fault])) or "nothing"
         return f"{hidden} hidden, {self.size:+g} x typical, {self.colour} noise, seed {self.seed}"
 
 

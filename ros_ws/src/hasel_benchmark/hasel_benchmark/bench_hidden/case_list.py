@@ -10,11 +10,16 @@ from hasel_sim.model import load_model
 from hasel_sysid.candidates import candidate_effects
 
 from hasel_benchmark.bench_hidden.case import Case, effect_source
+from hasel_benchmark.bench_hidden.set_up_faults import FAULTS
 from hasel_benchmark.bench_hidden.unlisted import UNLISTED
 from hasel_benchmark.errors import BenchmarkError
 
 SIZES = (1.0, 2.0, 0.5)
 """In typical values; a seed takes one after the other."""
+STRONG = (5.0, 1e3)
+"""In typical values; the latter is the end of the plausible range."""
+BESIDE_A_FAULT = ("", "quadratic_drag", "charging_lag")
+"""What a fault of the set-up has beside it; a seed takes one after the other."""
 UNLISTED_SEEDS = len(SIZES)
 """What no catalogue lists is hidden once at every size: to find no explanation takes longest."""
 NOTHING_PER_SEED = 8
@@ -71,13 +76,24 @@ def _of_seed(seed: int, numerics: str, with_unlisted: bool) -> list[Case]:
         Case("nothing", (), 0.0, seed * NOTHING_PER_SEED + n, ("white", "coloured")[n % 2], numerics)
         for n in range(NOTHING_PER_SEED)
     ]
-    for kind, hidden in (
+    beside = BESIDE_A_FAULT[seed % len(BESIDE_A_FAULT)]
+    cases += [
+        Case("set_up", (beside,) if beside else (), 1.0, seed, ("white", "coloured")[n % 2], numerics, fault)
+        for n, fault in enumerate(FAULTS)
+    ]
+    for strong in STRONG:
+        for n, identity in enumerate(listed_effects()):
+            sign = -1.0 if seed % 2 and both_signs(identity) else 1.0
+            colour = ("white", "coloured")[n % 2]
+            cases.append(Case("strong", (identity,), sign * strong, seed, colour, numerics))
+    shown = (
         *(("single", (identity,)) for identity in listed_effects()),
         *(("unlisted", (identity,)) for identity in UNLISTED if with_unlisted),
         *(("pair", pair) for pair in PAIRS[seed % 2 :: 2]),
-    ):
+    )
+    for number, (kind, hidden) in enumerate(shown):
         sign = -1.0 if seed % 2 and kind != "pair" and both_signs(effect_source(hidden[0])) else 1.0
-        colour = ("white", "coloured")[(seed + len(cases)) % 2]
+        colour = ("white", "coloured")[(seed + NOTHING_PER_SEED + number) % 2]
         cases.append(Case(kind, hidden, sign * size, seed, colour, numerics))
     return cases
 

@@ -7,14 +7,21 @@ from pathlib import Path
 
 import numpy as np
 from hasel_bringup.hidden_truth.plan import FITTED, UNSEEN, BoxRun
-from hasel_bringup.hidden_truth.truth import NUMERICS, draw_muscles, truth_model
+from hasel_bringup.hidden_truth.truth import NUMERICS, Muscles, draw_muscles, truth_model
 from hasel_recording import Recording, write_recording
+from hasel_sim.effects.registry import find_effects
+from hasel_sim.errors import SimulationError
 from hasel_sim.parallel import simulate_all
-from hasel_sim.run import Simulation
+from hasel_sim.run import Run, Simulation
 from hasel_sysid.dataset import Experiment
 
 from hasel_benchmark.bench_hidden.case import Case, draw_values, effect_source
 from hasel_benchmark.bench_hidden.noise import draw_noise, draw_offset
+from hasel_benchmark.bench_hidden.set_up_faults import FAULTS
+
+Values = dict[str, dict[str, float]]
+_WEAKER = 6
+"""How often a strong effect is halved until its truth can be simulated."""
 
 
 @dataclass(frozen=True)
@@ -53,17 +60,23 @@ def measure(
     generator = case.generator()
     muscles = draw_muscles(generator)
     values = draw_values(case, generator)
-    model = truth_model(
-        NUMERICS[case.numerics],
-        muscles,
-        {effect_source(identity): chosen for identity, chosen in values.items()},
-    )
     runs = [box.run(switch_on_frames) for box in (*fitted, *unseen)]
-    simulations = simulate_all(pool, model, runs)
+    fault = FAULTS[case.fault] if case.fault else None
+    faulty = fault.runs([run.name for run in runs[: len(fitted)]], generator) if fault else set()
+    if fault and fault.everywhere:
+        faulty = {run.name for run in runs}
+    driven = [fault.drives(run) if run.name in faulty else run for run in runs]
+    values, simulations = _as_far_as_it_goes(case, values, muscles, driven, pool)
     noises = [draw_noise(len(run.time), case.colour, generator) for run in runs]
     measured = [
-        _experiment(simulation, noise + draw_offset(generator), switch_on_frames)
-        for simulation, noise in zip(simulations, noises, strict=True)
+        _experiment(
+            run,
+            (fault.sign if run.name in faulty else 1.0) * simulation.sin_theta
+            + noise
+            + draw_offset(generator),
+            switch_on_frames,
+        )
+        for run, simulation, noise in zip(runs, simulations, noises, strict=True)
     ]
     split = len(fitted)
     return Laboratory(
@@ -79,13 +92,37 @@ def _mean_absolute(series: list[np.ndarray]) -> float:
     return float(np.abs(np.concatenate([part - part.mean() for part in series])).mean()) if series else 0.0
 
 
-def _experiment(simulation: Simulation, noise: np.ndarray, switch_on_frames: bool) -> Experiment:
-    run = simulation.run
+def _as_far_as_it_goes(
+    case: Case, values: Values, muscles: Muscles, runs: Sequence[Run], pool: Executor
+) -> tuple[Values, list[Simulation]]:
+    """What is hidden and the truth's motion; what is strong is as strong as can be simulated."""
+    for attempt in range(_WEAKER + 1):
+        model = truth_model(
+            NUMERICS[case.numerics],
+            muscles,
+            {effect_source(identity): chosen for identity, chosen in values.items()},
+        )
+        try:
+            return values, simulate_all(pool, model, runs)
+        except SimulationError:
+            if case.kind != "strong" or attempt == _WEAKER:
+                raise
+            values = {identity: _half(identity, chosen) for identity, chosen in values.items()}
+    raise AssertionError
+
+
+def _half(identity: str, values: dict[str, float]) -> dict[str, float]:
+    """Sizes half as far from doing nothing."""
+    sizes = {p.name: p.null for p in find_effects((identity,))[0].parameters if not p.scan}
+    return {name: 0.5 * (value + sizes[name]) if name in sizes else value for name, value in values.items()}
+
+
+def _experiment(run: Run, sin_theta: np.ndarray, switch_on_frames: bool) -> Experiment:
     exact = None if switch_on_frames else run.schedule
     recording = Recording(
         run.name,
         run.time,
-        simulation.sin_theta + noise,
+        sin_theta,
         drive_signal=run.schedule.at(run.time),
         drive_time_s=None if exact is None else exact.time,
         drive_values=None if exact is None else exact.signal,

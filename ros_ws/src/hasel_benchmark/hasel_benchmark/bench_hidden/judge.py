@@ -29,13 +29,24 @@ def judge(case: Case, laboratory: Laboratory, answer: dict, seconds: float) -> O
         floor_unseen=laboratory.floor_unseen,
         estimates=_estimates(laboratory.values, stages[-1]["parameters"]),
         seconds=seconds,
+        fault=case.fault,
+        set_up=verdict.get("set_up") or "",
         probability=float(answer["ranking"][0].get("probability", nan)) if answer["ranking"] else nan,
     )
 
 
 def failed(case: Case, failure: str) -> Outcome:
     """The outcome of a case without an answer."""
-    return Outcome(case.name, case.kind, case.effects, case.size, case.colour, case.numerics, failure=failure)
+    return Outcome(
+        case.name,
+        case.kind,
+        case.effects,
+        case.size,
+        case.colour,
+        case.numerics,
+        failure=failure,
+        fault=case.fault,
+    )
 
 
 def _estimates(values: dict[str, dict[str, float]], fitted: dict[str, dict]) -> tuple[Estimate, ...]:

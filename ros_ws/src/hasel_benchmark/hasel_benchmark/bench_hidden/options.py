@@ -4,7 +4,14 @@ import argparse
 from pathlib import Path
 
 PAGE = Path("docs/hidden_effects.md")
-KINDS = {"nothing": "nothing", "single": "single", "pairs": "pair", "unlisted": "unlisted"}
+KINDS = {
+    "nothing": "nothing",
+    "single": "single",
+    "strong": "strong",
+    "pairs": "pair",
+    "unlisted": "unlisted",
+    "set-up": "set_up",
+}
 """The kind of a case, by what it is called on the command line."""
 DISCRETISATIONS = ("near", "coarse", "converged")
 

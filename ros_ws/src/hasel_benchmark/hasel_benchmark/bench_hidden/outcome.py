@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from hasel_benchmark.bench_hidden.set_up_faults import FAULTS
 from hasel_benchmark.bench_hidden.share import NORMAL_95
 
 VISIBLE_SHARE = 0.5
@@ -34,7 +35,7 @@ class Outcome:
 
     mae_*: mean |Δ sin θ| of the fitted baseline and of the last stage; floor_*: of the noise alone;
     probability: that `improve` gives the effect ranked first; cores: that `improve` had; failure: why there is no
-    answer; all else is empty then.
+    answer; all else is empty then; fault: of the set-up that is hidden; set_up: what `improve` says of the set-up.
     """
 
     case: str
@@ -56,6 +57,8 @@ class Outcome:
     probability: float = np.nan
     cores: int = 1
     failure: str = ""
+    fault: str = ""
+    set_up: str = ""
 
     @property
     def visible(self) -> bool:
@@ -82,6 +85,21 @@ class Outcome:
     def right_within_group(self) -> bool:
         """Right, or stated to be indistinguishable from a hidden one."""
         return self.right or any(alike(self.first, one, self.groups) for one in self.hidden)
+
+    @property
+    def exact(self) -> bool:
+        """Whether what is said to be missing is what is hidden, and nothing beside it."""
+        return set(self.missing) == set(self.hidden)
+
+    @property
+    def fault_named(self) -> bool:
+        """Whether the hidden fault of the set-up is said."""
+        return any(words in self.set_up for words in FAULTS[self.fault].said)
+
+    @property
+    def group_size(self) -> int:
+        """Of the stated group that holds the first effect named, or one."""
+        return max((len(group) for group in self.groups if self.first in group), default=1)
 
     @property
     def accuses_with_confidence(self) -> bool:

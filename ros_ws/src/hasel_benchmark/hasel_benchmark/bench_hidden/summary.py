@@ -57,16 +57,20 @@ class Bar:
         return f"{self._text(self.value)} ({100 * low:.0f}–{100 * high:.0f})"
 
     def _text(self, value: float) -> str:
-        return f"{100 * value:.3g} %" if self.unit == "%" else f"{value:.0f} {self.unit}"
+        if self.unit == "%":
+            return f"{100 * value:.3g} %"
+        return f"{value:.0f} {self.unit}" if self.unit else f"{value:.2g}"
 
 
 def bars(outcomes: Sequence[Outcome]) -> list[Bar]:
     """The numbers of all cases that have an answer."""
     answered = [o for o in outcomes if not o.failure]
-    nothing, single, pair, unlisted = (
-        [o for o in answered if o.kind == kind] for kind in ("nothing", "single", "pair", "unlisted")
+    nothing, single, strong, pair, unlisted, set_up = (
+        [o for o in answered if o.kind == kind]
+        for kind in ("nothing", "single", "strong", "pair", "unlisted", "set_up")
     )
     seen, hard = [o for o in single if o.visible], [o for o in single if not o.visible]
+    seen_strong = [o for o in strong if o.visible]
     both, seen_unlisted = [o for o in pair if o.visible], [o for o in unlisted if o.visible]
     explicable = [*seen, *both]
     white, coloured = ([o for o in nothing if o.colour == colour] for colour in ("white", "coloured"))
@@ -75,6 +79,16 @@ def bars(outcomes: Sequence[Outcome]) -> list[Bar]:
         _share("one visible effect hidden: named first", seen, lambda o: o.right, least=0.95),
         _share("… or within the stated group", seen, lambda o: o.right_within_group, least=0.98),
         _share("… and added to the model", seen, lambda o: o.all_named),
+        Bar(
+            "… size of the stated group (mean)",
+            float(np.mean([o.group_size for o in seen])) if seen else None,
+            None,
+            None,
+            len(seen),
+            "",
+        ),
+        _share("one strong effect hidden: named first", seen_strong, lambda o: o.right, least=0.9),
+        _share("… or within the stated group", seen_strong, lambda o: o.right_within_group, least=0.95),
         _share(
             "one effect hidden that leaves hardly a trace: another one accused with confidence",
             hard,
@@ -102,7 +116,21 @@ def bars(outcomes: Sequence[Outcome]) -> list[Bar]:
             least=0.95,
         ),
         _share("two effects hidden: both named", both, lambda o: o.all_named, least=0.9),
-        _share("… or within the stated groups", both, lambda o: o.all_named_within_group),
+        _share("… or within the stated groups", both, lambda o: o.all_named_within_group, least=0.95),
+        _share(
+            "one or two effects hidden: exactly these, and nothing beside them",
+            explicable,
+            lambda o: o.exact,
+            least=0.9,
+        ),
+        _share("a fault of the set-up hidden: named", set_up, lambda o: o.fault_named, least=0.95),
+        _share("… and what is beside it exactly as it is", set_up, lambda o: o.fault_named and o.exact),
+        _share(
+            "no fault of the set-up hidden: one reported",
+            [o for o in answered if not o.fault],
+            lambda o: bool(o.set_up),
+            most=0.02,
+        ),
         _share("95 % intervals that cover the truth", covered, bool, least=0.93, most=0.97),
         _median(
             "excess error removed, fitted runs (median)", [o.removed_fitted for o in explicable], least=0.95
@@ -169,7 +197,7 @@ def confusion(outcomes: Sequence[Outcome]) -> dict[str, dict[str, int]]:
     """Hidden -> named first -> how often, over single, unlisted and nothing-hidden cases."""
     table: dict[str, dict[str, int]] = {}
     for o in outcomes:
-        if o.kind == "pair" or o.failure:
+        if o.kind in ("pair", "set_up") or o.failure:
             continue
         row = table.setdefault(o.hidden[0] if o.hidden else "nothing", {})
         if o.kind == "unlisted" and o.says_none_of_them and not o.missing:

@@ -13,12 +13,13 @@ from hasel_sysid.command_line.inputs import load_inputs
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import improve_parser
 from hasel_sysid.command_line.progress import part, progress_bar
-from hasel_sysid.command_line.running import run_command
+from hasel_sysid.command_line.running import MISLEADING, run_command
 from hasel_sysid.command_line.shown import code_after, show, summarise, tell
 from hasel_sysid.command_line.summary import improvement_lines
 from hasel_sysid.command_line.workers import workers
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.compare.compare import comparison_of
+from hasel_sysid.data_gate import Finding
 from hasel_sysid.dataset import Experiment
 from hasel_sysid.improvement import improve
 from hasel_sysid.ledger import Ledger
@@ -27,6 +28,7 @@ from hasel_sysid.report.from_improvement import improvement_content
 from hasel_sysid.report.pictures import stages_picture, waterfall_picture
 from hasel_sysid.report.write import write_report
 from hasel_sysid.result import Improvement, Stage, Status, table_of_models
+from hasel_sysid.set_up import DECIDED
 from hasel_sysid.suggest import Suggestion, in_doubt, suggest
 from hasel_sysid.time_limit import TimeLimit
 
@@ -44,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _improve(options: argparse.Namespace) -> int:
-    given = load_inputs(options)
+    given = load_inputs(options, DECIDED)
     experiments, unseen, label, model = given.experiments, given.unseen, given.label, given.model
     options.output.mkdir(parents=True, exist_ok=True)
     limit = TimeLimit(options.seconds)
@@ -65,18 +67,20 @@ def _improve(options: argparse.Namespace) -> int:
                 progress=part(progress, "", 0.03, 0.97),
                 on_stage=keep,
             )
+            if found.set_up:
+                experiments, unseen = found.set_up.read(experiments), found.set_up.read(unseen)
             stages = [_comparison(stage, experiments, unseen, pool, label) for stage in found.stages]
             suggestions = [] if limit.is_over() else _next_runs(found, pool)
     except KeyboardInterrupt:
         if written:
             print(f"wrote the stages so far ({len(written)}), see {ledger.path}", file=sys.stderr)
         raise
-    tell(start.set_up, given.said)
-    told = [*given.said, *start.set_up]
-    tell(stages[0].set_up, told)
+    told = [*given.said, *_undecided(start)]
+    left = [finding for finding in _undecided(stages[0]) if finding not in told]
+    tell([*_undecided(start), *left], given.said)
 
     def everything() -> None:
-        show([stages[0]], [*told, *stages[0].set_up])
+        show([stages[0]], [*told, *stages[0].set_up])  # what is said of the set-up was told before
         print(found.diagnosis)
         print(found)
         print(table_of_models(found.models))
@@ -88,13 +92,17 @@ def _improve(options: argparse.Namespace) -> int:
     )
     summarise(lines, everything, options.all, others)
     _finish(options, found, start, stages, suggestions)
-    return code_after([*given.said, *stages[0].set_up])
+    return MISLEADING if found.set_up else code_after([*given.said, *left])
+
+
+def _undecided(comparison: Comparison) -> list[Finding]:
+    return [finding for finding in comparison.set_up if finding.fault not in DECIDED]
 
 
 def _next_runs(found: Improvement, pool: Executor) -> list[Suggestion]:
     """The runs that would best tell apart what is still in doubt, at no more voltage than was used already."""
     candidates = in_doubt(found.diagnosis, found.missing)
-    if found.opposed or found.constant or found.status is Status.NOTHING_MISSING or len(candidates) < 2:
+    if found.set_up or found.constant or found.status is Status.NOTHING_MISSING or len(candidates) < 2:
         return []
     highest = max(found.model.levels, default=0.0)
     return suggest(pool, candidates, found.diagnosis.noise, highest, brief=True)
@@ -126,7 +134,9 @@ def _finish(
     if options.json:
         details = {
             "where_it_fails": stages[0].where.sentences(),
-            "data_gate": [finding.to_json() for finding in dict.fromkeys((*start.set_up, *stages[0].set_up))],
+            "data_gate": [
+                finding.to_json() for finding in dict.fromkeys((*_undecided(start), *_undecided(stages[0])))
+            ],
             "start": start.to_json(),
             "next_runs": [suggestion.to_json() for suggestion in suggestions],
         }

@@ -1,7 +1,7 @@
 """What commands on recordings begin with: the runs and the model."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -33,14 +33,14 @@ class Inputs:
     noise: "NoiseModel | None" = None
 
 
-def load_inputs(options: argparse.Namespace) -> Inputs:
-    """Read the recordings, tell what the data gate finds, and choose the model."""
+def load_inputs(options: argparse.Namespace, decided_later: Collection[str] = ()) -> Inputs:
+    """Read the recordings, tell what the data gate finds but for what is `decided_later`, and choose the model."""
     experiments, unseen = load_all(options)
     noise = _noise(getattr(options, "noise", None))
     label, model = chosen_model(options.model, [*experiments, *unseen])
     every = for_model(model.with_levels([]), [*experiments, *unseen])
     experiments, unseen = every[: len(experiments)], every[len(experiments) :]
-    said = announce(every)
+    said = announce(every, decided_later)
     model = prepared(model, experiments)
     check_levels(model, [each.recording for each in unseen])
     return Inputs(experiments, unseen, label, model, said, noise)

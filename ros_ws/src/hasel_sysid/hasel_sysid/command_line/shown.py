@@ -1,7 +1,7 @@
 """Comparisons and faults of the set-up on the terminal."""
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 
 from rich.console import Console
 
@@ -12,9 +12,11 @@ from hasel_sysid.data_gate import Finding, Severity, check_recording
 from hasel_sysid.dataset import Experiment
 
 
-def announce(experiments: Sequence[Experiment]) -> list[Finding]:
-    """Check recordings before anything is simulated; faults of the set-up go to stderr and are returned."""
-    found = [finding for experiment in experiments for finding in check_recording(experiment.recording)]
+def announce(experiments: Sequence[Experiment], but: Collection[str] = ()) -> list[Finding]:
+    """Check recordings before anything is simulated; faults of the set-up but these go to stderr, and are returned."""
+    found = [
+        f for experiment in experiments for f in check_recording(experiment.recording) if f.fault not in but
+    ]
     tell(found)
     return found
 

@@ -19,7 +19,8 @@ def improvement_lines(
     found: Improvement, comparisons: Sequence[Comparison], suggestions: Sequence[Suggestion]
 ) -> list[str]:
     """Of an improvement; comparisons: of every stage, the fitted baseline first."""
-    lines = [_headline(found), *_values(found, comparisons[-1])]
+    lines = [str(found.set_up)] if found.set_up else []
+    lines += [_headline(found), *_values(found, comparisons[-1])]
     lines += _errors(comparisons[0], comparisons[-1], found.noise_floor)
     if not found.constant:
         lines += [*_doubt(found.diagnosis, found.missing), found.reason]

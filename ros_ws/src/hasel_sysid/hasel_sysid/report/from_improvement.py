@@ -89,7 +89,7 @@ def _title(improvement: Improvement) -> str:
 
 def _verdict(improvement: Improvement) -> str:
     said = what_is_missing(improvement)
-    more = (improvement.reason, *improvement.contradictions, *improvement.open_values.values())
+    more = (improvement.why, *improvement.contradictions, *improvement.open_values.values())
     return " ".join([said, *more] if said else more)
 
 

@@ -1,0 +1,248 @@
+"""Faults of the set-up as hypotheses: how the runs would have to be read, each a rival of all that is physics.
+
+A dead channel, exchanged channels, an inverted angle, clocks that differ. What cannot be physics, such as frames out of
+order, is refused by the data gate.
+"""
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+from hasel_sim.errors import SimulationError
+from hasel_sim.model import Model
+
+from hasel_sysid.dataset import Experiment
+from hasel_sysid.estimation.least_squares import bounded_change, values_and_bounds
+from hasel_sysid.policy import POLICY
+from hasel_sysid.problem import Evaluation, Problem, low_fidelity
+
+Reading = Callable[[Experiment], Experiment]
+DECIDED = ("sign flip or swapped channels", "dead channel", "command lag", "motion before command")
+"""Findings of the data gate that physics can look like: beside a model they are decided here."""
+_LONGEST_SHIFT_S = 0.3
+_MOST_STEPS, _SHIFT_TOLERANCE = 6, 0.1
+_FEWEST_FRAMES = 3
+_COMPARE_CLOCKS = "compare the clocks of supply and camera"
+
+
+@dataclass(frozen=True)
+class SetUpFault:
+    """what: the fault, as in "the channels are exchanged"; runs: names of those that have it; everywhere: whether all
+    have; reading: a run as it is to be read; advice: what to do.
+    """
+
+    what: str
+    runs: tuple[str, ...]
+    everywhere: bool
+    reading: Reading
+    advice: str
+
+    @property
+    def size(self) -> int:
+        """How many statements it makes: one, or one of every run."""
+        return 1 if self.everywhere else len(self.runs)
+
+    def read(self, experiments: Sequence[Experiment]) -> list[Experiment]:
+        """The runs as they are to be read."""
+        return [
+            self.reading(each) if self.everywhere or each.name in self.runs else each for each in experiments
+        ]
+
+    def __str__(self) -> str:
+        where = "all runs" if self.everywhere else ", ".join(self.runs)
+        return (
+            f"A fault of the set-up: {self.what} in {where}, which is read accordingly here; {self.advice}."
+        )
+
+
+def hypotheses(problem: Problem, models: Sequence[Model]) -> list[SetUpFault]:
+    """The faults that would take most of the error of a run away, its own best parameters followed to first order.
+
+    models: about which that is asked, such as before and after a fit: a fit to a fault may no longer move at all.
+    """
+    recorded = [seen for seen in (_evaluated(problem, model) for model in models) if seen is not None]
+    if not recorded:
+        return []
+    squares = np.min([_squares_of_runs(seen) for seen in recorded], axis=0)
+    found = []
+    for what, advice, reading in _kinds(problem.experiments):
+        experiments = [reading(each) for each in problem.experiments]
+        changed = [new is not old for new, old in zip(experiments, problem.experiments, strict=True)]
+        read = _as_read(problem, reading)
+        seen = [one for one in (_evaluated(read, model) for model in models) if one is not None]
+        if not any(changed) or not seen:
+            continue
+        better = changed & _removes_most(squares, np.min([_squares_of_runs(one) for one in seen], axis=0))
+        runs = tuple(e.name for e, here in zip(problem.experiments, better, strict=True) if here)
+        if runs:  # what most runs have, all have: the fit to the runs as they are then read will tell
+            found.append(SetUpFault(what, runs, _most(runs, experiments), reading, advice))
+    return [*found, *_one_clock(problem, models[-1], squares), *_clocks(problem, recorded, squares)]
+
+
+def _kinds(experiments: Sequence[Experiment]) -> list[tuple[str, str, Reading]]:
+    """What may be wrong of every run alike, advice, and how a run is then to be read."""
+    schedules = [e.run.schedule for e in experiments if e.run.schedule is not None]
+    channels = list(dict.fromkeys(name for schedule in schedules for name in schedule.channels))
+    kinds = [("the measured angle has the wrong sign", "see which marker is the head", _inverted)]
+    if len(channels) == 2:
+        kinds.append(("the two channels are exchanged", "compare the cables of the two muscles", _exchanged))
+    return kinds + [
+        (
+            f"the {name} channel is dead",
+            f"check cable, fuse and muscle of the {name} channel",
+            _without(name),
+        )
+        for name in channels
+    ]
+
+
+def _one_clock(problem: Problem, model: Model, squares: np.ndarray) -> list[SetUpFault]:
+    """An angle that comes before its command in all runs alike; one that comes after is left to the effects that are
+    a lag. The shift is found together with the model's parameters (Gauss-Newton, a few steps).
+    """
+    lag, step, left = 0.0, np.inf, np.inf
+    frames = [float(np.median(np.diff(e.run.time))) for e in problem.experiments if len(e.run.time) > 1]
+    frame = min(frames, default=np.inf)
+    for _ in range(_MOST_STEPS):
+        seen = _evaluated(_as_read(problem, _shifted({}, lag)), model)
+        if seen is None or abs(step) < _SHIFT_TOLERANCE * frame:
+            break
+        left = seen.sum_of_squares
+        jacobian = np.column_stack([seen.jacobian, -_rate(seen)])
+        value, lower, upper = values_and_bounds(seen.model, seen.names)
+        down = np.append(lower - value, -_LONGEST_SHIFT_S - lag)
+        up = np.append(upper - value, _LONGEST_SHIFT_S - lag)
+        change, _ = bounded_change(seen.residual, jacobian, down, up)
+        step, lag = float(change[-1]), lag + float(change[-1])
+        model = model.with_values(dict(zip(seen.names, value + change[:-1], strict=True)))
+    if lag > -frame or not _removes_most(squares.sum(), left):
+        return []
+    what = f"the angle comes {-1e3 * lag:.0f} ms before its command"
+    return [SetUpFault(what, (), True, _shifted({}, lag), _COMPARE_CLOCKS)]
+
+
+def _as_read(problem: Problem, reading: Reading) -> Problem:
+    return problem.with_experiments([reading(each) for each in problem.experiments])
+
+
+def _rate(seen: Evaluation) -> np.ndarray:
+    """The simulated angular rate [1/s] at the frames of the residual, the mean of every run removed, [frames]."""
+    rates = [
+        np.gradient(np.nan_to_num(s.sin_theta), s.time)[used]
+        for s, used in zip(seen.simulations, seen.frames, strict=True)
+    ]
+    return np.concatenate([rate - rate.mean() for rate in rates])
+
+
+def _clocks(problem: Problem, recorded: Sequence[Evaluation], squares: np.ndarray) -> list[SetUpFault]:
+    """The few runs whose angle is shifted in time. A lag that most share is left to the effects that are one."""
+    shifts: dict[str, float] = {}
+    for number, experiment in enumerate(problem.experiments):
+        times = experiment.run.time
+        if len(times) < _FEWEST_FRAMES or experiment.run.schedule is None:
+            continue
+        lag, left = min((_best_shift(seen, number) for seen in recorded), key=lambda one: one[1])
+        if abs(lag) > float(np.median(np.diff(times))) and _removes_most(squares[number], left):
+            shifts[experiment.name] = lag
+    if not shifts or _most(shifts, problem.experiments):
+        return []
+    told = ", ".join(f"{1e3 * lag:+.0f} ms" for lag in shifts.values())
+    what = f"the clock of the angle is off by {told}"
+    return [SetUpFault(what, tuple(shifts), False, _shifted(shifts), _COMPARE_CLOCKS)]
+
+
+def _most(runs: Collection[str], experiments: Sequence[Experiment]) -> bool:
+    return 2 * len(runs) > len(experiments)
+
+
+def _evaluated(problem: Problem, model: Model) -> Evaluation | None:
+    try:
+        return problem.evaluate(low_fidelity(model), model.free)
+    except SimulationError:
+        return None
+
+
+def _removes_most(before: npt.ArrayLike, after: npt.ArrayLike) -> np.ndarray:
+    """Of sums of squares: whether the rms falls by as much as an explanation must take away."""
+    return np.asarray(after) < (1 - POLICY.part) ** 2 * np.asarray(before)
+
+
+def _squares_of_runs(seen: Evaluation) -> np.ndarray:
+    """What every run would leave with parameters of its own, to first order, [runs]."""
+    parts = [seen.runs == number for number in range(len(seen.simulations))]
+    return np.array([_followed(seen, seen.residual[p], seen.jacobian[p]) for p in parts])
+
+
+def _followed(seen: Evaluation, residual: np.ndarray, jacobian: np.ndarray) -> float:
+    """Sum of squares that parameters within their bounds would leave, to first order."""
+    value, lower, upper = values_and_bounds(seen.model, seen.names)
+    return bounded_change(residual, jacobian, lower - value, upper - value)[1]
+
+
+def _best_shift(seen: Evaluation, number: int) -> tuple[float, float]:
+    """The lag [s] of one run's angle at which a motion of any size leaves least, and the sum of squares that is left
+    there, the run's own parameters followed.
+    """
+    here = seen.runs == number
+    time = seen.simulations[number].time[seen.frames[number]]
+    simulated, measured = seen.simulated()[here], seen.measured()[here]
+    frame = float(np.median(np.diff(time)))
+    lags = np.arange(-_LONGEST_SHIFT_S, _LONGEST_SHIFT_S, frame)
+    moved = np.array([_moved(time, simulated, lag) for lag in lags])
+    power = np.maximum((moved**2).sum(axis=1), 1e-300)
+    lag = float(lags[int(np.argmax(np.maximum(moved @ measured, 0.0) ** 2 / power))])
+    columns = [_moved(time, column, lag) for column in seen.jacobian[here].T]
+    residual = measured - _moved(time, simulated, lag)
+    return lag, _followed(seen, residual, np.reshape(columns, (-1, len(time))).T)
+
+
+def _moved(time: np.ndarray, series: np.ndarray, lag: float) -> np.ndarray:
+    later = np.interp(time - lag, time, series)
+    return later - later.mean()
+
+
+def _inverted(experiment: Experiment) -> Experiment:
+    recording = experiment.recording
+    return replace(experiment, recording=replace(recording, sin_theta=-recording.sin_theta))
+
+
+def _driven_by(experiment: Experiment, time: np.ndarray, signal: np.ndarray) -> Experiment:
+    schedule = replace(experiment.run.schedule, time=time, signal=signal)
+    return replace(experiment, run=replace(experiment.run, schedule=schedule))
+
+
+def _exchanged(experiment: Experiment) -> Experiment:
+    schedule = experiment.run.schedule
+    if schedule is None or len(schedule.channels) != 2:
+        return experiment
+    return _driven_by(experiment, schedule.time, schedule.signal[:, ::-1])
+
+
+def _without(channel: str) -> Reading:
+    """A run that is driven on another channel too, without which nothing would move."""
+
+    def reading(experiment: Experiment) -> Experiment:
+        schedule = experiment.run.schedule
+        if schedule is None:
+            return experiment
+        dead = np.array([name == channel for name in schedule.channels])
+        driven = np.any(schedule.signal != 0, axis=0)
+        if not (driven & dead).any() or not (driven & ~dead).any():
+            return experiment
+        return _driven_by(experiment, schedule.time, schedule.signal * ~dead)
+
+    return reading
+
+
+def _shifted(lags: Mapping[str, float], otherwise: float = 0.0) -> Reading:
+    """lags [s]: of the angle behind the drive, by name of the run; otherwise: of any other run."""
+
+    def reading(experiment: Experiment) -> Experiment:
+        schedule = experiment.run.schedule
+        if schedule is None:
+            return experiment
+        lag = lags.get(experiment.name, otherwise)
+        return _driven_by(experiment, schedule.time + lag, schedule.signal)
+
+    return reading
