@@ -1,7 +1,7 @@
 """`diagnose` and `improve`: fit, search among sets of candidates, choose, and say what it comes to."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 
 from hasel_sim.errors import SimulationError
@@ -17,7 +17,7 @@ from hasel_sysid.noise.model import allowed_noise
 from hasel_sysid.policy import POLICY, Policy
 from hasel_sysid.problem import Problem
 from hasel_sysid.result import Diagnosis, Improvement, Stage, Status, Verdict, WrongConstant
-from hasel_sysid.selection.choose import is_better
+from hasel_sysid.selection.choose import best_of, is_better
 from hasel_sysid.selection.cross_validation import leave_one_run_out
 from hasel_sysid.selection.likelihood import NOTHING, FittedSet, Likelihood
 from hasel_sysid.selection.search import IsLaw, Search, Searched
@@ -73,9 +73,8 @@ def improve(
 
     add(refined(problem, fit), ())
     search = partial(_searched, effects=effects, policy=policy, with_constants=not only)
-    faults = _readings(problem, model, fit)
     report = _part(progress, "search", 0.15, 0.95)
-    found, fault = _likelier(problem, fit, faults, search, policy, report)
+    found, fault = _likelier(problem, model, fit, search, policy, report)
     if fault:
         problem = problem.with_experiments(fault.read(problem.experiments))
         validation = validation and validation.with_experiments(fault.read(validation.experiments))
@@ -192,45 +191,65 @@ def _searched(
     return Search(problem, fit, effects, policy, _laws(problem), progress, with_constants, begun).run()
 
 
-def _readings(problem: Problem, model: Model, fit: FittedModel) -> list[tuple[SetUpFault, FittedModel]]:
-    """Faults of the set-up with the baseline fitted to the runs as they are then read, likeliest first."""
-    found: list[tuple[SetUpFault, FittedModel]] = []
-    if _describes(problem, fit):
-        return found
-    for fault in hypotheses(problem, [model, fit.model]):
+@dataclass(frozen=True)
+class _Reading:
+    """A fault of the set-up, the runs as they are then read, and a model fitted to them."""
+
+    fault: SetUpFault
+    problem: Problem
+    fit: FittedModel
+
+
+def _readings(problem: Problem, about: Sequence[Model], fit: FittedModel) -> list[_Reading]:
+    """The faults with which a model leaves less than this fit of it to the runs as recorded, likeliest first.
+
+    about: models of these parameters, of which the better one on the runs as they are then read is fitted to them.
+    """
+    found = []
+    for fault in hypotheses(problem, about):
+        as_read = problem.with_experiments(fault.read(problem.experiments))
+        begun = as_read.evaluate_each(about, [()] * len(about))
+        able = [one for one in begun if not isinstance(one, SimulationError)]
+        if not able:
+            continue
         try:
-            read = fit_baseline(problem.with_experiments(fault.read(problem.experiments)), model)
+            read = fit_baseline(as_read, min(able, key=lambda one: one.sum_of_squares).model)
         except SimulationError:
             continue
         if read.evaluation.sum_of_squares < fit.evaluation.sum_of_squares:
-            found.append((fault, read))
-    return sorted(found, key=lambda one: one[1].evaluation.sum_of_squares)
+            found.append(_Reading(fault, as_read, read))
+    return sorted(found, key=lambda one: one.fit.evaluation.sum_of_squares)
 
 
 def _likelier(
     problem: Problem,
+    start: Model,
     fit: FittedModel,
-    faults: Sequence[tuple[SetUpFault, FittedModel]],
     search: Callable[[Problem, FittedModel, Progress | None], Searched],
     policy: Policy,
     progress: Progress | None,
 ) -> tuple[Searched, SetUpFault | None]:
     """The search of the runs as recorded, or as the likeliest fault of the set-up has them read.
 
-    The fault is believed where the answer beside it predicts better and is likelier than the answer without it; a
-    reading that alone describes the runs, or an answer as recorded that does, needs no second search.
+    A reading that alone describes the runs, or an answer as recorded that does, needs no second search. Otherwise the
+    faults are asked for beside the likeliest model, too, and one is believed where the answer beside it predicts better
+    and is likelier than the answer without it.
     """
-    if not faults:
+    if _describes(problem, fit):
         return search(problem, fit, progress), None
-    fault, read = faults[0]
-    as_read = problem.with_experiments(fault.read(problem.experiments))
-    if _describes(as_read, read):
-        return search(as_read, read, progress), fault
+    readings = _readings(problem, [start, fit.model], fit)
+    if readings and _describes(readings[0].problem, readings[0].fit):
+        return search(readings[0].problem, readings[0].fit, progress), readings[0].fault
     recorded = search(problem, fit, progress)
     if near_noise(recorded.answer.fit.mean_absolute_error, recorded.likelihood.allowed):
         return recorded, None
-    found = search(as_read, read, progress)
-    return (found, fault) if _is_believed(fault, found, recorded, policy) else (recorded, None)
+    likeliest = recorded.models[best_of(recorded.models)].fitted.fit
+    readings = [*_readings(problem, [likeliest.model], likeliest), *readings]
+    if not readings or problem.time_limit.is_over():
+        return recorded, None
+    best = min(readings, key=lambda one: one.fit.evaluation.sum_of_squares)
+    found = search(best.problem, fit_baseline(best.problem, fit.model), progress)
+    return (found, best.fault) if _is_believed(best.fault, found, recorded, policy) else (recorded, None)
 
 
 def _describes(problem: Problem, fit: FittedModel) -> bool:

@@ -20,7 +20,7 @@ from hasel_sysid.problem import Evaluation, Problem, low_fidelity
 Reading = Callable[[Experiment], Experiment]
 DECIDED = ("sign flip or swapped channels", "dead channel", "command lag", "motion before command")
 """Findings of the data gate that physics can look like: beside a model they are decided here."""
-_LONGEST_SHIFT_S = 0.3
+_LONGEST_SHIFT_S, _LONGEST_STEP_S = 0.3, 0.1
 _MOST_STEPS, _SHIFT_TOLERANCE = 6, 0.1
 _FEWEST_FRAMES = 3
 _COMPARE_CLOCKS = "compare the clocks of supply and camera"
@@ -75,9 +75,17 @@ def hypotheses(problem: Problem, models: Sequence[Model]) -> list[SetUpFault]:
             continue
         better = changed & _removes_most(squares, np.min([_squares_of_runs(one) for one in seen], axis=0))
         runs = tuple(e.name for e, here in zip(problem.experiments, better, strict=True) if here)
-        if runs:  # what most runs have, all have: the fit to the runs as they are then read will tell
-            found.append(SetUpFault(what, runs, _most(runs, experiments), reading, advice))
-    return [*found, *_one_clock(problem, models[-1], squares), *_clocks(problem, recorded, squares)]
+        if _most(
+            runs, experiments
+        ):  # what most have, all have: the fit to the runs as they are then read will tell
+            runs = tuple(e.name for e in experiments)
+        if runs:
+            found.append(SetUpFault(what, runs, len(runs) == len(experiments), reading, advice))
+    return [
+        *found,
+        *_one_clock(problem, models[-1], squares),
+        *_clocks(problem, models[-1], recorded, squares),
+    ]
 
 
 def _kinds(experiments: Sequence[Experiment]) -> list[tuple[str, str, Reading]]:
@@ -97,31 +105,6 @@ def _kinds(experiments: Sequence[Experiment]) -> list[tuple[str, str, Reading]]:
     ]
 
 
-def _one_clock(problem: Problem, model: Model, squares: np.ndarray) -> list[SetUpFault]:
-    """An angle that comes before its command in all runs alike; one that comes after is left to the effects that are
-    a lag. The shift is found together with the model's parameters (Gauss-Newton, a few steps).
-    """
-    lag, step, left = 0.0, np.inf, np.inf
-    frames = [float(np.median(np.diff(e.run.time))) for e in problem.experiments if len(e.run.time) > 1]
-    frame = min(frames, default=np.inf)
-    for _ in range(_MOST_STEPS):
-        seen = _evaluated(_as_read(problem, _shifted({}, lag)), model)
-        if seen is None or abs(step) < _SHIFT_TOLERANCE * frame:
-            break
-        left = seen.sum_of_squares
-        jacobian = np.column_stack([seen.jacobian, -_rate(seen)])
-        value, lower, upper = values_and_bounds(seen.model, seen.names)
-        down = np.append(lower - value, -_LONGEST_SHIFT_S - lag)
-        up = np.append(upper - value, _LONGEST_SHIFT_S - lag)
-        change, _ = bounded_change(seen.residual, jacobian, down, up)
-        step, lag = float(change[-1]), lag + float(change[-1])
-        model = model.with_values(dict(zip(seen.names, value + change[:-1], strict=True)))
-    if lag > -frame or not _removes_most(squares.sum(), left):
-        return []
-    what = f"the angle comes {-1e3 * lag:.0f} ms before its command"
-    return [SetUpFault(what, (), True, _shifted({}, lag), _COMPARE_CLOCKS)]
-
-
 def _as_read(problem: Problem, reading: Reading) -> Problem:
     return problem.with_experiments([reading(each) for each in problem.experiments])
 
@@ -135,21 +118,71 @@ def _rate(seen: Evaluation) -> np.ndarray:
     return np.concatenate([rate - rate.mean() for rate in rates])
 
 
-def _clocks(problem: Problem, recorded: Sequence[Evaluation], squares: np.ndarray) -> list[SetUpFault]:
+def _one_clock(problem: Problem, model: Model, squares: np.ndarray) -> list[SetUpFault]:
+    """An angle that comes before its command in all runs alike; one that comes after is left to the effects that are
+    a lag.
+    """
+    names = tuple(e.name for e in problem.experiments)
+    lags, left = _settled(problem, model, dict.fromkeys(names, 0.0), together=True)
+    lag = lags[names[0]]
+    if lag > -_frame(problem) or not _removes_most(squares.sum(), left):
+        return []
+    what = f"the angle comes {-1e3 * lag:.0f} ms before its command"
+    return [SetUpFault(what, names, True, _shifted({}, lag), _COMPARE_CLOCKS)]
+
+
+def _clocks(
+    problem: Problem, model: Model, recorded: Sequence[Evaluation], squares: np.ndarray
+) -> list[SetUpFault]:
     """The few runs whose angle is shifted in time. A lag that most share is left to the effects that are one."""
     shifts: dict[str, float] = {}
     for number, experiment in enumerate(problem.experiments):
-        times = experiment.run.time
-        if len(times) < _FEWEST_FRAMES or experiment.run.schedule is None:
+        if len(experiment.run.time) < _FEWEST_FRAMES or experiment.run.schedule is None:
             continue
         lag, left = min((_best_shift(seen, number) for seen in recorded), key=lambda one: one[1])
-        if abs(lag) > float(np.median(np.diff(times))) and _removes_most(squares[number], left):
+        if abs(lag) > _frame(problem) and _removes_most(squares[number], left):
             shifts[experiment.name] = lag
     if not shifts or _most(shifts, problem.experiments):
         return []
+    shifts, _ = _settled(problem, model, shifts)
     told = ", ".join(f"{1e3 * lag:+.0f} ms" for lag in shifts.values())
     what = f"the clock of the angle is off by {told}"
     return [SetUpFault(what, tuple(shifts), False, _shifted(shifts), _COMPARE_CLOCKS)]
+
+
+def _settled(
+    problem: Problem, model: Model, lags: Mapping[str, float], together: bool = False
+) -> tuple[dict[str, float], float]:
+    """Lags [s] of runs, by name, found with the model's parameters (Gauss-Newton, a few steps), and the squares left.
+
+    together: whether they are one lag.
+    """
+    lags, left, change = dict(lags), np.inf, np.array([np.inf])
+    here = [[e.name == name for e in problem.experiments] for name in lags]
+    whose = np.any(here, axis=0)[None] if together else np.array(here)
+    for _ in range(_MOST_STEPS):
+        seen = _evaluated(_as_read(problem, _shifted(lags)), model)
+        if seen is None:
+            break
+        left = seen.sum_of_squares
+        if np.abs(change).max() < _SHIFT_TOLERANCE * _frame(problem):
+            break
+        columns = -_rate(seen)[:, None] * whose[:, seen.runs].T
+        value, lower, upper = values_and_bounds(seen.model, seen.names)
+        reach = np.full(len(whose), _LONGEST_STEP_S)
+        down, up = np.append(lower - value, -reach), np.append(upper - value, reach)
+        step, _ = bounded_change(seen.residual, np.column_stack([seen.jacobian, columns]), down, up)
+        change = step[len(value) :]
+        model = model.with_values(dict(zip(seen.names, value + step[: len(value)], strict=True)))
+        moved = np.broadcast_to(change, len(lags))
+        lags = {name: lag + float(by) for (name, lag), by in zip(lags.items(), moved, strict=True)}
+    return lags, left
+
+
+def _frame(problem: Problem) -> float:
+    """Longest distance of two frames [s], the median of a run."""
+    frames = [float(np.median(np.diff(e.run.time))) for e in problem.experiments if len(e.run.time) > 1]
+    return max(frames, default=np.inf)
 
 
 def _most(runs: Collection[str], experiments: Sequence[Experiment]) -> bool:
@@ -164,8 +197,8 @@ def _evaluated(problem: Problem, model: Model) -> Evaluation | None:
 
 
 def _removes_most(before: npt.ArrayLike, after: npt.ArrayLike) -> np.ndarray:
-    """Of sums of squares: whether the rms falls by as much as an explanation must take away."""
-    return np.asarray(after) < (1 - POLICY.part) ** 2 * np.asarray(before)
+    """Of sums of squares: whether they fall by as much as an explanation must take away."""
+    return np.asarray(after) < (1 - POLICY.part) * np.asarray(before)
 
 
 def _squares_of_runs(seen: Evaluation) -> np.ndarray:
