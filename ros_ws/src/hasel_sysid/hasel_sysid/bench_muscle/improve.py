@@ -2,8 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
+from hasel_sim.effects.base import Effect
 from hasel_sim.muscle.catalogue import find_muscle_effects, muscle_catalogue
 from hasel_sim.muscle.muscle import Muscle
 
@@ -45,7 +47,7 @@ def _with_errors(problem: BenchProblem, fit: FittedModel) -> FittedModel:
     """A fit with standard errors that hold what the zero is uncertain by; what stands on a bound stays there."""
     moving = [name for name in fit.evaluation.names if name not in fit.at_bound]
     free = fitted_model(fit.evaluation.by(moving))
-    shared = dict(enumerate(problem.shared_errors))
+    shared = {f"zero {number}": change for number, change in enumerate(problem.shared_errors)}
     covariance = with_numerical_error(free.evaluation, free.model.covariance(moving), shared)
     held = {name: free.model.values[name] for name in fit.at_bound}
     return replace(
@@ -91,7 +93,7 @@ def improve_muscle(
     fit = fit_muscle(problem, muscle)
     present = {effect.id for effect in muscle.effects}
     effects = [
-        Candidate(effect.id, effect.parameters, effect)
+        Candidate(effect.id, effect.parameters, cast(Effect, effect))
         for effect in find_muscle_effects(tuple(candidates or muscle_catalogue()))
         if effect.id not in present
     ]

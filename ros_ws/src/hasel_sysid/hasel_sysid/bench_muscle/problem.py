@@ -38,8 +38,8 @@ class BenchProblem(Problem):
     """Recordings [k], of which only the frames `used` count, by voltage: those of one, and the rests after them, are a
     run. scales: by quantity, the largest answer of all that were read.
 
-    The law is a formula: a muscle stands where a simulated body's model stands, nothing is finer or cruder than it, and the
-    zero of every recording is known but for its error.
+    The law is a formula: a muscle stands where a body's model stands, and nothing is finer or cruder than it. The zero
+    of every recording is known but for its error.
     """
 
     free_offset = False
@@ -64,11 +64,12 @@ class BenchProblem(Problem):
     def measured_noise(self) -> NoiseModel:
         """That of a settled frame. Raises SysidError where too few frames tell it."""
         shares = np.array([run.noise / self.scales[run.unit] for run in self.runs])
-        if not np.isfinite(shares).all():
-            raise SysidError(
-                f"{self.runs[int(np.argmin(np.isfinite(shares)))].name} has too few settled frames to tell their noise; "
-                "expected a rest before the first lift: record one of a second or more"
-            )
+        for run, share in zip(self.runs, shares, strict=True):
+            if not share > 0:
+                raise SysidError(
+                    f"{run.name} does not tell the noise of a settled frame ({run.noise_source}); expected a rest of a "
+                    "second and more before the first lift"
+                )
         frames = [run.used.sum() for run in self.runs]
         white = float(np.average(shares**2, weights=frames))
         return NoiseModel(white, 0.0, 0.5, self.runs[0].noise_source)
@@ -204,7 +205,10 @@ class BenchProblem(Problem):
         }
 
     def only_levels(self, levels: Sequence[float] | np.ndarray, keep: bool = True) -> "BenchProblem":
-        """The problem with the frames of some levels [V] (keep) or without them. Raises SysidError where none is left."""
+        """The problem with the frames of some levels [V] (keep) or without them.
+
+        Raises SysidError where none is left.
+        """
         chosen = [run.only(np.isin(run.level, levels) == keep) for run in self.runs]
         return BenchProblem([run for run in chosen if run.used.any()], self.scales)
 

@@ -152,7 +152,7 @@ def _levels(voltage: np.ndarray, at_rest: np.ndarray, hold: np.ndarray) -> np.nd
 
 
 def _noise(answer: np.ndarray, resting: np.ndarray, used: np.ndarray, hold: np.ndarray) -> tuple[float, str]:
-    """Standard deviation of a frame, and where it comes from: few frames at rest alone would often tell too little."""
+    """Standard deviation of a frame, and where it comes from: the largest seen, as few frames tell little."""
     found: list[tuple[float, str]] = []
     if resting.sum() >= _FEWEST_FRAMES:
         found.append((float(np.std(answer[resting], ddof=1)), f"{resting.sum()} frames at rest"))
@@ -161,4 +161,7 @@ def _noise(answer: np.ndarray, resting: np.ndarray, used: np.ndarray, hold: np.n
     if len(steps) >= _FEWEST_FRAMES:
         spread = _TO_SIGMA * float(np.median(np.abs(steps - np.median(steps)))) / np.sqrt(2)
         found.append((spread, f"differences of {len(steps)} neighbouring frames"))
-    return max(found, default=(float("nan"), "nothing: too few frames"))
+    apart = np.diff(np.unique(answer[used]))
+    if found and len(apart):
+        found.append((float(apart.min()) / np.sqrt(12), "the sensor's steps"))
+    return max(found, default=(float("nan"), "too few frames"))

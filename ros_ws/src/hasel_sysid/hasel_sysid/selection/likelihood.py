@@ -177,7 +177,9 @@ class Likelihood:
 
     @cached_property
     def _known(self) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Of every run: its frames, the directions of a free offset and the discretisation, whitened, and what is left of each."""
+        """Of every run: its frames, the directions of a free offset and the discretisation, whitened, and what is left
+        of each.
+        """
         found = []
         for run in np.unique(self.runs):
             here = self.runs == run
@@ -199,8 +201,8 @@ class Likelihood:
 
 
 def _uncertain(changes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Directions [frames, n] of whitened changes, each in an unknown amount with a standard deviation of one, and what is
-    left of each by whitening.
+    """Directions [frames, n] of whitened changes, each in an unknown amount with a standard deviation of one, and what
+    whitening leaves of each.
     """
     directions, strength, _ = np.linalg.svd(changes, full_matrices=False)
     return directions, 1 / np.sqrt(1 + strength**2)
