@@ -86,7 +86,7 @@ def improve_muscle(
             "judged on voltages left out: record more, or use --fit-only"
         )
 
-    def stage(added: str, fit: FittedModel, rivals: tuple[str, ...] = ()) -> Stage:
+    def stage(fit: FittedModel, added: tuple[str, ...] = (), rivals: tuple[str, ...] = ()) -> Stage:
         law = as_muscle(fit.model)
         return Stage(added, fit, problem.error(law), {} if unseen is None else unseen.error(law), rivals)
 
@@ -98,13 +98,13 @@ def improve_muscle(
         if effect.id not in present
     ]
     found = Search(problem, fit, effects, _OFTEN, lambda *_: True, progress, with_constants=False).run()
-    stages = [stage("", fitted_model(problem.evaluate(as_model(muscle)))), stage("", fit)]
+    stages = [stage(fitted_model(problem.evaluate(as_model(muscle)))), stage(fit)]
     path, groups = found.choice.path, _groups(found)
     for before, names in zip(path, path[1:], strict=False):
-        (new,) = names - before
+        new = names - before
         last = _with_errors(problem, exact(problem, found.models[names].fitted.fit))
-        rivals = {other for group in groups if new in group for other in group} - found.choice.chosen
-        stages.append(stage(new, last, tuple(sorted(rivals))))
+        rivals = {other for group in groups if new & set(group) for other in group} - found.choice.chosen
+        stages.append(stage(last, tuple(sorted(new)), tuple(sorted(rivals))))
     status = _status(found, stages, described(problem, stages[-1].fit).describes)
     stages = stages[:2] if status is Status.UNEXPLAINED else stages
     told = described(problem, stages[-1].fit)
@@ -144,7 +144,7 @@ def _findings(
     describes: bool,
 ) -> tuple[BenchFinding, ...]:
     """What is said of every effect, beside those that were added."""
-    added = [stage.added for stage in stages[2:]]
+    added = [name for stage in stages[2:] for name in stage.added]
     of = {effect.name: effect for effect in effects}
     said = []
     for one in findings(found, effects, frozenset(added)):
@@ -172,7 +172,7 @@ def _may_hide(problem: BenchProblem, found: Searched, candidate: Candidate, besi
 def _finding(one: Finding, found: Searched, stages: Sequence[Stage], describes: bool) -> BenchFinding:
     name = one.effect
     alone = found.models.get(frozenset({name}))
-    instead = [stage.added for stage in stages[2:] if name in stage.rivals]
+    instead = [" and ".join(stage.added) for stage in stages[2:] if name in stage.rivals]
     if one.verdict is Verdict.MISSING:
         return BenchFinding(name, BenchVerdict.MISSING, _sizes(stages[-1].muscle, name))
     if instead:

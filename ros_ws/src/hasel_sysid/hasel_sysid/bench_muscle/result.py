@@ -66,7 +66,7 @@ class Described:
 class Stage:
     """What was added, the fit with it, and mean |law - measurement| by unit, of fitted and of unseen lifts."""
 
-    added: str
+    added: tuple[str, ...]
     fit: FittedModel
     error: dict[str, float]
     unseen: dict[str, float]
@@ -104,4 +104,4 @@ class BenchImprovement:
     @property
     def missing(self) -> list[str]:
         """What was added, in this order."""
-        return [stage.added for stage in self.stages[2:]]
+        return [name for stage in self.stages[2:] for name in stage.added]

@@ -56,7 +56,7 @@ def _rows(problem: BenchProblem, muscles: Sequence[Muscle]) -> list[tuple]:
 
 def stage_name(stage: Stage, number: int) -> str:
     """What a stage is called."""
-    return ("the formula, nothing fitted", "fitted")[number] if number < 2 else f"+ {stage.added}"
+    return ("the formula, nothing fitted", "fitted")[number] if number < 2 else "+ " + " + ".join(stage.added)
 
 
 def stage_table(found: BenchImprovement) -> Table:
@@ -78,7 +78,7 @@ def sentences(found: BenchImprovement) -> list[str]:
         fell = ", ".join(
             f"{quantity(before.error[u], u)} to {quantity(e, u)}" for u, e in stage.error.items()
         )
-        said.append(f"{stage.added} is missing: it takes the error from {fell}.")
+        said.append(f"{' and '.join(stage.added)} is missing: it takes the error from {fell}.")
         if stage.rivals:
             said.append(f"  These lifts cannot tell it from {', '.join(stage.rivals)}.")
     if not found.missing:

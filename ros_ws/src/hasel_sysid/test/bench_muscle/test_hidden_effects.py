@@ -53,7 +53,7 @@ def test_a_hidden_effect_is_named_first_or_within_its_group(bench, found_for, ef
     found = found_for(bench)
     assert found.missing
     first = found.stages[2]
-    assert effect in (first.added, *first.rivals)
+    assert effect in (*first.added, *first.rivals)
     assert found.status == "explained"
 
 
