@@ -16,6 +16,7 @@ from hasel_sysid.dataset import Experiment
 from hasel_sysid.errors import SysidError
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.noise.sources import measured_noise
+from hasel_sysid.policy import POLICY
 from hasel_sysid.time_limit import TimeLimit
 
 
@@ -26,7 +27,7 @@ class Evaluation:
     residual: measured minus simulated sin theta, the mean of every run removed (its offset is a nuisance), [frames];
     jacobian: derivative of the simulated series by `names`, treated alike, [frames, parameters]; runs: number of the
     run each frame belongs to, [frames]; offsets: what was removed, [runs]; frames: which frames of every run have both
-    a measured and a simulated angle.
+    a measured and a simulated angle; free_offset: whether nothing tells the offset of a run; else no mean is removed.
     """
 
     model: Model
@@ -37,6 +38,7 @@ class Evaluation:
     runs: np.ndarray
     offsets: np.ndarray
     frames: tuple[np.ndarray, ...]
+    free_offset: bool = True
 
     @property
     def mean_absolute_error(self) -> float:
@@ -72,7 +74,7 @@ class Evaluation:
     def simulated(self) -> np.ndarray:
         """The simulated series at the frames of `residual`, the mean of every run removed, [frames]."""
         chosen = [s.sin_theta[used] for s, used in zip(self.simulations, self.frames, strict=True)]
-        return np.concatenate([series - series.mean() for series in chosen])
+        return np.concatenate([s - s.mean() if self.free_offset else s for s in chosen])
 
     def measured(self) -> np.ndarray:
         """The measured series at the same frames, the mean of every run removed, [frames]."""
@@ -84,7 +86,12 @@ _CLOSE = 0.15
 
 
 class Problem:
-    """Measured runs to be explained; `evaluate` is the only thing that simulates."""
+    """Measured runs to be explained; `evaluate` is the only thing that simulates.
+
+    free_offset: whether nothing tells the offset that the frames of a run share.
+    """
+
+    free_offset = True
 
     def __init__(
         self,
@@ -113,6 +120,24 @@ class Problem:
         """Largest |sin theta| from the mean of its run, in all runs."""
         series = [e.sin_theta[np.isfinite(e.sin_theta)] for e in self.experiments]
         return max((float(np.abs(s - s.mean()).max()) for s in series if len(s)), default=0.0)
+
+    @property
+    def discrepancy(self) -> float:
+        """What no model of these runs is without, rms."""
+        return POLICY.discrepancy * self.largest_swing
+
+    def low_fidelity(self, model: Model) -> Model:
+        """The model by which steps are tried before it is simulated itself."""
+        return low_fidelity(model)
+
+    @property
+    def shared_errors(self) -> Sequence[np.ndarray]:
+        """Changes [frames] of the measured series by what was set once for all runs, each by one standard deviation."""
+        return ()
+
+    def refinements(self, model: Model) -> dict[str, Model]:
+        """The model by finer numerics, by what is finer: what they change is the error of the discretisation."""
+        return refinements(model)
 
     def with_experiments(self, experiments: Sequence[Experiment]) -> "Problem":
         """The same with parts of its runs or some of them, in as much noise."""
@@ -169,9 +194,9 @@ class Problem:
                     f"{experiment.name}: the derivatives by {', '.join(lost)} are not finite there; "
                     "choose another start, or leave these parameters as they are"
                 )
-            offsets.append(difference.mean())
-            residuals.append(difference - difference.mean())
-            jacobians.append(slopes - slopes.mean(axis=0))
+            offsets.append(difference.mean() if self.free_offset else 0.0)
+            residuals.append(difference - offsets[-1])
+            jacobians.append(slopes - slopes.mean(axis=0) if self.free_offset else slopes)
             runs.append(np.full(used.sum(), number))
             frames.append(used)
         return Evaluation(
@@ -183,6 +208,7 @@ class Problem:
             np.concatenate(runs),
             np.array(offsets),
             tuple(frames),
+            self.free_offset,
         )
 
 
@@ -196,6 +222,23 @@ def low_fidelity(model: Model) -> Model:
     )
 
 
+def refinements(model: Model) -> dict[str, Model]:
+    """The model on a mesh finer along and across it, and with shorter time steps.
+
+    Where the drive passes levels at which no amplitude is known, also with another curve between those that are: no
+    finer one is to be had, and either is as likely.
+    """
+    numerics = model.description.numerics
+    found = {
+        "mesh": model.with_numerics(mesh_density=1.5 * numerics.mesh_density, layers=numerics.layers + 1),
+        "time_step": model.with_numerics(steps_per_second=2 * numerics.steps_per_second),
+    }
+    if any(map(model.is_onset, model.parameters)):
+        other = "power" if numerics.amplitude_curve == "cubic" else "cubic"
+        found["amplitude_curve"] = model.with_numerics(amplitude_curve=other)
+    return found
+
+
 class LowFidelityProblem(Problem):
     """The same runs by the low-fidelity model, its error at one evaluated model added back.
 
@@ -206,10 +249,10 @@ class LowFidelityProblem(Problem):
     def __init__(self, of: Problem, known: Evaluation) -> None:
         """known: a model, evaluated by `of`."""
         super().__init__(of.experiments, of.pool, of.measured_noise, of.time_limit)
-        self.known, self._of, self._lower = known, of, low_fidelity
+        self.known, self._of, self._lower = known, of, of.low_fidelity
         self._error: np.ndarray | float = 0.0
         try:
-            error = known.residual - of.evaluate(low_fidelity(known.model)).residual
+            error = known.residual - of.evaluate(of.low_fidelity(known.model)).residual
         except SimulationError:
             self._lower = _as_it_is
             return

@@ -128,7 +128,8 @@ _IN_ITS_PLACE = {Verdict.MISSING: Verdict.MISSING_IF_SIZE_MATTERS}
 _NEEDS_A_MODEL = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
 
 
-def _seen(finding: Finding, adequate: bool, added: Sequence[str] | None) -> Finding:
+def said_beside(finding: Finding, adequate: bool, added: Sequence[str] | None) -> Finding:
+    """What is said of an effect beside a model that describes its runs or not, and to which these were added."""
     if added and finding.effect in added:
         others = tuple(effect for effect in added if effect != finding.effect)
         return replace(finding, verdict=Verdict.MISSING, beside=others)
@@ -181,7 +182,7 @@ class Diagnosis:
         to be missing in the end, which may be more or other than what looked best at first, or nothing; None where
         nobody asked.
         """
-        return replace(self, findings=[_seen(finding, adequate, added) for finding in self.findings])
+        return replace(self, findings=[said_beside(finding, adequate, added) for finding in self.findings])
 
     def of_no_effect(self) -> "Diagnosis":
         """The diagnosis where it turned out that what is wrong is no effect: some could at most stand in its place."""

@@ -15,10 +15,10 @@ from hasel_sysid.policy import POLICY
 from hasel_sysid.projection import orthonormal
 from hasel_sysid.result import Diagnosis, Finding, Status, Verdict
 from hasel_sysid.saturated_model import regressors, unexplained_by
-from hasel_sysid.selection.likelihood import NOTHING, Likelihood, Whitened
+from hasel_sysid.selection.likelihood import NOTHING, Likelihood, Names, Whitened
 from hasel_sysid.selection.search import Searched
 
-_DETECTION = 3.3
+DETECTION = 3.3
 """Standard errors at which an effect is seen with 95 % certainty at a 5 % false-alarm rate."""
 RULED_OUT = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
 
@@ -59,15 +59,14 @@ def diagnosis(found: Searched, effects: Sequence[Candidate]) -> Diagnosis:
     winner = next((next(iter(names)) for names in choice.path if len(names) == 1), None)
     winner = winner if winner in {effect.name for effect in effects} else None
     none = _none_of_them(found, noise)
-    findings = [_finding(found, effect, winner, noise, none) for effect in effects]
-    findings.sort(key=lambda one: -_order(found, one))
+    beside = frozenset({winner}) if winner else NOTHING
     learned = unexplained_by(
         np.column_stack([base.evaluation.jacobian, regressors(base.evaluation)]), base.evaluation.residual
     )
     floor = _expected_squares(base, noise)
     excess = max(base.evaluation.sum_of_squares - floor, 0.05 * floor)
     return Diagnosis(
-        findings,
+        findings(found, effects, beside),
         [group for group in choice.groups if all(_is_effect(name, effects) for name in group)],
         noise,
         found.likelihood.noise,
@@ -79,6 +78,14 @@ def diagnosis(found: Searched, effects: Sequence[Candidate]) -> Diagnosis:
         base,
         winner,
     )
+
+
+def findings(found: Searched, effects: Sequence[Candidate], beside: Names) -> list[Finding]:
+    """What is said of every effect, judged beside a fitted set: what that explains accuses nobody else."""
+    noise = found.likelihood.allowed
+    none = _none_of_them(found, noise)
+    said = [_finding(found, effect, beside, noise, none) for effect in effects]
+    return sorted(said, key=lambda one: -_order(found, one))
 
 
 def _is_effect(name: str, effects: Sequence[Candidate]) -> bool:
@@ -104,10 +111,7 @@ def _order(found: Searched, one: Finding) -> float:
     )
 
 
-def _finding(
-    found: Searched, effect: Candidate, winner: str | None, noise: NoiseModel, none: float
-) -> Finding:
-    """The verdict on one effect, judged beside the winner: what the winner explains accuses nobody else."""
+def _finding(found: Searched, effect: Candidate, beside: Names, noise: NoiseModel, none: float) -> Finding:
     name, first = effect.name, _size(effect)
     of = partial(
         Finding,
@@ -116,7 +120,7 @@ def _finding(
         source=effect.effect.source,
         plausible=(first.lower, first.upper),
         null=first.null,
-        winner=None if winner == name else winner,
+        winner=" and ".join(sorted(beside)) if beside and name not in beside else None,
     )
     screened = [one for one in found.screened if one.start.candidate.name == name]
     if not screened:
@@ -124,17 +128,16 @@ def _finding(
         return of(verdict, 0.0, 0.0, {}, swallowed=1.0, visible_above=np.inf)
     seen = min(screened, key=lambda one: one.predicted)
     base = found.models[NOTHING].whitened
-    beside = found.models[frozenset({winner}) if winner else NOTHING].whitened
     step = seen.start.values[effect.path(first)] - first.null
-    size, error = _score(found.likelihood, seen, beside)
-    limit = _DETECTION * _score(found.likelihood, seen, base)[1] * abs(step)
+    size, error = _score(found.likelihood, seen, found.models[beside].whitened)
+    limit = DETECTION * _score(found.likelihood, seen, base)[1] * abs(step)
     final = found.models.get(frozenset({name}))
     if final is not None:
         expected = _values(effect, final.fitted.fit, found.discretisation)
     else:
         expected = {effect.path(first): (first.null + size * step, abs(error * step))}
     removed = _error_removed(found, name, noise)
-    verdict = _verdict(first, name in found.choice.chosen and name == winner, size, error, limit)
+    verdict = _verdict(first, name in found.choice.chosen and name in beside, size, error, limit)
     if verdict in RULED_OUT and any(name in group for group in found.choice.groups):
         verdict = Verdict.MISSING_IF_SIZE_MATTERS
     return of(
@@ -166,7 +169,7 @@ def _verdict(first: EffectParameter, chosen: bool, size: float, error: float, li
         return Verdict.MISSING
     if limit > widest or not np.isfinite(limit):
         return Verdict.CANNOT_BE_SEEN
-    if abs(size) > _DETECTION * error:
+    if abs(size) > DETECTION * error:
         return Verdict.MISSING_IF_SIZE_MATTERS
     return Verdict.ABSENT if limit <= abs(first.typical - first.null) else Verdict.INCONCLUSIVE
 

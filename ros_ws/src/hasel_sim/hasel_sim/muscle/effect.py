@@ -34,6 +34,10 @@ class MuscleEffect:
     citation: ClassVar[str] = ""
     in_time: ClassVar[bool] = False
     """Whether it needs the history of the voltage, and so has no place in a law that knows the present one only."""
+    exclusive: ClassVar[str] = ""
+    """As of a body's effects: those with the same non-empty word do the same thing."""
+    source: ClassVar[str | None] = None
+    """A user's own effect says where it comes from; of a muscle there are none."""
 
     def pouches(self, pouch: Pouch, p: SimpleNamespace) -> list[tuple[float, Pouch]]:
         """What the muscle's pouches are like: shares [1] that add up to 1, each with its pouch."""

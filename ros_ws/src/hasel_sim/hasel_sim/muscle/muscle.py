@@ -1,6 +1,6 @@
 """A Peano-HASEL muscle: pouches in series, what acts on them, and its numbers; changed only by copying."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import SimpleNamespace
@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from hasel_sim.errors import ModelError, nearest_name
+from hasel_sim.model.covariance import covariance_of, with_covariance
 from hasel_sim.model.parameter import Parameter
 from hasel_sim.muscle.catalogue import find_muscle_effects
 from hasel_sim.muscle.effect import Held, MuscleEffect
@@ -54,6 +55,27 @@ class Muscle:
             error = (standard_errors or {}).get(name, parameters[name].standard_error)
             parameters[name] = replace(parameters[name], value=float(value), standard_error=error)
         return replace(self, parameters=parameters)
+
+    def with_covariance(self, names: Sequence[str], covariance: np.ndarray) -> "Muscle":
+        """A copy in which the errors of these parameters have this covariance [n, n], infinite where not determined."""
+        return replace(self, parameters=with_covariance(self.parameters, names, covariance))
+
+    def covariance(self, names: Sequence[str]) -> np.ndarray:
+        """Covariance [n, n] of the errors of these parameters; infinite where one has none."""
+        return covariance_of([self.parameters[name] for name in names])
+
+    def with_held(self, *names: str) -> "Muscle":
+        """A copy in which these parameters are not fitted."""
+        held = {name: replace(self.parameters[name], free=False) for name in names}
+        return replace(self, parameters={**self.parameters, **held})
+
+    def is_amplitude(self, name: str) -> bool:
+        """Whether a parameter is a contraction at one voltage: a law has none."""
+        return False
+
+    def is_onset(self, name: str) -> bool:
+        """Whether a parameter is a voltage up to which nothing contracts: the law says itself which one that is."""
+        return False
 
     def with_effects(self, *names: str) -> "Muscle":
         """A copy with further effects, at their null values. Raises ModelError for one unknown or already there."""

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hasel_sim.errors import ModelError
 from hasel_sim.muscle.muscle import Muscle
+from hasel_sim.muscle.muscle_file import load_muscle
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
@@ -86,3 +87,12 @@ def test_unknown_effects_and_values_are_refused(muscle):
         muscle.with_effects("pouch_spread").with_effects("pouch_spread")
     with pytest.raises(ModelError, match="no parameter"):
         muscle.with_values({"fil": 1.0})
+
+
+def test_errors_of_its_parameters_keep_their_covariance():
+    """As of a body's model; what is held is not free."""
+    muscle = load_muscle("peano_hasel")
+    names, covariance = muscle.free, np.array([[4e-4, 1e-4], [1e-4, 9e-4]])
+    fitted = muscle.with_covariance(names, covariance)
+    assert_allclose(fitted.covariance(names), covariance, rtol=1e-5)
+    assert fitted.with_held(names[0]).free == names[1:]

@@ -13,9 +13,8 @@ from pathlib import Path
 
 import numpy as np
 from hasel_sim.muscle.muscle import Muscle
-from hasel_sysid.bench_muscle.fit import fit_muscle
-from hasel_sysid.bench_muscle.left_out import levels_of
-from hasel_sysid.bench_muscle.problem import BenchProblem, bench_problem
+from hasel_sysid.bench_muscle.improve import fit_muscle
+from hasel_sysid.bench_muscle.problem import BenchProblem, as_muscle, bench_problem
 from hasel_sysid.bench_muscle.reading import muscle_for, settled_runs
 from hasel_sysid.bench_muscle.stroke_table import Rival, rival_table
 
@@ -34,9 +33,9 @@ def splits(levels: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
 
 def compared(every: BenchProblem, muscle: Muscle, kept: np.ndarray) -> Rival | None:
     """Law and table on the lifts that are left out; None where there is more than one load."""
-    apart = [level for level in levels_of(every) if level not in kept]
+    apart = [level for level in every.voltages if level not in kept]
     fitted, unseen = every.only_levels(apart, keep=False), every.only_levels(apart)
-    return rival_table(fitted, unseen, fit_muscle(fitted, muscle).muscle)
+    return rival_table(fitted, unseen, as_muscle(fit_muscle(fitted, muscle).model))
 
 
 def main(arguments: list[str]) -> None:
@@ -45,7 +44,7 @@ def main(arguments: list[str]) -> None:
     every = bench_problem(settled_runs([Path(path)], SETTLING_S))
     muscle = muscle_for(None, [Path(path)]).with_effects(*effects)
     print("mean error on the voltages left out, mm |   law | table")
-    for words, kept in splits(np.asarray(levels_of(every))):
+    for words, kept in splits(np.asarray(every.voltages)):
         rival = compared(every, muscle, kept)
         if rival is None:
             sys.exit("the recording has several loads, or held lengths: no table of strokes fits it")

@@ -31,13 +31,13 @@ def write_picture(
         curve.plot(volts / 1e3, factor * measured, marker, color=_INK, mfc=face, ms=5, label=label, zorder=5)
     for number, stage in enumerate(found.stages):
         name, colour = stage_name(stage, number), _COLOURS[number % len(_COLOURS)]
-        both = [_lifts(problem, unit, problem.predicted(stage.fit.muscle)) for problem, _, _ in parts]
+        both = [_lifts(problem, unit, problem.predicted(stage.muscle)) for problem, _, _ in parts]
         volts, predicted = (np.concatenate(each) for each in zip(*both, strict=True))
         order = np.argsort(volts, kind="stable")
         curve.plot(volts[order] / 1e3, factor * predicted[order], color=colour, label=name)
         if number:
             for problem, marker, _ in parts:
-                at, away = _lifts(problem, unit, problem.predicted(stage.fit.muscle) - problem.measured)
+                at, away = _lifts(problem, unit, problem.predicted(stage.muscle) - problem.measured)
                 face = colour if marker == "o" else "white"
                 left.plot(at / 1e3, factor * away, marker, color=colour, mfc=face, ms=4)
     curve.set(xlabel="voltage [kV]", ylabel=shown, title="lifts (mean of the settled frames)")

@@ -28,7 +28,7 @@ def write_report(
     )
     page = environment.get_template("bench_muscle.html").render(
         muscle=found.muscle.name,
-        status=found.status.replace("_", " "),
+        status=found.status.value.replace("_", " "),
         sentences=sentences(found),
         fails=fails,
         stages=[(stage_name(stage, number), stage) for number, stage in enumerate(found.stages)],

@@ -14,7 +14,8 @@ SETTLING_S = 1.0
 """A frame counts when the voltage has not changed for as long as this."""
 _SAME = 0.01
 """Voltages that differ by less than this share of the highest are one."""
-_FEWEST_AT_REST = 5
+_FEWEST_FRAMES = 5
+_TO_SIGMA = 1.4826
 _MEDIAN = np.sqrt(np.pi / 2)
 """Standard error of a median by that of a mean, of normal numbers."""
 
@@ -24,9 +25,8 @@ class SettledRun:
     """Frames at times [s] [n] with voltage [V], contraction [m] from the rest before the first lift, and load [N].
 
     used [n]: which of them are settled and measured; hold [n]: number of the stretch of constant voltage; level [n]:
-    its magnitude [V], at rest that of the lift before. noise: standard deviation of a frame, zero_error: of
-    what was called zero, which all frames share, both in metres or
-    newtons; noise_frames: how many tell it.
+    its magnitude [V], at rest that of the lift before. noise: standard deviation of a frame, zero_error: of what was
+    called zero, which all frames share, both in metres or newtons.
     """
 
     name: str
@@ -42,7 +42,6 @@ class SettledRun:
     noise: float
     noise_source: str
     zero_error: float = 0.0
-    noise_frames: int = 2
 
     @property
     def measured(self) -> np.ndarray:
@@ -84,7 +83,7 @@ def settled(recording: BenchRecording, settling: float = SETTLING_S) -> SettledR
         )
     resting = before & np.isfinite(contraction)
     zero = float(np.median(contraction[resting])) if resting.any() and recording.held == "load" else 0.0
-    noise, source, told = _noise(answer, before & used, used, hold)
+    noise, source = _noise(answer, before & used, used, hold)
     return SettledRun(
         name=recording.name,
         held=recording.held,
@@ -98,7 +97,6 @@ def settled(recording: BenchRecording, settling: float = SETTLING_S) -> SettledR
         rest_load=float(np.nanmedian(load[before])) if before.any() else 0.0,
         noise=noise,
         noise_source=source,
-        noise_frames=told,
         zero_error=_MEDIAN * noise / np.sqrt(resting.sum())
         if resting.any() and recording.held == "load"
         else 0.0,
@@ -153,16 +151,17 @@ def _levels(voltage: np.ndarray, at_rest: np.ndarray, hold: np.ndarray) -> np.nd
     return level
 
 
-def _noise(
-    answer: np.ndarray, resting: np.ndarray, used: np.ndarray, hold: np.ndarray
-) -> tuple[float, str, int]:
-    """Standard deviation of a frame, where it comes from, and how many frames tell it."""
-    if resting.sum() >= _FEWEST_AT_REST:
-        return float(np.std(answer[resting], ddof=1)), f"{resting.sum()} frames at rest", int(resting.sum())
+def _noise(answer: np.ndarray, resting: np.ndarray, used: np.ndarray, hold: np.ndarray) -> tuple[float, str]:
+    """Standard deviation of a frame, and where it comes from: the largest seen, as few frames tell little."""
+    found: list[tuple[float, str]] = []
+    if resting.sum() >= _FEWEST_FRAMES:
+        found.append((float(np.std(answer[resting], ddof=1)), f"{resting.sum()} frames at rest"))
     pairs = used[1:] & used[:-1] & (np.diff(hold) == 0)
     steps = np.diff(answer)[pairs]
-    if len(steps) < _FEWEST_AT_REST:
-        return float("nan"), "nothing: too few frames", 0
-    spread = 1.4826 * float(np.median(np.abs(steps - np.median(steps))))
-    said = "differences of neighbouring frames, as there are too few at rest"
-    return spread / np.sqrt(2), said, len(steps)
+    if len(steps) >= _FEWEST_FRAMES:
+        spread = _TO_SIGMA * float(np.median(np.abs(steps - np.median(steps)))) / np.sqrt(2)
+        found.append((spread, f"differences of {len(steps)} neighbouring frames"))
+    apart = np.diff(np.unique(answer[used]))
+    if found and len(apart):
+        found.append((float(apart.min()) / np.sqrt(12), "the sensor's steps"))
+    return max(found, default=(float("nan"), "too few frames"))

@@ -11,6 +11,7 @@ from hasel_sysid.bench_muscle.problem import BenchProblem
 from hasel_sysid.bench_muscle.result import BenchImprovement, Stage
 from hasel_sysid.bench_muscle.stroke_table import Rival
 from hasel_sysid.bench_muscle.swinging import Swinging
+from hasel_sysid.estimation.fit import FittedModel
 
 _DECIMALS = 6
 """Of millimetres and newtons; what lies below is rounding."""
@@ -55,7 +56,7 @@ def _rows(problem: BenchProblem, muscles: Sequence[Muscle]) -> list[tuple]:
 
 def stage_name(stage: Stage, number: int) -> str:
     """What a stage is called."""
-    return ("the formula, nothing fitted", "fitted")[number] if number < 2 else f"+ {stage.added}"
+    return ("the formula, nothing fitted", "fitted")[number] if number < 2 else "+ " + " + ".join(stage.added)
 
 
 def stage_table(found: BenchImprovement) -> Table:
@@ -77,19 +78,26 @@ def sentences(found: BenchImprovement) -> list[str]:
         fell = ", ".join(
             f"{quantity(before.error[u], u)} to {quantity(e, u)}" for u, e in stage.error.items()
         )
-        said.append(f"{stage.added} is missing: it takes the error from {fell}.")
+        said.append(f"{' and '.join(stage.added)} is missing: it takes the error from {fell}.")
         if stage.rivals:
             said.append(f"  These lifts cannot tell it from {', '.join(stage.rivals)}.")
     if not found.missing:
-        said.append("No effect foretells voltages left out better by more than chance.")
-    said.append(str(found.adequacy))
-    fit = found.stages[-1].fit
-    said.append(f"Fitted: {fit}.")
-    for name in fit.at_bound:
+        said.append("No effect predicts voltages left out better by more than one standard error.")
+    said.append(str(found.described))
+    last = found.stages[-1].fit
+    said.append(fitted(last))
+    for name in last.at_bound:
         said.append(
             f"  {name} would leave its plausible range: a constant is wrong, or something else is missing."
         )
     return said
+
+
+def fitted(fit: FittedModel) -> str:
+    """What a fit came to."""
+    values = [str(fit.model.parameters[name]) for name in fit.model.free]
+    bounds = "".join(f"; {name} is at its bound" for name in fit.at_bound)
+    return f"Fitted: {'; '.join(values) or 'nothing is free'}{bounds}."
 
 
 def lift_table(swings: Swinging) -> Table:
@@ -108,17 +116,17 @@ def lift_table(swings: Swinging) -> Table:
 def to_json(found: BenchImprovement, rival: Rival | None, swings: Swinging | None = None) -> dict:
     """The same for other programs."""
     return {
-        "noise_floor": found.adequacy.noise,
-        "error": found.adequacy.error,
-        "allowed": found.adequacy.allowed,
-        "repeatability": found.adequacy.repeats,
+        "noise_floor": found.described.noise,
+        "error": found.described.error,
+        "allowed": found.described.allowed,
+        "repeatability": found.described.repeats,
         "stages": [
             {
                 "name": stage_name(stage, number),
                 "effects": stage.effects,
                 "parameters": {
                     p.name: {"value": p.value, "std": p.standard_error, "unit": p.unit}
-                    for p in stage.fit.muscle.parameters.values()
+                    for p in stage.muscle.parameters.values()
                 },
                 "mae_fit": stage.error,
                 "mae_validation": stage.unseen,
@@ -132,5 +140,5 @@ def to_json(found: BenchImprovement, rival: Rival | None, swings: Swinging | Non
         "indistinguishable": [list(group) for group in found.groups],
         "unseen_lifts": None if rival is None else {"law_m": rival.law, "table_m": rival.table},
         "swinging": None if swings is None else swings.to_json(),
-        "verdict": {"status": found.status, "missing": found.missing},
+        "verdict": {"status": found.status.value, "missing": found.missing},
     }

@@ -6,7 +6,6 @@ import numpy as np
 from hasel_sim.drive.sloped_box import target_contraction
 from hasel_sim.muscle.muscle import Muscle
 
-from hasel_sysid.bench_muscle.left_out import levels_of
 from hasel_sysid.bench_muscle.problem import BenchProblem
 
 _ONE_LOAD = 0.02
@@ -35,7 +34,7 @@ def rival_table(fitted: BenchProblem, unseen: BenchProblem, muscle: Muscle) -> R
     loads = np.concatenate([run.load[run.used] for run in runs])
     if any(run.held != "load" for run in runs) or np.ptp(loads) > _ONE_LOAD * np.abs(loads).max():
         return None
-    levels = levels_of(fitted)
+    levels = fitted.voltages
     means = [np.mean(fitted.measured[fitted.driven & (fitted.levels == level)]) for level in levels]
     lifts = unseen.driven
     said = target_contraction(unseen.levels[lifts], levels, np.maximum.accumulate(means))

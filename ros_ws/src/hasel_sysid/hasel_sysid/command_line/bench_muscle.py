@@ -5,18 +5,14 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
 from hasel_sim.muscle.muscle import Muscle
 from hasel_sim.muscle.muscle_file import muscle_text
 from rich.console import Console
 
 from hasel_sysid.bench_muscle import shown
-from hasel_sysid.bench_muscle.adequacy import adequacy
-from hasel_sysid.bench_muscle.fit import fit_muscle
-from hasel_sysid.bench_muscle.improve import improve_muscle
-from hasel_sysid.bench_muscle.left_out import levels_of
+from hasel_sysid.bench_muscle.improve import described, fit_muscle, improve_muscle
 from hasel_sysid.bench_muscle.picture import write_picture
-from hasel_sysid.bench_muscle.problem import BenchProblem, bench_problem
+from hasel_sysid.bench_muscle.problem import BenchProblem, as_muscle, bench_problem
 from hasel_sysid.bench_muscle.reading import muscle_for, readable, settled_runs
 from hasel_sysid.bench_muscle.report import write_report
 from hasel_sysid.bench_muscle.result import BenchImprovement
@@ -54,12 +50,12 @@ def _bench(options: argparse.Namespace) -> None:
         return
     with progress_bar("fit") as progress:
         found = improve_muscle(fitted, muscle, unseen, options.effects or None, progress)
-    fails = where_it_fails(fitted, found.stages[1].fit.muscle)
+    fails = where_it_fails(fitted, found.stages[1].muscle)
     rival = rival_table(fitted, unseen, found.muscle) if unseen is not None else None
     swings = swinging(readable(options.recordings), found.muscle, options.unseen_voltages)
     named = [("formula", found.stages[0]), ("fitted", found.stages[1])]
     named += [("with effects", found.stages[-1])] if found.missing else []
-    muscles = [(name, stage.fit.muscle) for name, stage in named]
+    muscles = [(name, stage.muscle) for name, stage in named]
     console.print(shown.stroke_table(fitted, muscles, unseen))
     console.print(shown.stage_table(found))
     if swings is not None:
@@ -82,20 +78,20 @@ def _problems(options: argparse.Namespace) -> tuple[BenchProblem, BenchProblem |
     """What is fitted, and what is not seen: whole recordings, or single voltages of those that are fitted."""
     every = bench_problem(settled_runs(options.recordings, options.settling))
     apart = list(options.unseen_voltages)
-    missing = [volts for volts in apart if volts not in levels_of(every)]
+    missing = [volts for volts in apart if volts not in every.voltages]
     if missing:
-        known = ", ".join(f"{level:g}" for level in levels_of(every))
+        known = ", ".join(f"{level:g}" for level in every.voltages)
         raise SysidError(
             f"no lift is at {missing[0]:g} V; expected some of {known}: correct --unseen-voltages"
+        )
+    if set(apart) >= set(every.voltages.tolist()):
+        raise SysidError(
+            "all voltages are unseen, so that nothing is left to fit: name fewer with --unseen-voltages"
         )
     fitted = every.only_levels(apart, keep=False)
     runs = [*every.only_levels(apart).runs] if apart else []
     if options.validate:
         runs += settled_runs(options.validate, options.settling)
-    if not np.any(fitted.driven):
-        raise SysidError(
-            "all voltages are unseen, so that nothing is left to fit: name fewer with --unseen-voltages"
-        )
     return fitted, bench_problem(runs, {**bench_problem(runs).scales, **fitted.scales}) if runs else None
 
 
@@ -107,9 +103,10 @@ def _fit_only(
     console: Console,
 ) -> None:
     fit = fit_muscle(fitted, muscle.with_effects(*options.effects) if options.effects else muscle)
-    console.print(shown.stroke_table(fitted, [("formula", muscle), ("fitted", fit.muscle)], unseen))
-    _say([*where_it_fails(fitted, fit.muscle), f"Fitted: {fit}.", str(adequacy(fitted, fit.muscle))], console)
-    _write_muscle(fit.muscle, options.output, console)
+    law = as_muscle(fit.model)
+    console.print(shown.stroke_table(fitted, [("formula", muscle), ("fitted", law)], unseen))
+    _say([*where_it_fails(fitted, law), shown.fitted(fit), str(described(fitted, fit))], console)
+    _write_muscle(law, options.output, console)
 
 
 def _write(

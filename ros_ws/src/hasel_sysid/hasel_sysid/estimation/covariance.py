@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from hasel_sim.errors import SimulationError
-from hasel_sim.model import Model
 
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.problem import Evaluation, Problem
@@ -104,26 +103,9 @@ def _change_by(basis: np.ndarray, residual: np.ndarray, to_parameters: np.ndarra
     return change
 
 
-def refinements(model: Model) -> dict[str, Model]:
-    """The model on a mesh finer along and across it, and with shorter time steps.
-
-    Where the drive passes levels at which no amplitude is known, also with another curve between those that are: no
-    finer one is to be had, and either is as likely.
-    """
-    numerics = model.description.numerics
-    found = {
-        "mesh": model.with_numerics(mesh_density=1.5 * numerics.mesh_density, layers=numerics.layers + 1),
-        "time_step": model.with_numerics(steps_per_second=2 * numerics.steps_per_second),
-    }
-    if any(map(model.is_onset, model.parameters)):
-        other = "power" if numerics.amplitude_curve == "cubic" else "cubic"
-        found["amplitude_curve"] = model.with_numerics(amplitude_curve=other)
-    return found
-
-
 def changes_by_refinement(problem: Problem, base: Evaluation) -> dict[str, np.ndarray]:
     """By how much each refinement changes the simulated series [frames]; one that cannot be simulated is left out."""
-    finer = refinements(base.model)
+    finer = problem.refinements(base.model)
     found = problem.evaluate_each(list(finer.values()), [()] * len(finer))
     return {
         name: base.residual - evaluation.residual

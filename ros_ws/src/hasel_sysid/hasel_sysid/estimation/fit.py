@@ -29,7 +29,7 @@ from hasel_sysid.estimation.least_squares import (
 )
 from hasel_sysid.estimation.starts import screen, starts
 from hasel_sysid.noise.model import estimate_noise
-from hasel_sysid.problem import Evaluation, LowFidelityProblem, Problem, low_fidelity
+from hasel_sysid.problem import Evaluation, LowFidelityProblem, Problem
 
 Progress = Callable[[str, float], None]
 """Called with a line of text and the share done, 0 to 1."""
@@ -201,7 +201,7 @@ def fit(
 
 
 def fit_baseline(problem: Problem, model: Model, progress: Progress | None = None) -> FittedModel:
-    """The fit of a model from its own values and, where it has effects, from their standard starts.
+    """The fit of a model from its standard starts.
 
     Where that ends out of phase with the runs, once more on growing horizons. Where more frames lose its phase again,
     because something else is missing, the values are those of the longest horizon that it is in phase with, and the
@@ -211,7 +211,7 @@ def fit_baseline(problem: Problem, model: Model, progress: Progress | None = Non
         return fitted_model(problem.evaluate(model), 1)
     failed = None
     try:
-        near = _fitted(problem, model, progress)
+        near = fit_from_starts(problem, model, progress)
     except SimulationError as error:
         near, failed = None, error
     if near is not None and in_phase(near.evaluation):
@@ -230,7 +230,7 @@ def _on_growing_horizons(problem: Problem, model: Model, progress: Progress | No
         if progress:
             progress(f"horizon {number + 1} of {len(every)}", number / len(every))
         try:
-            found = _fitted(short, model, None)
+            found = fit_from_starts(short, model)
         except SimulationError:
             break
         if not in_phase(found.evaluation):
@@ -242,7 +242,11 @@ def _on_growing_horizons(problem: Problem, model: Model, progress: Progress | No
     return replace(whole, in_phase_until=length(reached))
 
 
-def _fitted(problem: Problem, model: Model, progress: Progress | None) -> FittedModel:
+def fit_from_starts(problem: Problem, model: Model, progress: Progress | None = None) -> FittedModel:
+    """The fit of a model from its own values and, where it has effects, from their standard starts.
+
+    Raises SimulationError when no start can be simulated.
+    """
     before, coarse = problem.evaluations, _Coarse(problem)
     own = {name for effect in model.effects for p in effect.parameters for name in [f"{effect.id}.{p.name}"]}
     if progress:
@@ -269,7 +273,7 @@ class _Coarse(Problem):
         self, models: Sequence[Model], names: Sequence[Sequence[str]]
     ) -> list[Evaluation | SimulationError]:
         """As of a problem."""
-        found = self._of.evaluate_each([low_fidelity(model) for model in models], names)
+        found = self._of.evaluate_each([self._of.low_fidelity(model) for model in models], names)
         return [
             one if isinstance(one, SimulationError) else replace(one, model=model)
             for model, one in zip(models, found, strict=True)

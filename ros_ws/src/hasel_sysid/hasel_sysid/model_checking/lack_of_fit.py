@@ -67,7 +67,7 @@ def goodness_of_fit(evaluation: Evaluation, allowed: NoiseModel) -> GoodnessOfFi
     allowed: noise and discrepancy. Regimes: run, largest drive, frequency, side, quarter of the cycle.
     """
     basis = orthonormal(evaluation.jacobian)
-    draws = allowed.sample(evaluation.runs, _DRAWS, np.random.default_rng(2))
+    draws = allowed.sample(evaluation.runs, _DRAWS, np.random.default_rng(2), evaluation.free_offset)
     draws -= basis @ (basis.T @ draws)
     squares, by_noise = evaluation.residual**2, draws**2
     found, chances = [], []
@@ -97,14 +97,16 @@ def regimes(evaluation: Evaluation) -> Iterator[tuple[str, np.ndarray]]:
 
 
 def _labels(evaluation: Evaluation) -> dict[str, list[str]]:
-    unit = drive_unit(evaluation.model)
     labels: dict[str, list[str]] = {"run": [], "": [], "frequency": [], "side": [], "part of the cycle": []}
     for simulation, used in zip(evaluation.simulations, evaluation.frames, strict=True):
         run = simulation.run
         count, time = int(used.sum()), run.time[used]
         voltage = None if run.schedule is None else run.schedule.at(time)
         cycle = None if voltage is None or count < 2 else drive_cycle(time, voltage)
-        level = "" if run.schedule is None else f"{np.abs(run.schedule.signal).max(initial=0.0):.5g} {unit}"
+        level = ""
+        if run.schedule is not None:
+            unit = drive_unit(evaluation.model)
+            level = f"{np.abs(run.schedule.signal).max(initial=0.0):.5g} {unit}"
         side = [""] * count
         if voltage is not None:
             first, *others = run.schedule.channels

@@ -47,8 +47,10 @@ class NoiseModel:
             out[here] = matmul_toeplitz(first, columns[here])
         return out
 
-    def sample(self, runs: np.ndarray, count: int, generator: np.random.Generator) -> np.ndarray:
-        """Draw noise series, the mean of every run removed, [frames, count]."""
+    def sample(
+        self, runs: np.ndarray, count: int, generator: np.random.Generator, free_offset: bool = True
+    ) -> np.ndarray:
+        """Draw noise series, [frames, count]; free_offset: the mean of every run removed."""
         out = np.empty((len(runs), count))
         for run in np.unique(runs):
             here = runs == run
@@ -57,7 +59,7 @@ class NoiseModel:
             drive[1:] *= np.sqrt(1 - self.correlation**2)
             slow = np.sqrt(self.coloured) * lfilter([1.0], [1.0, -self.correlation], drive, axis=0)
             series = slow + np.sqrt(self.white) * generator.standard_normal((n, count))
-            out[here] = series - series.mean(axis=0)
+            out[here] = series - series.mean(axis=0) if free_offset else series
         return out
 
     def __str__(self) -> str:

@@ -1,8 +1,8 @@
 """The one currency: the log-likelihood of residuals under one declared covariance.
 
 Measured noise, white and shared by neighbouring frames; one slow discrepancy that no model is without (Kennedy and
-O'Hagan 2001); the discretisation error of the likeliest model, in an unknown amount in every run; a free offset in
-every run.
+O'Hagan 2001); the discretisation error of the likeliest model, in an unknown amount in every run; an offset in every
+run, free where nothing tells it.
 """
 
 from collections.abc import Sequence
@@ -129,12 +129,17 @@ class Likelihood:
         runs: np.ndarray,
         discrepancy: float = 0.0,
         discretisation: Sequence[np.ndarray] = (),
+        shared: Sequence[np.ndarray] = (),
+        free_offset: bool = True,
     ) -> None:
         """runs [frames]; discrepancy: rms of what no model has, as slow as noise can be; discretisation: changes
-        [frames] by finer numerics, each in an unknown amount with a standard deviation of one in every run.
+        [frames] by finer numerics, each in an unknown amount with a standard deviation of one in every run;
+        shared: changes [frames] likewise, each in one amount for all runs; free_offset: whether nothing tells the
+        offset of a run.
         """
-        self.noise, self.runs, self.discrepancy = noise, runs, discrepancy
+        self.noise, self.runs, self.discrepancy, self._free_offset = noise, runs, discrepancy, free_offset
         self._changes = np.column_stack([np.zeros((len(runs), 0)), *discretisation])
+        self._shared = np.column_stack([np.zeros((len(runs), 0)), *shared])
 
     @property
     def allowed(self) -> NoiseModel:
@@ -143,12 +148,17 @@ class Likelihood:
 
     def whiten(self, columns: np.ndarray) -> np.ndarray:
         """Columns [frames] or [frames, n] in units of independent noise of variance one, offsets taken out."""
-        many = columns.reshape(len(columns), -1)
-        out = np.empty(many.shape)
-        for here, directions, left in self._known:
-            part = self._innovations(many[here])
-            out[here] = part - directions @ ((1 - left)[:, None] * (directions.T @ part))
+        out = self._by_run(columns.reshape(len(columns), -1))
+        directions, left = self._known_of_all
+        out -= directions @ ((1 - left)[:, None] * (directions.T @ out))
         return out.reshape(columns.shape)
+
+    def _by_run(self, columns: np.ndarray) -> np.ndarray:
+        out = np.empty(columns.shape)
+        for here, directions, left in self._known:
+            part = self._innovations(columns[here])
+            out[here] = part - directions @ ((1 - left)[:, None] * (directions.T @ part))
+        return out
 
     def whitened(self, fitted: FittedSet) -> Whitened:
         """A fitted set."""
@@ -161,17 +171,24 @@ class Likelihood:
         return Whitened(white[:, 0] - basis @ (basis.T @ white[:, 0]), basis, self.runs)
 
     @cached_property
+    def _known_of_all(self) -> tuple[np.ndarray, np.ndarray]:
+        """Directions of what all runs share, whitened, and what is left of each."""
+        return _uncertain(self._by_run(self._shared))
+
+    @cached_property
     def _known(self) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Of every run: its frames, the directions of offset and discretisation, whitened, and what is left of each."""
+        """Of every run: its frames, the directions of a free offset and the discretisation, whitened, and what is left
+        of each.
+        """
         found = []
         for run in np.unique(self.runs):
             here = self.runs == run
-            offset = self._innovations(np.ones((int(here.sum()), 1)))
-            offset /= np.linalg.norm(offset)
+            offset = self._innovations(np.ones((int(here.sum()), int(self._free_offset))))
+            offset /= np.linalg.norm(offset, axis=0)
             changes = self._innovations(self._changes[here])
             changes = changes - offset @ (offset.T @ changes)
-            directions, strength, _ = np.linalg.svd(changes, full_matrices=False)
-            left = np.concatenate([[0.0], 1 / np.sqrt(1 + strength**2)])
+            directions, left = _uncertain(changes)
+            left = np.concatenate([np.zeros(offset.shape[1]), left])
             found.append((here, np.column_stack([offset, directions]), left))
         return found
 
@@ -181,6 +198,14 @@ class Likelihood:
         white = max(self.noise.white, 1e-9 * float(slow.sum()))
         memory = np.array([self.noise.correlation, LONGEST_CORRELATION])
         return _filtered(np.ascontiguousarray(columns, dtype=float), white, slow, memory)
+
+
+def _uncertain(changes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Directions [frames, n] of whitened changes, each in an unknown amount with a standard deviation of one, and what
+    whitening leaves of each.
+    """
+    directions, strength, _ = np.linalg.svd(changes, full_matrices=False)
+    return directions, 1 / np.sqrt(1 + strength**2)
 
 
 @njit(cache=True)

@@ -137,10 +137,11 @@ class Search:
         noise = self.problem.measured_noise or bounded_noise([f.fit.evaluation for f in self.fits.values()])
         runs = self.baseline.evaluation.runs
         measured = self.baseline.evaluation.measured()
-        discrepancy = self.policy.discrepancy * self.problem.largest_swing
+        discrepancy = self.problem.discrepancy
         about = self._likeliest() if self.models else NOTHING
         changes = self._refinement_changes(about)
-        self.likelihood = Likelihood(noise, runs, discrepancy, list(changes.values()))
+        shared, free = self.problem.shared_errors, self.problem.free_offset
+        self.likelihood = Likelihood(noise, runs, discrepancy, list(changes.values()), shared, free)
         self.models = {}
         enough = self.policy.near_noise * self.likelihood.allowed.mean_absolute
         for names, fitted in self.fits.items():

@@ -7,8 +7,8 @@ from hasel_sim.muscle.muscle_file import load_muscle
 from hasel_sysid.bench_muscle.improve import improve_muscle
 from hasel_sysid.bench_muscle.problem import bench_problem
 from hasel_sysid.bench_muscle.reading import read_bench
+from hasel_sysid.bench_muscle.result import BenchVerdict
 from hasel_sysid.bench_muscle.settled import settled
-from hasel_sysid.bench_muscle.verdict import Verdict
 
 UNSEEN = {
     "film_elasticity__compliance": 3e-10,
@@ -53,7 +53,7 @@ def test_a_hidden_effect_is_named_first_or_within_its_group(bench, found_for, ef
     found = found_for(bench)
     assert found.missing
     first = found.stages[2]
-    assert effect in (first.added, *first.rivals)
+    assert effect in (*first.added, *first.rivals)
     assert found.status == "explained"
 
 
@@ -64,4 +64,4 @@ def test_what_cannot_be_seen_is_said_to_be(bench, found_for, hidden):
     found = found_for(bench.hiding(**{hidden: UNSEEN[hidden]}))
     assert found.missing == []
     verdicts = {finding.effect: finding.verdict for finding in found.findings}
-    assert verdicts[hidden.partition("__")[0]] is Verdict.UNSEEN
+    assert verdicts[hidden.partition("__")[0]] is BenchVerdict.UNSEEN

@@ -26,6 +26,15 @@ def test_noise_is_that_of_frames_at_rest(bench, tmp_path):
     assert "at rest" in run.noise_source
 
 
+def test_the_noise_of_rounded_samples_is_that_of_the_rounding(bench, tmp_path):
+    """A sensor that gives hundredths of a millimetre and stands still at rest is no better than these."""
+    time, voltage, x = bench.samples()
+    rows = "\n".join(f"{t:.3f},{v:.1f},{1e3 * c:.2f}" for t, v, c in zip(time, voltage, x, strict=True))
+    (tmp_path / "a.csv").write_text(f"#load_n: 0.5\ntime_s,voltage_v,contraction_mm\n{rows}\n")
+    run = settled(read_bench(tmp_path / "a.csv"))
+    assert_allclose(run.noise, 1e-5 / np.sqrt(12), rtol=0.01)
+
+
 def test_single_wild_samples_do_not_move_a_frame(bench, tmp_path):
     """A sensor that sees nothing now and then changes nothing that counts."""
     run = settled(read_bench(bench.write_mat(tmp_path)))

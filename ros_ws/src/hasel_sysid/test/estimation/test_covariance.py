@@ -6,14 +6,13 @@ import statsmodels.api as sm
 from hasel_sim.model import load_model
 from hasel_sysid.estimation.covariance import (
     parameter_covariance,
-    refinements,
     scatter_between_runs,
     seen_directions,
     wider_where_runs_disagree,
     with_numerical_error,
 )
 from hasel_sysid.noise.model import NoiseModel
-from hasel_sysid.problem import Evaluation
+from hasel_sysid.problem import Evaluation, refinements
 from hasel_sysid.testing.made_up_runs import made_up_evaluation
 from scipy.linalg import fractional_matrix_power
 

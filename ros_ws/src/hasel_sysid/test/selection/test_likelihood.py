@@ -49,6 +49,20 @@ def test_differences_of_the_logarithm_are_those_of_the_density(generator, finer)
     assert ours[0] - ours[1] == pytest.approx(theirs[0] - theirs[1], rel=1e-4)
 
 
+def test_what_was_set_once_is_one_error_of_all_runs(generator):
+    """Such as a zero, where the offset of a run is known otherwise."""
+    zero = 0.4 * np.ones(len(RUNS))
+    likelihood = Likelihood(NOISE, RUNS, DISCREPANCY, shared=[zero], free_offset=False)
+    series = generator.standard_normal((len(RUNS), 2)) + 1.0
+    ours = -0.5 * (likelihood.whiten(series) ** 2).sum(axis=0)
+    full = np.zeros((len(RUNS), len(RUNS)))
+    for run in (0, 1):
+        here = np.flatnonzero(run == RUNS)
+        full[np.ix_(here, here)] = covariance(len(here))
+    theirs = [multivariate_normal(cov=full + np.outer(zero, zero)).logpdf(series[:, n]) for n in (0, 1)]
+    assert ours[0] - ours[1] == pytest.approx(theirs[0] - theirs[1], rel=1e-4)
+
+
 def test_an_offset_of_a_run_changes_nothing(generator):
     """It is a nuisance."""
     likelihood = Likelihood(NOISE, RUNS, DISCREPANCY)
