@@ -13,7 +13,7 @@ from hasel_sysid.estimation.growing_horizon import horizons, in_phase
 from hasel_sysid.model_checking.constancy import against_law
 from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
 from hasel_sysid.noise.bounds import bounded_noise
-from hasel_sysid.noise.model import allowed_noise
+from hasel_sysid.noise.model import NoiseModel, allowed_noise
 from hasel_sysid.policy import POLICY, Policy
 from hasel_sysid.problem import Problem
 from hasel_sysid.result import Diagnosis, Improvement, Stage, Status, Verdict, WrongConstant
@@ -241,7 +241,7 @@ def _likelier(
     if readings and _describes(readings[0].problem, readings[0].fit):
         return search(readings[0].problem, readings[0].fit, progress), readings[0].fault
     recorded = search(problem, fit, progress)
-    if near_noise(recorded.answer.fit.mean_absolute_error, recorded.likelihood.allowed):
+    if _is_described(recorded.answer.fit, recorded.likelihood.allowed):
         return recorded, None
     likeliest = recorded.models[best_of(recorded.models)].fitted.fit
     readings = [*_readings(problem, [likeliest.model], likeliest), *readings]
@@ -254,7 +254,11 @@ def _likelier(
 
 def _describes(problem: Problem, fit: FittedModel) -> bool:
     noise = problem.measured_noise or bounded_noise([fit.evaluation])
-    allowed = allowed_noise(noise, POLICY.discrepancy * problem.largest_swing)
+    return _is_described(fit, allowed_noise(noise, problem.discrepancy))
+
+
+def _is_described(fit: FittedModel, allowed: NoiseModel) -> bool:
+    """Whether a model leaves hardly more than it may, in all runs together and in every regime."""
     return (
         near_noise(fit.mean_absolute_error, allowed) and not goodness_of_fit(fit.evaluation, allowed).lacking
     )
