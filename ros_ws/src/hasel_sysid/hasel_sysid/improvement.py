@@ -1,7 +1,7 @@
 """`diagnose` and `improve`: fit, search among sets of candidates, choose, and say what it comes to."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 from hasel_sim.errors import SimulationError
@@ -12,16 +12,13 @@ from hasel_sysid.estimation.fit import FittedModel, Progress, exact, fit_baselin
 from hasel_sysid.estimation.growing_horizon import horizons, in_phase
 from hasel_sysid.model_checking.constancy import against_law
 from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
-from hasel_sysid.noise.bounds import bounded_noise
-from hasel_sysid.noise.model import NoiseModel, allowed_noise
 from hasel_sysid.policy import POLICY, Policy
 from hasel_sysid.problem import Problem
+from hasel_sysid.reading import recorded_or_read
 from hasel_sysid.result import Diagnosis, Improvement, Stage, Status, Verdict, WrongConstant
-from hasel_sysid.selection.choose import best_of, is_better
-from hasel_sysid.selection.cross_validation import leave_one_run_out
+from hasel_sysid.selection.choose import is_better
 from hasel_sysid.selection.likelihood import NOTHING, FittedSet, Likelihood
 from hasel_sysid.selection.search import IsLaw, Search, Searched
-from hasel_sysid.set_up import SetUpFault, hypotheses
 from hasel_sysid.verdict import diagnosis, near_noise, share_left, status_with
 
 OnStage = Callable[[Stage], None]
@@ -74,7 +71,7 @@ def improve(
     add(refined(problem, fit), ())
     search = partial(_searched, effects=effects, policy=policy, with_constants=not only)
     report = _part(progress, "search", 0.15, 0.95)
-    found, fault = _likelier(problem, model, fit, search, policy, report)
+    found, fault = recorded_or_read(problem, model, fit, search, policy, report)
     if fault:
         problem = problem.with_experiments(fault.read(problem.experiments))
         validation = validation and validation.with_experiments(fault.read(validation.experiments))
@@ -189,89 +186,6 @@ def _searched(
     """What a fitted baseline lacks; where it is out of phase, first of its beginning."""
     begun = [] if in_phase(fit.evaluation) else _on_growing_horizons(problem, fit, effects, policy)
     return Search(problem, fit, effects, policy, _laws(problem), progress, with_constants, begun).run()
-
-
-@dataclass(frozen=True)
-class _Reading:
-    """A fault of the set-up, the runs as they are then read, and a model fitted to them."""
-
-    fault: SetUpFault
-    problem: Problem
-    fit: FittedModel
-
-
-def _readings(problem: Problem, about: Sequence[Model], fit: FittedModel) -> list[_Reading]:
-    """The faults with which a model leaves less than this fit of it to the runs as recorded, likeliest first.
-
-    about: models of these parameters, of which the better one on the runs as they are then read is fitted to them.
-    """
-    found = []
-    for fault in hypotheses(problem, about):
-        as_read = problem.with_experiments(fault.read(problem.experiments))
-        begun = as_read.evaluate_each(about, [()] * len(about))
-        able = [one for one in begun if not isinstance(one, SimulationError)]
-        if not able:
-            continue
-        try:
-            read = fit_baseline(as_read, min(able, key=lambda one: one.sum_of_squares).model)
-        except SimulationError:
-            continue
-        if read.evaluation.sum_of_squares < fit.evaluation.sum_of_squares:
-            found.append(_Reading(fault, as_read, read))
-    return sorted(found, key=lambda one: one.fit.evaluation.sum_of_squares)
-
-
-def _likelier(
-    problem: Problem,
-    start: Model,
-    fit: FittedModel,
-    search: Callable[[Problem, FittedModel, Progress | None], Searched],
-    policy: Policy,
-    progress: Progress | None,
-) -> tuple[Searched, SetUpFault | None]:
-    """The search of the runs as recorded, or as the likeliest fault of the set-up has them read.
-
-    A reading that alone describes the runs, or an answer as recorded that does, needs no second search. Otherwise the
-    faults are asked for beside the likeliest model, too, and one is believed where the answer beside it predicts better
-    and is likelier than the answer without it.
-    """
-    if _describes(problem, fit):
-        return search(problem, fit, progress), None
-    readings = _readings(problem, [start, fit.model], fit)
-    if readings and _describes(readings[0].problem, readings[0].fit):
-        return search(readings[0].problem, readings[0].fit, progress), readings[0].fault
-    recorded = search(problem, fit, progress)
-    if _is_described(recorded.answer.fit, recorded.likelihood.allowed):
-        return recorded, None
-    likeliest = recorded.models[best_of(recorded.models)].fitted.fit
-    readings = [*_readings(problem, [likeliest.model], likeliest), *readings]
-    if not readings or problem.time_limit.is_over():
-        return recorded, None
-    best = min(readings, key=lambda one: one.fit.evaluation.sum_of_squares)
-    found = search(best.problem, fit_baseline(best.problem, fit.model), progress)
-    return (found, best.fault) if _is_believed(best.fault, found, recorded, policy) else (recorded, None)
-
-
-def _describes(problem: Problem, fit: FittedModel) -> bool:
-    noise = problem.measured_noise or bounded_noise([fit.evaluation])
-    return _is_described(fit, allowed_noise(noise, problem.discrepancy))
-
-
-def _is_described(fit: FittedModel, allowed: NoiseModel) -> bool:
-    """Whether a model leaves hardly more than it may, in all runs together and in every regime."""
-    return (
-        near_noise(fit.mean_absolute_error, allowed) and not goodness_of_fit(fit.evaluation, allowed).lacking
-    )
-
-
-def _is_believed(fault: SetUpFault, found: Searched, recorded: Searched, policy: Policy) -> bool:
-    """Both answers by the likelihood of the reading's search."""
-    measured = found.answer.fit.evaluation.measured()
-    with_it, without = (found.likelihood.whitened(one.answer) for one in (found, recorded))
-    gain = with_it.logarithm - without.logarithm
-    elpd, other = (leave_one_run_out(white, measured, policy.prior_runs) for white in (with_it, without))
-    better = elpd.over(other)
-    return gain > policy.reach * fault.size and better.total > policy.standard_errors * better.error
 
 
 def _wrong_constant(found: Searched, policy: Policy) -> WrongConstant | None:
