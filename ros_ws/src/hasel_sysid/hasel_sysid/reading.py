@@ -96,10 +96,13 @@ def _is_described(fit: FittedModel, allowed: NoiseModel) -> bool:
 
 
 def _is_believed(fault: SetUpFault, found: Searched, recorded: Searched, policy: Policy) -> bool:
-    """Both answers by the likelihood of the reading's search."""
+    """Both answers by the likelihood of the reading's search; that other runs are no better is no doubt of a fault that
+    they do not have.
+    """
     measured = found.answer.fit.evaluation.measured()
     with_it, without = (found.likelihood.whitened(one.answer) for one in (found, recorded))
     gain = with_it.logarithm - without.logarithm
     elpd, other = (leave_one_run_out(white, measured, policy.prior_runs) for white in (with_it, without))
     better = elpd.over(other)
-    return gain > policy.reach * fault.size and better.total > policy.standard_errors * better.error
+    error = better.error if fault.everywhere else better.by_noise
+    return gain > policy.reach * fault.size and better.total > policy.standard_errors * error
