@@ -232,13 +232,12 @@ def _judged(
     """
     said, last = stages[0].diagnosis, stages[-1]
     described = goodness_of_fit(last.fit.evaluation, said.noise)
-    describes = near_noise(last.mae_fit, said.noise) and not described.lacking
     by_effects = [stage for stage in stages if not stage.constant]
     left = share_left(by_effects[0].mae_fit, by_effects[-1].mae_fit, said.noise)
     if last.effects:
-        status = status_with(left, describes, nothing_else)
+        status = status_with(left, described.adequate, nothing_else)
     else:
-        status = Status.NOTHING_MISSING if describes and nothing_else else Status.UNEXPLAINED
+        status = Status.NOTHING_MISSING if described.adequate and nothing_else else Status.UNEXPLAINED
         left = 0.0 if status is Status.NOTHING_MISSING else left
     missing = last.effects if status in (Status.EXPLAINED, Status.PARTLY_EXPLAINED) else ()
     first = replace(

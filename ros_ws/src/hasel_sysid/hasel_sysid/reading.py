@@ -9,14 +9,13 @@ from hasel_sim.model import Model
 from hasel_sysid.estimation.fit import FittedModel, Progress, fit_baseline
 from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
 from hasel_sysid.noise.bounds import bounded_noise
-from hasel_sysid.noise.model import NoiseModel, allowed_noise
+from hasel_sysid.noise.model import allowed_noise
 from hasel_sysid.policy import Policy
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.choose import best_of
 from hasel_sysid.selection.cross_validation import leave_one_run_out
 from hasel_sysid.selection.search import Searched
 from hasel_sysid.set_up import SetUpFault, hypotheses
-from hasel_sysid.verdict import near_noise
 
 SearchRuns = Callable[[Problem, FittedModel, Progress | None], Searched]
 """From runs and a baseline fitted to them to what it lacks."""
@@ -51,7 +50,7 @@ def recorded_or_read(
     if readings and _describes(readings[0].problem, readings[0].fit):
         return search(readings[0].problem, readings[0].fit, progress), readings[0].fault
     recorded = search(problem, fit, progress)
-    if _is_described(recorded.answer.fit, recorded.likelihood.allowed):
+    if goodness_of_fit(recorded.answer.fit.evaluation, recorded.likelihood.allowed).adequate:
         return recorded, None
     likeliest = recorded.models[best_of(recorded.models)].fitted.fit
     readings = [*_readings(problem, [likeliest.model], likeliest), *readings]
@@ -85,14 +84,7 @@ def _readings(problem: Problem, about: Sequence[Model], fit: FittedModel) -> lis
 
 def _describes(problem: Problem, fit: FittedModel) -> bool:
     noise = problem.measured_noise or bounded_noise([fit.evaluation])
-    return _is_described(fit, allowed_noise(noise, problem.discrepancy))
-
-
-def _is_described(fit: FittedModel, allowed: NoiseModel) -> bool:
-    """Whether a model leaves hardly more than it may, in all runs together and in every regime."""
-    return (
-        near_noise(fit.mean_absolute_error, allowed) and not goodness_of_fit(fit.evaluation, allowed).lacking
-    )
+    return goodness_of_fit(fit.evaluation, allowed_noise(noise, problem.discrepancy)).adequate
 
 
 def _is_believed(fault: SetUpFault, found: Searched, recorded: Searched, policy: Policy) -> bool:

@@ -15,7 +15,7 @@ from hasel_sim.model import Model
 from hasel_sysid.dataset import Experiment
 from hasel_sysid.estimation.least_squares import bounded_change, values_and_bounds
 from hasel_sysid.policy import POLICY
-from hasel_sysid.problem import Evaluation, Problem, low_fidelity
+from hasel_sysid.problem import Evaluation, Problem
 
 Reading = Callable[[Experiment], Experiment]
 DECIDED = ("sign flip or swapped channels", "dead channel", "command lag", "motion before command")
@@ -67,20 +67,20 @@ def hypotheses(problem: Problem, models: Sequence[Model]) -> list[SetUpFault]:
     squares = np.min([_squares_of_runs(seen) for seen in recorded], axis=0)
     found = []
     for what, advice, reading in _kinds(problem.experiments):
-        experiments = [reading(each) for each in problem.experiments]
-        changed = [new is not old for new, old in zip(experiments, problem.experiments, strict=True)]
         read = _as_read(problem, reading)
+        changed = [new is not old for new, old in zip(read.experiments, problem.experiments, strict=True)]
+        if not any(changed):
+            continue
         seen = [one for one in (_evaluated(read, model) for model in models) if one is not None]
-        if not any(changed) or not seen:
+        if not seen:
             continue
         better = changed & _removes_most(squares, np.min([_squares_of_runs(one) for one in seen], axis=0))
         runs = tuple(e.name for e, here in zip(problem.experiments, better, strict=True) if here)
-        if _most(
-            runs, experiments
-        ):  # what most have, all have: the fit to the runs as they are then read will tell
-            runs = tuple(e.name for e in experiments)
+        if _most(runs, read.experiments):
+            # what most have, all have: the fit to the runs as they are then read will tell
+            runs = tuple(e.name for e in read.experiments)
         if runs:
-            found.append(SetUpFault(what, runs, len(runs) == len(experiments), reading, advice))
+            found.append(SetUpFault(what, runs, len(runs) == len(read.experiments), reading, advice))
     return [
         *found,
         *_one_clock(problem, models[-1], squares),
@@ -122,6 +122,8 @@ def _one_clock(problem: Problem, model: Model, squares: np.ndarray) -> list[SetU
     """An angle that comes before its command in all runs alike; one that comes after is left to the effects that are
     a lag.
     """
+    if any(e.run.schedule is None for e in problem.experiments):
+        return []
     names = tuple(e.name for e in problem.experiments)
     lags, left = _settled(problem, model, dict.fromkeys(names, 0.0), together=True)
     lag = lags[names[0]]
@@ -191,7 +193,7 @@ def _most(runs: Collection[str], experiments: Sequence[Experiment]) -> bool:
 
 def _evaluated(problem: Problem, model: Model) -> Evaluation | None:
     try:
-        return problem.evaluate(low_fidelity(model), model.free)
+        return problem.evaluate(problem.low_fidelity(model), model.free)
     except SimulationError:
         return None
 

@@ -62,9 +62,8 @@ def measure(
     values = draw_values(case, generator)
     runs = [box.run(switch_on_frames) for box in (*fitted, *unseen)]
     fault = FAULTS[case.fault] if case.fault else None
-    faulty = fault.runs([run.name for run in runs[: len(fitted)]], generator) if fault else set()
-    if fault and fault.everywhere:
-        faulty = {run.name for run in runs}
+    names = [run.name for run in runs]
+    faulty = fault.runs(names[: len(fitted)], names, generator) if fault else set()
     driven = [fault.drives(run) if run.name in faulty else run for run in runs]
     values, simulations = _as_far_as_it_goes(case, values, muscles, driven, pool)
     noises = [draw_noise(len(run.time), case.colour, generator) for run in runs]
@@ -93,22 +92,18 @@ def _mean_absolute(series: list[np.ndarray]) -> float:
 
 
 def _as_far_as_it_goes(
-    case: Case, values: Values, muscles: Muscles, runs: Sequence[Run], pool: Executor
+    case: Case, values: Values, muscles: Muscles, runs: Sequence[Run], pool: Executor, left: int = _WEAKER
 ) -> tuple[Values, list[Simulation]]:
     """What is hidden and the truth's motion; what is strong is as strong as can be simulated."""
-    for attempt in range(_WEAKER + 1):
-        model = truth_model(
-            NUMERICS[case.numerics],
-            muscles,
-            {effect_source(identity): chosen for identity, chosen in values.items()},
-        )
-        try:
-            return values, simulate_all(pool, model, runs)
-        except SimulationError:
-            if case.kind != "strong" or attempt == _WEAKER:
-                raise
-            values = {identity: _half(identity, chosen) for identity, chosen in values.items()}
-    raise AssertionError
+    hidden = {effect_source(identity): chosen for identity, chosen in values.items()}
+    model = truth_model(NUMERICS[case.numerics], muscles, hidden)
+    try:
+        return values, simulate_all(pool, model, runs)
+    except SimulationError:
+        if case.kind != "strong" or not left:
+            raise
+    weaker = {identity: _half(identity, chosen) for identity, chosen in values.items()}
+    return _as_far_as_it_goes(case, weaker, muscles, runs, pool, left - 1)
 
 
 def _half(identity: str, values: dict[str, float]) -> dict[str, float]:

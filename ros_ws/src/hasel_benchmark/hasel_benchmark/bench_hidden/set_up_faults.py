@@ -21,9 +21,9 @@ class SetUpFaultHidden:
     said: tuple[str, ...]
     sign: float = 1.0
 
-    def runs(self, names: Sequence[str], generator: np.random.Generator) -> set[str]:
-        """The names of the runs that have it."""
-        return set(names) if self.everywhere else {names[int(generator.integers(len(names)))]}
+    def runs(self, fitted: Sequence[str], every: Sequence[str], generator: np.random.Generator) -> set[str]:
+        """The names of the runs that have it: of every one, or of one that is fitted."""
+        return set(every) if self.everywhere else {fitted[int(generator.integers(len(fitted)))]}
 
 
 def _as_it_is(run: Run) -> Run:

@@ -75,12 +75,12 @@ def _improve(options: argparse.Namespace) -> int:
         if written:
             print(f"wrote the stages so far ({len(written)}), see {ledger.path}", file=sys.stderr)
         raise
-    told = [*given.said, *_undecided(start)]
-    left = [finding for finding in _undecided(stages[0]) if finding not in told]
-    tell([*_undecided(start), *left], given.said)
+    fitted = _undecided(stages[0])
+    suspected = list(dict.fromkeys((*_undecided(start), *fitted)))
+    tell(suspected, given.said)
 
     def everything() -> None:
-        show([stages[0]], [*told, *stages[0].set_up])  # what is said of the set-up was told before
+        show([stages[0]], stages[0].set_up)  # what is said of the set-up was told before
         print(found.diagnosis)
         print(found)
         print(table_of_models(found.models))
@@ -91,8 +91,8 @@ def _improve(options: argparse.Namespace) -> int:
         f", the other {further} effects" if further else ""
     )
     summarise(lines, everything, options.all, others)
-    _finish(options, found, start, stages, suggestions)
-    return MISLEADING if found.set_up else code_after([*given.said, *left])
+    _finish(options, found, start, stages, suggestions, suspected)
+    return MISLEADING if found.set_up else code_after([*given.said, *fitted])
 
 
 def _undecided(comparison: Comparison) -> list[Finding]:
@@ -124,6 +124,7 @@ def _finish(
     start: Comparison,
     stages: Sequence[Comparison],
     suggestions: Sequence[Suggestion],
+    suspected: Sequence[Finding],
 ) -> None:
     folder: Path = options.output
     save_model(found.model, folder / MODEL_FILE)
@@ -134,9 +135,7 @@ def _finish(
     if options.json:
         details = {
             "where_it_fails": stages[0].where.sentences(),
-            "data_gate": [
-                finding.to_json() for finding in dict.fromkeys((*_undecided(start), *_undecided(stages[0])))
-            ],
+            "data_gate": [finding.to_json() for finding in suspected],
             "start": start.to_json(),
             "next_runs": [suggestion.to_json() for suggestion in suggestions],
         }
