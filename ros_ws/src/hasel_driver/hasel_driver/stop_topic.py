@@ -9,7 +9,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 from std_msgs.msg import Bool
 
-from hasel_driver.graph_names import full_name
+from hasel_driver.graph_names import UNNAMED, full_name
 from hasel_driver.identified_subscription import IDENTIFIER_BYTES, IdentifiedSubscription
 from hasel_driver.stop_holders import StopHolders
 
@@ -64,6 +64,6 @@ class StopTopic:
         return self._node.get_publishers_info_by_topic(relative(EMERGENCY_STOP))
 
     def _take(self, publisher: bytes, sequence: int, message: Bool) -> None:
-        name = self.present().get(publisher, "an unknown node")
+        name = self.present().get(publisher, UNNAMED)
         if self._holders.take(publisher, sequence, name, message.data):
             self._on_change(message.data, name)

@@ -71,3 +71,13 @@ class Simulation:
     def time(self) -> np.ndarray:
         """The run's frames [s]."""
         return self.run.time
+
+    @property
+    def outputs(self) -> np.ndarray:
+        """What is compared with measurements: sin theta alone, [n, outputs]."""
+        return self.sin_theta[:, None]
+
+    @property
+    def output_slopes(self) -> np.ndarray:
+        """Derivatives of the outputs, [n, outputs, parameters]."""
+        return self.slopes[:, None, :]

@@ -22,7 +22,9 @@ _MOST_LEVELS = 8
 
 @dataclass(frozen=True)
 class Experiment:
-    """A recording and the run that repeats it; sin_theta [n] is measured at run.time, NaN where it is not."""
+    """A recording and the run that repeats it, or its first frames; sin_theta [n] is measured at run.time, NaN where it
+    is not.
+    """
 
     recording: Recording
     run: Run
@@ -35,7 +37,12 @@ class Experiment:
     @property
     def sin_theta(self) -> np.ndarray:
         """Measured sine of the bending angle, [n]."""
-        return self.recording.sin_theta
+        return self.recording.sin_theta[: len(self.run.time)]
+
+    @property
+    def outputs(self) -> np.ndarray:
+        """What was measured of what a simulation gives: sin theta alone, [n, outputs]."""
+        return self.sin_theta[:, None]
 
 
 def experiment(recording: Recording) -> Experiment:

@@ -1,6 +1,9 @@
-"""Residuals of many runs and their derivatives, with the unknown offset of every run taken out."""
+"""Residuals of the outputs of many runs and their derivatives, with the unknown offset of each series taken out.
 
-from collections.abc import Collection, Sequence
+A series is one output of one run. All outputs are in one unit and of one noise level.
+"""
+
+from collections.abc import Collection, Iterator, Sequence
 from concurrent.futures import Executor
 from copy import copy
 from dataclasses import dataclass, replace
@@ -24,10 +27,11 @@ from hasel_sysid.time_limit import TimeLimit
 class Evaluation:
     """One model against all runs.
 
-    residual: measured minus simulated sin theta, the mean of every run removed (its offset is a nuisance), [frames];
-    jacobian: derivative of the simulated series by `names`, treated alike, [frames, parameters]; runs: number of the
-    run each frame belongs to, [frames]; offsets: what was removed, [runs]; frames: which frames of every run have both
-    a measured and a simulated angle; free_offset: whether nothing tells the offset of a run; else no mean is removed.
+    residual: measured minus simulated outputs, run by run and output by output, the mean of every series removed (its
+    offset is a nuisance), [frames], each output of a frame being one of them; jacobian: derivative of the simulated
+    series by `names`, treated alike, [frames, parameters]; runs: number of the run each belongs to, [frames]; offsets:
+    what was removed, [series]; measured_at: which outputs of every run are both measured and simulated, [n, outputs]
+    of each; free_offset: whether nothing tells the offset of a series; else no mean is removed.
     """
 
     model: Model
@@ -37,8 +41,24 @@ class Evaluation:
     jacobian: np.ndarray
     runs: np.ndarray
     offsets: np.ndarray
-    frames: tuple[np.ndarray, ...]
+    measured_at: tuple[np.ndarray, ...]
     free_offset: bool = True
+
+    @cached_property
+    def series(self) -> np.ndarray:
+        """Number of the series that each belongs to, [frames]."""
+        counts = [used.sum(axis=0) for used in self.measured_at]
+        return np.repeat(np.arange(sum(map(len, counts))), np.concatenate(counts))
+
+    def each_series(self) -> Iterator[tuple[Simulation, int, np.ndarray, np.ndarray]]:
+        """Of every series: the simulation, the number of the output, the frames of the run that it has [n], and where
+        they are [frames].
+        """
+        number = 0
+        for simulation, used in zip(self.simulations, self.measured_at, strict=True):
+            for output, here in enumerate(used.T):
+                yield simulation, output, here, self.series == number
+                number += 1
 
     @property
     def mean_absolute_error(self) -> float:
@@ -67,17 +87,17 @@ class Evaluation:
             residual=self.residual[here],
             jacobian=self.jacobian[here],
             runs=np.repeat(np.arange(len(numbers)), [int((self.runs == n).sum()) for n in numbers]),
-            offsets=self.offsets[list(numbers)],
-            frames=tuple(self.frames[number] for number in numbers),
+            offsets=np.reshape(self.offsets, (len(self.simulations), -1))[list(numbers)].ravel(),
+            measured_at=tuple(self.measured_at[number] for number in numbers),
         )
 
     def simulated(self) -> np.ndarray:
-        """The simulated series at the frames of `residual`, the mean of every run removed, [frames]."""
-        chosen = [s.sin_theta[used] for s, used in zip(self.simulations, self.frames, strict=True)]
-        return np.concatenate([s - s.mean() if self.free_offset else s for s in chosen])
+        """The simulated outputs at the frames of `residual`, the mean of every series removed, [frames]."""
+        chosen = [s.outputs[used, output] for s, output, used, _ in self.each_series()]
+        return np.concatenate([s - s.mean() if self.free_offset and len(s) else s for s in chosen])
 
     def measured(self) -> np.ndarray:
-        """The measured series at the same frames, the mean of every run removed, [frames]."""
+        """The measured outputs at the same frames, the mean of every series removed, [frames]."""
         return self.simulated() + self.residual
 
 
@@ -88,7 +108,7 @@ _CLOSE = 0.15
 class Problem:
     """Measured runs to be explained; `evaluate` is the only thing that simulates.
 
-    free_offset: whether nothing tells the offset that the frames of a run share.
+    free_offset: whether nothing tells the offset that the frames of a series share.
     """
 
     free_offset = True
@@ -100,7 +120,7 @@ class Problem:
         noise: NoiseModel | None = None,
         time_limit: TimeLimit | None = None,
     ) -> None:
-        """noise: of the measured angle, where it is known; otherwise it is looked for in the recordings.
+        """noise: of the measured outputs, where it is known; otherwise it is looked for in the recordings.
         time_limit: of the search for an explanation, whose parts look at it themselves.
         """
         if not experiments:
@@ -117,8 +137,8 @@ class Problem:
 
     @cached_property
     def largest_swing(self) -> float:
-        """Largest |sin theta| from the mean of its run, in all runs."""
-        series = [e.sin_theta[np.isfinite(e.sin_theta)] for e in self.experiments]
+        """Largest |output| from the mean of its series."""
+        series = [s[np.isfinite(s)] for e in self.experiments for s in e.outputs.T]
         return max((float(np.abs(s - s.mean()).max()) for s in series if len(s)), default=0.0)
 
     @property
@@ -174,31 +194,31 @@ class Problem:
         return results
 
     def _collect(self, model: Model, names: tuple[str, ...], simulations: list[Simulation]) -> Evaluation:
-        residuals, jacobians, runs, offsets, frames = [], [], [], [], []
+        residuals, jacobians, runs, offsets, measured_at = [], [], [], [], []
         for number, (experiment, simulation) in enumerate(zip(self.experiments, simulations, strict=True)):
-            used = np.isfinite(experiment.sin_theta) & np.isfinite(simulation.sin_theta)
+            measured, simulated = experiment.outputs, simulation.outputs
+            used = np.isfinite(measured) & np.isfinite(simulated)
             if not used.any():
                 raise SysidError(
                     f"{experiment.name} has no frame with both a measured and a simulated angle; "
                     "check its time column and initial_time_s"
                 )
-            difference = (experiment.sin_theta - simulation.sin_theta)[used]
-            slopes = simulation.slopes[used]
-            if not np.isfinite(slopes).all():
-                lost = [
-                    name
-                    for name, column in zip(names, slopes.T, strict=True)
-                    if not np.isfinite(column).all()
-                ]
-                raise SimulationError(
-                    f"{experiment.name}: the derivatives by {', '.join(lost)} are not finite there; "
-                    "choose another start, or leave these parameters as they are"
-                )
-            offsets.append(difference.mean() if self.free_offset else 0.0)
-            residuals.append(difference - offsets[-1])
-            jacobians.append(slopes - slopes.mean(axis=0) if self.free_offset else slopes)
-            runs.append(np.full(used.sum(), number))
-            frames.append(used)
+            measured_at.append(used)
+            for output, here in enumerate(used.T):
+                difference = measured[here, output] - simulated[here, output]
+                slopes = simulation.output_slopes[here, output]
+                if not np.isfinite(slopes).all():
+                    finite = np.isfinite(slopes).all(axis=0)
+                    lost = [name for name, known in zip(names, finite, strict=True) if not known]
+                    raise SimulationError(
+                        f"{experiment.name}: the derivatives by {', '.join(lost)} are not finite there; "
+                        "choose another start, or leave these parameters as they are"
+                    )
+                centred = self.free_offset and len(difference) > 0
+                offsets.append(difference.mean() if centred else 0.0)
+                residuals.append(difference - offsets[-1])
+                jacobians.append(slopes - slopes.mean(axis=0) if centred else slopes)
+                runs.append(np.full(len(difference), number))
         return Evaluation(
             model,
             names,
@@ -207,7 +227,7 @@ class Problem:
             np.concatenate(jacobians),
             np.concatenate(runs),
             np.array(offsets),
-            tuple(frames),
+            tuple(measured_at),
             self.free_offset,
         )
 

@@ -11,21 +11,17 @@ _LAGS_S = (0.0, 0.03, 0.1, 0.3)
 
 
 def regressors(evaluation: Evaluation) -> np.ndarray:
-    """Features of every frame, the mean of every run removed and scaled to unit length, [frames, features]."""
+    """Features of every frame, the mean of every series removed and scaled to unit length, [frames, features]."""
     parts = []
-    for number, simulation in enumerate(evaluation.simulations):
-        used = evaluation.frames[number]
-        parts.append(_features(simulation.time, _filled(simulation.sin_theta), simulation.contraction)[used])
+    for simulation, output, used, _ in evaluation.each_series():
+        moved = np.nan_to_num(simulation.outputs[:, output])
+        parts.append(_features(simulation.time, moved, simulation.contraction)[used])
     columns = np.concatenate(parts)
-    for run in np.unique(evaluation.runs):
-        here = evaluation.runs == run
+    for one in np.unique(evaluation.series):
+        here = evaluation.series == one
         columns[here] -= columns[here].mean(axis=0)
     length = np.linalg.norm(columns, axis=0)
     return columns[:, length > 1e-9] / length[length > 1e-9]
-
-
-def _filled(series: np.ndarray) -> np.ndarray:
-    return np.nan_to_num(series, nan=0.0)
 
 
 def _features(time: np.ndarray, angle: np.ndarray, contraction: np.ndarray) -> np.ndarray:

@@ -110,10 +110,10 @@ def _as_read(problem: Problem, reading: Reading) -> Problem:
 
 
 def _rate(seen: Evaluation) -> np.ndarray:
-    """The simulated angular rate [1/s] at the frames of the residual, the mean of every run removed, [frames]."""
+    """Rates [1/s] of the simulated outputs at the frames of the residual, the mean of every series removed, [frames]."""
     rates = [
-        np.gradient(np.nan_to_num(s.sin_theta), s.time)[used]
-        for s, used in zip(seen.simulations, seen.frames, strict=True)
+        np.gradient(np.nan_to_num(s.outputs[:, output]), s.time)[used]
+        for s, output, used, _ in seen.each_series()
     ]
     return np.concatenate([rate - rate.mean() for rate in rates])
 
@@ -220,21 +220,25 @@ def _best_shift(seen: Evaluation, number: int) -> tuple[float, float]:
     there, the run's own parameters followed.
     """
     here = seen.runs == number
-    time = seen.simulations[number].time[seen.frames[number]]
+    whole = seen.simulations[number].time
+    parts = [(whole[used], own[here]) for s, _, used, own in seen.each_series() if own[here].any()]
     simulated, measured = seen.simulated()[here], seen.measured()[here]
-    frame = float(np.median(np.diff(time)))
-    lags = np.arange(-_LONGEST_SHIFT_S, _LONGEST_SHIFT_S, frame)
-    moved = np.array([_moved(time, simulated, lag) for lag in lags])
+    lags = np.arange(-_LONGEST_SHIFT_S, _LONGEST_SHIFT_S, float(np.median(np.diff(whole))))
+    moved = np.array([_moved(parts, simulated, lag) for lag in lags])
     power = np.maximum((moved**2).sum(axis=1), 1e-300)
     lag = float(lags[int(np.argmax(np.maximum(moved @ measured, 0.0) ** 2 / power))])
-    columns = [_moved(time, column, lag) for column in seen.jacobian[here].T]
-    residual = measured - _moved(time, simulated, lag)
-    return lag, _followed(seen, residual, np.reshape(columns, (-1, len(time))).T)
+    columns = [_moved(parts, column, lag) for column in seen.jacobian[here].T]
+    residual = measured - _moved(parts, simulated, lag)
+    return lag, _followed(seen, residual, np.reshape(columns, (-1, len(residual))).T)
 
 
-def _moved(time: np.ndarray, series: np.ndarray, lag: float) -> np.ndarray:
-    later = np.interp(time - lag, time, series)
-    return later - later.mean()
+def _moved(parts: Sequence[tuple[np.ndarray, np.ndarray]], values: np.ndarray, lag: float) -> np.ndarray:
+    """Values [frames] of a run so much later; parts: time [s] of every output, and where it is [frames]."""
+    out = np.empty_like(values)
+    for time, here in parts:
+        later = np.interp(time - lag, time, values[here])
+        out[here] = later - later.mean()
+    return out
 
 
 def _inverted(experiment: Experiment) -> Experiment:

@@ -226,7 +226,7 @@ def _error_removed(found: Searched, name: str, noise: NoiseModel) -> float:
 def _expected_squares(base: FittedModel, noise: NoiseModel) -> float:
     """Expected sum of squares of the noise after the fitted directions and run means are taken out."""
     basis = orthonormal(base.evaluation.jacobian)
-    draws = noise.sample(base.evaluation.runs, 100, np.random.default_rng(1))
+    draws = noise.sample(base.evaluation.series, 100, np.random.default_rng(1))
     draws -= basis @ (basis.T @ draws)
     return float((draws**2).sum(axis=0).mean())
 

@@ -99,8 +99,8 @@ def _at_bound(p: Parameter) -> str:
 def fitted_model(evaluation: Evaluation, iterations: int = 0) -> FittedModel:
     """An evaluation at fitted values, with standard errors, bounds reached and parameters that are not determined."""
     model, names = evaluation.model, evaluation.names
-    noise = estimate_noise(evaluation.residual, evaluation.runs, evaluation.jacobian, "what the fit leaves")
-    covariance, undetermined = parameter_covariance(evaluation.jacobian, noise, evaluation.runs)
+    noise = estimate_noise(evaluation.residual, evaluation.series, evaluation.jacobian, "what the fit leaves")
+    covariance, undetermined = parameter_covariance(evaluation.jacobian, noise, evaluation.series)
     by_noise = np.sqrt(np.diag(covariance))
     errors = wider_where_runs_disagree(by_noise, evaluation.jacobian, evaluation.residual, evaluation.runs)
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -19,15 +19,6 @@ _SHORTEST_SHARE, _LONGEST_SHARE = 1 / 64, 0.6
 """Of a run; a horizon of more than that is the run itself."""
 
 
-class Horizon(Experiment):
-    """An experiment of which only the first frames are looked at; those of its run."""
-
-    @property
-    def sin_theta(self) -> np.ndarray:
-        """Measured sine of the bending angle at the run's frames, [n]."""
-        return self.recording.sin_theta[: len(self.run.time)]
-
-
 def in_phase(evaluation: Evaluation) -> bool:
     """Whether a model moves with the body: it leaves less than half of the power of what was measured."""
     measured = evaluation.measured()
@@ -64,7 +55,7 @@ def _first(experiment: Experiment, duration: float) -> Experiment:
     count = int(np.searchsorted(run.time, run.start + duration, side="right"))
     first = int(np.searchsorted(run.time, run.start))
     count = min(max(count, first + _FEWEST_FRAMES), len(run.time))
-    return Horizon(experiment.recording, replace(run, time=run.time[:count]))
+    return replace(experiment, run=replace(run, time=run.time[:count]))
 
 
 def _first_swing(experiment: Experiment) -> float:
@@ -74,7 +65,8 @@ def _first_swing(experiment: Experiment) -> float:
         cycle = drive_cycle(run.time, run.schedule.at(run.time))
         swing = whole if cycle is None else 0.5 * cycle.period
     else:
-        used = (run.time >= run.start) & np.isfinite(experiment.sin_theta)
-        found = fit_swing(run.time[used], experiment.sin_theta[used])
+        first = experiment.outputs[:, 0]
+        used = (run.time >= run.start) & np.isfinite(first)
+        found = fit_swing(run.time[used], first[used])
         swing = whole if found is None else 1.0 / found.frequency
     return float(np.clip(swing, _SHORTEST_SHARE * whole, whole))

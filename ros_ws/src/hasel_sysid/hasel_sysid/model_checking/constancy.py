@@ -98,7 +98,7 @@ def _trend(
     scale = np.linalg.norm(columns, axis=0)
     scale[scale == 0] = 1.0
     change = np.linalg.lstsq(columns / scale, evaluation.residual, rcond=1e-7)[0] / scale
-    covariance, _ = parameter_covariance(columns, noise, evaluation.runs)
+    covariance, _ = parameter_covariance(columns, noise, evaluation.series)
     # what else is wrong in some runs must not pass for a trend of this effect
     left = evaluation.residual - columns @ change
     errors = wider_where_runs_disagree(np.sqrt(np.diag(covariance)), columns, left, evaluation.runs)

@@ -64,10 +64,10 @@ class GoodnessOfFit:
 def goodness_of_fit(evaluation: Evaluation, allowed: NoiseModel) -> GoodnessOfFit:
     """Lack of fit against what a right model may leave, overall and per regime (Benjamini and Hochberg 1995).
 
-    allowed: noise and discrepancy. Regimes: run, largest drive, frequency, side, quarter of the cycle.
+    allowed: noise and discrepancy. Regimes: run, output, largest drive, frequency, side, quarter of the cycle.
     """
     basis = orthonormal(evaluation.jacobian)
-    draws = allowed.sample(evaluation.runs, _DRAWS, np.random.default_rng(2), evaluation.free_offset)
+    draws = allowed.sample(evaluation.series, _DRAWS, np.random.default_rng(2), evaluation.free_offset)
     draws -= basis @ (basis.T @ draws)
     squares, by_noise = evaluation.residual**2, draws**2
     found, chances = [], []
@@ -97,8 +97,15 @@ def regimes(evaluation: Evaluation) -> Iterator[tuple[str, np.ndarray]]:
 
 
 def _labels(evaluation: Evaluation) -> dict[str, list[str]]:
-    labels: dict[str, list[str]] = {"run": [], "": [], "frequency": [], "side": [], "part of the cycle": []}
-    for simulation, used in zip(evaluation.simulations, evaluation.frames, strict=True):
+    labels: dict[str, list[str]] = {
+        "run": [],
+        "output": [],
+        "": [],
+        "frequency": [],
+        "side": [],
+        "part of the cycle": [],
+    }
+    for simulation, output, used, _ in evaluation.each_series():
         run = simulation.run
         count, time = int(used.sum()), run.time[used]
         voltage = None if run.schedule is None else run.schedule.at(time)
@@ -116,6 +123,7 @@ def _labels(evaluation: Evaluation) -> dict[str, list[str]]:
         if cycle is not None:
             part = [f"{int(_QUARTERS * p) + 1} of {_QUARTERS}" for p in cycle.phase(time)]
         labels["run"] += [run.name] * count
+        labels["output"] += [str(output + 1)] * count
         labels[""] += [level] * count
         labels["frequency"] += [f"{1 / cycle.period:.3g} Hz" if cycle else ""] * count
         labels["side"] += side

@@ -25,7 +25,7 @@ def bounded_noise(fits: Sequence[Evaluation]) -> NoiseModel:
     best = min(fits, key=lambda e: e.sum_of_squares)
     columns = np.column_stack([best.jacobian, regressors(best)])
     looks = estimate_noise(
-        unexplained_by(columns, best.residual), best.runs, columns, "what the best set leaves"
+        unexplained_by(columns, best.residual), best.series, columns, "what the best set leaves"
     )
     others = [noise_between_periods(best), noise_above_the_band(best)]
     bounds = [b.standard_deviation for b in others if b] + [looks.standard_deviation]
@@ -39,20 +39,19 @@ def noise_between_periods(evaluation: Evaluation) -> NoiseModel | None:
     What a model misses in every period alike drops out. What it misses while the motion builds up does not, so this
     errs to the loud side only.
     """
-    residual, columns, runs = [], [], []
-    for number, (simulation, used) in enumerate(zip(evaluation.simulations, evaluation.frames, strict=True)):
+    residual, columns, series = [], [], []
+    for number, (simulation, _, used, here) in enumerate(evaluation.each_series()):
         lag = _frames_per_period(simulation.run.time[used], simulation.run.schedule)
-        here = evaluation.runs == number
         if lag is None or here.sum() < lag + _FEWEST_FRAMES:
             continue
         residual.append(_differences(evaluation.residual[here], lag))
         columns.append(_differences(evaluation.jacobian[here], lag))
-        runs.append(np.full(len(residual[-1]), number))
+        series.append(np.full(len(residual[-1]), number))
     if not residual:
         return None
     return estimate_noise(
         np.concatenate(residual),
-        np.concatenate(runs),
+        np.concatenate(series),
         orthonormal(np.concatenate(columns)),
         "what differs between periods of the drive",
     )
@@ -76,7 +75,7 @@ def noise_above_the_band(evaluation: Evaluation) -> NoiseModel | None:
     """
     lowest = _ABOVE * _fastest(evaluation)
     omega, power = [], []
-    for frame_time, residual in _runs(evaluation, evaluation.residual):
+    for frame_time, residual in _each(evaluation, evaluation.residual):
         frequency, spectrum = _spectrum(residual, frame_time)
         above = frequency > lowest
         omega.append(2 * np.pi * frequency[above] * frame_time)
@@ -109,7 +108,7 @@ def _fastest(evaluation: Evaluation) -> float:
     simulated = evaluation.simulated()
     found = 0.0
     for (frame_time, own), (_, measured) in zip(
-        _runs(evaluation, simulated), _runs(evaluation, simulated + evaluation.residual), strict=True
+        _each(evaluation, simulated), _each(evaluation, simulated + evaluation.residual), strict=True
     ):
         frequency, power = _spectrum(own, frame_time)
         rate = np.cumsum(power * frequency**2)
@@ -121,13 +120,13 @@ def _fastest(evaluation: Evaluation) -> float:
     return float(found)
 
 
-def _runs(evaluation: Evaluation, series: np.ndarray) -> list[tuple[float, np.ndarray]]:
-    """Frame time [s] and part of a series [frames] of every run."""
+def _each(evaluation: Evaluation, values: np.ndarray) -> list[tuple[float, np.ndarray]]:
+    """Frame time [s] and values [frames] of every output of every run."""
     parts = []
-    for number, (simulation, used) in enumerate(zip(evaluation.simulations, evaluation.frames, strict=True)):
+    for simulation, _, used, here in evaluation.each_series():
         time = simulation.run.time[used]
         step = float(np.median(np.diff(time))) if len(time) > 1 else 1.0
-        parts.append((step, series[evaluation.runs == number]))
+        parts.append((step, values[here]))
     return parts
 
 

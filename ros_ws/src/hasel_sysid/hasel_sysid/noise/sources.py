@@ -48,7 +48,7 @@ def _of(stretches: Sequence[np.ndarray], source: str) -> NoiseModel:
 def differences_of_repeats(experiments: Sequence[Experiment]) -> list[np.ndarray]:
     """Differences [frames] of runs with the same frames, drive and start, scaled to the noise of one of them.
 
-    The mean of each is removed, as every run's offset is. Of three repeats the third is left out.
+    The mean of each is removed, as every series' offset is. Of three repeats the third is left out.
     """
     found, rest = [], list(experiments)
     while rest:
@@ -57,10 +57,10 @@ def differences_of_repeats(experiments: Sequence[Experiment]) -> list[np.ndarray
         if twin is None:
             continue
         rest.remove(twin)
-        difference = (one.sin_theta - twin.sin_theta) / np.sqrt(2.0)
-        difference = difference[np.isfinite(difference)]
-        if len(difference) >= _FEWEST_FRAMES and np.ptp(difference) > 0:
-            found.append(difference - difference.mean())
+        for difference in ((one.outputs - twin.outputs) / np.sqrt(2.0)).T:
+            seen = difference[np.isfinite(difference)]
+            if len(seen) >= _FEWEST_FRAMES and np.ptp(seen) > 0:
+                found.append(seen - seen.mean())
     return found
 
 
@@ -81,17 +81,19 @@ def _same(one: Run, other: Run) -> bool:
 
 
 def rest_stretches(experiments: Sequence[Experiment]) -> list[np.ndarray]:
-    """The measured angle [frames] while the body rests at the beginning of each run, the stretch's mean removed.
+    """Every measured output [frames] while the body rests at the beginning of each run, the stretch's mean removed.
 
-    Runs without at least 16 such frames are left out.
+    Series without at least 16 such frames are left out.
     """
-    return [stretch for e in experiments if (stretch := _at_rest(e)) is not None]
+    return [stretch for e in experiments for one in e.outputs.T if (stretch := _at_rest(e, one)) is not None]
 
 
-def _at_rest(experiment: Experiment) -> np.ndarray | None:
-    measured = np.isfinite(experiment.sin_theta)
+def _at_rest(experiment: Experiment, series: np.ndarray) -> np.ndarray | None:
+    measured = np.isfinite(series)
+    if not measured.any():
+        return None
     before = measured & (experiment.run.time < _start(experiment))
-    early, motion = experiment.sin_theta[before], float(np.std(experiment.sin_theta[measured]))
+    early, motion = series[before], float(np.std(series[measured]))
     count = _still_frames(early)
     if count < _FEWEST_FRAMES:
         return None

@@ -70,13 +70,18 @@ def leave_one_run_out(fitted: Whitened, measured: np.ndarray, prior_runs: float)
     folds = fitted.runs
     alone = len(np.unique(folds)) == 1
     if alone:
-        folds = _PIECES * np.arange(len(folds)) // len(folds) % _PARTS
+        folds = np.concatenate([_pieces(int(count)) for count in np.bincount(fitted.series)])
     numbers = np.unique(folds)
     densities = [
         _density(fitted.basis, fitted.residual, folds == fold, prior_runs / len(numbers)) for fold in numbers
     ]
     powers = None if alone else np.array([(measured[folds == fold] ** 2).sum() for fold in numbers])
     return Elpd(np.array(densities), fitted.residual, powers)
+
+
+def _pieces(frames: int) -> np.ndarray:
+    """Number of the fold of each frame of a series."""
+    return _PIECES * np.arange(frames) // frames % _PARTS if frames else np.zeros(0, dtype=int)
 
 
 def _density(basis: np.ndarray, residual: np.ndarray, here: np.ndarray, prior: float) -> float:

@@ -2,7 +2,7 @@
 
 Measured noise, white and shared by neighbouring frames; one slow discrepancy that no model is without (Kennedy and
 O'Hagan 2001); the discretisation error of the likeliest model, in an unknown amount in every run; an offset in every
-run, free where nothing tells it.
+series, free where nothing tells it.
 """
 
 from collections.abc import Sequence
@@ -103,12 +103,14 @@ def _is_a_double(candidate: Candidate, fit: FittedModel) -> bool:
 @dataclass(frozen=True, eq=False)
 class Whitened:
     """residual [frames]: whitened, what the parameters can still follow taken out of it (the step from least squares to
-    generalised least squares); basis [frames, n]: orthonormal, what they can follow; runs [frames].
+    generalised least squares); basis [frames, n]: orthonormal, what they can follow; runs, series: number of the run,
+    and of its output, that each belongs to, [frames].
     """
 
     residual: np.ndarray
     basis: np.ndarray
     runs: np.ndarray
+    series: np.ndarray
 
     @property
     def logarithm(self) -> float:
@@ -131,13 +133,15 @@ class Likelihood:
         discretisation: Sequence[np.ndarray] = (),
         shared: Sequence[np.ndarray] = (),
         free_offset: bool = True,
+        series: np.ndarray | None = None,
     ) -> None:
         """runs [frames]; discrepancy: rms of what no model has, as slow as noise can be; discretisation: changes
-        [frames] by finer numerics, each in an unknown amount with a standard deviation of one in every run;
-        shared: changes [frames] likewise, each in one amount for all runs; free_offset: whether nothing tells the
-        offset of a run.
+        [frames] by finer numerics, each in an unknown amount with a standard deviation of one in every
+        series; shared: changes [frames] likewise, each in one amount for all runs; free_offset: whether nothing tells
+        the offset of a series; series [frames]: one output of one run, which alone share noise (default: a run).
         """
         self.noise, self.runs, self.discrepancy, self._free_offset = noise, runs, discrepancy, free_offset
+        self.series = runs if series is None else series
         self._changes = np.column_stack([np.zeros((len(runs), 0)), *discretisation])
         self._shared = np.column_stack([np.zeros((len(runs), 0)), *shared])
 
@@ -148,12 +152,12 @@ class Likelihood:
 
     def whiten(self, columns: np.ndarray) -> np.ndarray:
         """Columns [frames] or [frames, n] in units of independent noise of variance one, offsets taken out."""
-        out = self._by_run(columns.reshape(len(columns), -1))
+        out = self._by_series(columns.reshape(len(columns), -1))
         directions, left = self._known_of_all
         out -= directions @ ((1 - left)[:, None] * (directions.T @ out))
         return out.reshape(columns.shape)
 
-    def _by_run(self, columns: np.ndarray) -> np.ndarray:
+    def _by_series(self, columns: np.ndarray) -> np.ndarray:
         out = np.empty(columns.shape)
         for here, directions, left in self._known:
             part = self._innovations(columns[here])
@@ -168,21 +172,21 @@ class Likelihood:
         """A residual [frames] of a model with these derivatives [frames, n]."""
         white = self.whiten(np.column_stack([residual, jacobian]))
         basis = orthonormal(white[:, 1:])
-        return Whitened(white[:, 0] - basis @ (basis.T @ white[:, 0]), basis, self.runs)
+        return Whitened(white[:, 0] - basis @ (basis.T @ white[:, 0]), basis, self.runs, self.series)
 
     @cached_property
     def _known_of_all(self) -> tuple[np.ndarray, np.ndarray]:
         """Directions of what all runs share, whitened, and what is left of each."""
-        return _uncertain(self._by_run(self._shared))
+        return _uncertain(self._by_series(self._shared))
 
     @cached_property
     def _known(self) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Of every run: its frames, the directions of a free offset and the discretisation, whitened, and what is left
+        """Of every series: its frames, the directions of a free offset and the discretisation, whitened, and what is left
         of each.
         """
         found = []
-        for run in np.unique(self.runs):
-            here = self.runs == run
+        for one in np.unique(self.series):
+            here = self.series == one
             offset = self._innovations(np.ones((int(here.sum()), int(self._free_offset))))
             offset /= np.linalg.norm(offset, axis=0)
             changes = self._innovations(self._changes[here])
@@ -193,7 +197,7 @@ class Likelihood:
         return found
 
     def _innovations(self, columns: np.ndarray) -> np.ndarray:
-        """Of the frames of one run."""
+        """Of the frames of one series."""
         slow = np.array([self.noise.coloured, self.discrepancy**2])
         white = max(self.noise.white, 1e-9 * float(slow.sum()))
         memory = np.array([self.noise.correlation, LONGEST_CORRELATION])

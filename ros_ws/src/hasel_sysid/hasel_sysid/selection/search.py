@@ -135,13 +135,15 @@ class Search:
     def _judge(self) -> None:
         """All fitted models by one covariance: the noise as it is known now, the discretisation of the likeliest."""
         noise = self.problem.measured_noise or bounded_noise([f.fit.evaluation for f in self.fits.values()])
-        runs = self.baseline.evaluation.runs
-        measured = self.baseline.evaluation.measured()
+        known = self.baseline.evaluation
+        measured = known.measured()
         discrepancy = self.problem.discrepancy
         about = self._likeliest() if self.models else NOTHING
         changes = self._refinement_changes(about)
         shared, free = self.problem.shared_errors, self.problem.free_offset
-        self.likelihood = Likelihood(noise, runs, discrepancy, list(changes.values()), shared, free)
+        self.likelihood = Likelihood(
+            noise, known.runs, discrepancy, list(changes.values()), shared, free, known.series
+        )
         self.models = {}
         enough = self.policy.near_noise * self.likelihood.allowed.mean_absolute
         for names, fitted in self.fits.items():

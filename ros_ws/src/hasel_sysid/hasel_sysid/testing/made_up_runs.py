@@ -68,7 +68,7 @@ def evaluation_of_runs(
         )
         for n, (run, length) in enumerate(zip(runs, lengths, strict=True))
     )
-    frames = tuple(np.ones(length, dtype=bool) for length in lengths)
+    frames = tuple(np.ones((length, 1), dtype=bool) for length in lengths)
     return Evaluation(model, names, simulations, residual, slopes, of_runs, np.zeros(len(runs)), frames)
 
 

@@ -164,25 +164,26 @@ class MadeUpProblem(Problem):
         return [self._made_up(model, tuple(by)) for model, by in zip(models, names, strict=True)]
 
     def _made_up(self, model: Model, names: tuple[str, ...]) -> Evaluation:
-        series = self._of_experiments(self.world.sin_theta(model))
+        return self._collect(model, names, self.simulations(self.world, model, names))
+
+    def simulations(self, world: MadeUpWorld, model: Model, names: tuple[str, ...]) -> list[Simulation]:
+        """Of every experiment, by a world."""
+        series = self._of_experiments(world.sin_theta(model))
         slopes = [np.zeros((len(own), len(names))) for own in series]
         for index, name in enumerate(names):
             step = 1e-6 * max(abs(model.values[name]), 1e-6)
             more, less = (
                 self._of_experiments(
-                    self.world.sin_theta_at(
-                        model.effects, {**model.values, name: model.values[name] + change}
-                    )
+                    world.sin_theta_at(model.effects, {**model.values, name: model.values[name] + change})
                 )
                 for change in (step, -step)
             )
             for of_run, above, below in zip(slopes, more, less, strict=True):
                 of_run[:, index] = (above - below) / (2 * step)
-        simulations = [
+        return [
             Simulation(one.run, own, names, of_run, np.zeros((len(own), 3, 2)), np.zeros((len(own), 2)))
             for one, own, of_run in zip(self.experiments, series, slopes, strict=True)
         ]
-        return self._collect(model, names, simulations)
 
     def _of_experiments(self, of_runs: list[np.ndarray]) -> list[np.ndarray]:
         """Of what is known of every run of the world, what belongs to the experiments, or to their first frames."""

@@ -89,7 +89,7 @@ class Talk:
             )
         )
 
-    def until(self, condition, seconds: float = 60.0) -> None:
+    def until(self, condition, seconds: float = 180.0) -> None:
         """Spin until something is true."""
         end = time.monotonic() + seconds
         while not condition():

@@ -14,7 +14,7 @@ PRIOR_RUNS = 0.1
 def fitted(columns, series):
     """White noise of variance one, without offsets."""
     basis = orthonormal(columns)
-    return Whitened(series - basis @ (basis.T @ series), basis, RUNS)
+    return Whitened(series - basis @ (basis.T @ series), basis, RUNS, RUNS)
 
 
 def test_it_is_the_density_of_every_run_given_the_others():
