@@ -9,7 +9,7 @@ from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import Model, load_model
 from hasel_sim.simulate import simulate_many
 from hasel_sim.swimming.boxes import Boxes
-from hasel_sysid.dataset import experiment
+from hasel_sysid.experiment import experiment_of
 from hasel_sysid.improvement import improve
 from hasel_sysid.problem import Problem
 
@@ -60,7 +60,7 @@ def found_in(truth: Model, hidden: str, volts: tuple[float, ...], density: float
     runs = [box.run(truth, SECONDS) for box in boxes]
     rng = np.random.default_rng(5)
     seen = [
-        experiment(
+        experiment_of(
             Recording(
                 str(box),
                 swum.time,

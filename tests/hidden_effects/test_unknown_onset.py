@@ -7,8 +7,9 @@ from hasel_bringup.hidden_truth.truth import NOMINAL, NUMERICS, truth_model
 from hasel_recording import Recording
 from hasel_sim.model import load_model
 from hasel_sim.parallel import simulate_all
-from hasel_sysid.dataset import Experiment, prepared
+from hasel_sysid.dataset import prepared
 from hasel_sysid.estimation import identify
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.problem import Problem
 
 NOISE = 0.003

@@ -1,74 +1,21 @@
-"""Recordings as experiments: what was measured, and the run that a simulator can repeat."""
+"""Recordings read as experiments, those that can be simulated, with the channels and levels of a model."""
 
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from hasel_recording import Recording, RecordingError, RecordingWarning, read_recordings
 from hasel_recording.plateaus import FINEST, roundest
-from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import Model
-from hasel_sim.run import Run
 
 from hasel_sysid.data_gate import refusal
 from hasel_sysid.drive_match import check_levels, matched
 from hasel_sysid.errors import SysidError
+from hasel_sysid.experiment import Experiment, experiment_of
 
 _MOST_LEVELS = 8
 """More voltages than this (a ramp, a sine) share so many amplitudes, spread over their range."""
-
-
-@dataclass(frozen=True)
-class Experiment:
-    """A recording and the run that repeats it, or its first frames; sin_theta [n] is measured at run.time, NaN where it
-    is not.
-    """
-
-    recording: Recording
-    run: Run
-
-    @property
-    def name(self) -> str:
-        """Name of the recording."""
-        return self.recording.name
-
-    @property
-    def sin_theta(self) -> np.ndarray:
-        """Measured sine of the bending angle, [n]."""
-        return self.recording.sin_theta[: len(self.run.time)]
-
-    @property
-    def outputs(self) -> np.ndarray:
-        """What was measured of what a simulation gives: sin theta alone, [n, outputs]."""
-        return self.sin_theta[:, None]
-
-
-def experiment(recording: Recording) -> Experiment:
-    """The run of a recording, its start taken from the header lines.
-
-    Raises SysidError for a header value that is not understood.
-    """
-    header = recording.metadata
-    state = header.get("initial_state", "rest")
-    if state not in ("rest", "static_equilibrium"):
-        raise SysidError(
-            f"{recording.name}: initial_state is '{state}'; expected rest or static_equilibrium: correct the header"
-        )
-    try:
-        factor = float(header.get("initial_load_factor", 1.0))
-        start = float(header["initial_time_s"]) if "initial_time_s" in header else None
-    except ValueError:
-        raise SysidError(
-            f"{recording.name}: initial_load_factor and initial_time_s must be numbers: correct the header"
-        ) from None
-    schedule = None
-    if recording.driven:
-        time, signal = recording.drive()
-        names = tuple(channel.name for channel in recording.channels)
-        schedule = DriveSchedule(np.asarray(time), np.asarray(signal), names)
-    return Experiment(recording, Run(recording.name, recording.time_s, schedule, state, factor, start))
 
 
 def load_experiments(
@@ -94,7 +41,7 @@ def usable(recordings: Iterable[Recording]) -> list[Experiment]:
     for recording in recordings:
         fault = refusal(recording)
         if fault is None:
-            good.append(experiment(recording))
+            good.append(experiment_of(recording))
         else:
             refused.append(str(fault))
     if not good:
@@ -113,7 +60,7 @@ def for_model(model: Model, experiments: Sequence[Experiment]) -> list[Experimen
     chosen = matched(model, [each.recording for each in experiments])
     check_levels(model, chosen)
     return [
-        each if recording is each.recording else experiment(recording)
+        each if recording is each.recording else experiment_of(recording)
         for each, recording in zip(experiments, chosen, strict=True)
     ]
 

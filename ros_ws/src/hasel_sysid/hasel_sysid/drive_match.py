@@ -23,12 +23,6 @@ def model_channels(model: Model) -> tuple[DriveChannel, ...]:
     return tuple(channel.column for channel in model.description.channels)
 
 
-def drive_unit(model: Model) -> str:
-    """Unit of everything that drives a model; empty where units differ or nothing does."""
-    units = {channel.unit for channel in model.description.channels}
-    return units.pop() if len(units) == 1 else ""
-
-
 def matched(model: Model, recordings: Sequence[Recording]) -> list[Recording]:
     """The recordings with exactly the model's channels, in its order.
 

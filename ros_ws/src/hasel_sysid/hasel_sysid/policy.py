@@ -19,6 +19,7 @@ class Policy:
     most_effects: more at a time could imitate anything.
     prior_runs: what is known of every parameter before a run is predicted, in runs: little, and not nothing, since an
         amplitude that one run alone shows could not be predicted at all.
+    fewest_runs: fewer do not tell how much runs scatter.
     standard_errors: of the difference in elpd by which a larger model must be better (Breiman et al. 1984).
     confidence: standard errors of a log-likelihood ratio (Vuong 1989) within which two models of one size are not told
         apart, and of a value within which it may lie at the end of its range though it seems to lie beyond: 95 %.
@@ -35,6 +36,7 @@ class Policy:
     lack_of_fit: float = 1.5
     most_effects: int = 3
     prior_runs: float = 0.1
+    fewest_runs: int = 4
     standard_errors: float = 1.0
     confidence: float = 2.0
     odds: float = 20.0

@@ -15,8 +15,8 @@ from hasel_sim.model import Model
 from hasel_sim.parallel import submit_all
 from hasel_sim.run import Simulation
 
-from hasel_sysid.dataset import Experiment
 from hasel_sysid.errors import SysidError
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.noise.sources import measured_noise
 from hasel_sysid.policy import POLICY

@@ -12,8 +12,8 @@ import numpy.typing as npt
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
-from hasel_sysid.dataset import Experiment
 from hasel_sysid.estimation.least_squares import bounded_change, values_and_bounds
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Evaluation, Problem
 
@@ -110,7 +110,7 @@ def _as_read(problem: Problem, reading: Reading) -> Problem:
 
 
 def _rate(seen: Evaluation) -> np.ndarray:
-    """Rates [1/s] of the simulated outputs at the frames of the residual, the mean of every series removed, [frames]."""
+    """Rates [1/s] of the simulated outputs at the frames of the residual, without the mean of every series."""
     rates = [
         np.gradient(np.nan_to_num(s.outputs[:, output]), s.time)[used]
         for s, output, used, _ in seen.each_series()

@@ -11,7 +11,7 @@ from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import load_model
 from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run
-from hasel_sysid.dataset import Experiment
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.problem import Evaluation, Problem
 from hasel_sysid.where_it_fails.run_series import RunSeries
 from scipy.signal import lsim

@@ -2,14 +2,15 @@
 
 import numpy as np
 from hasel_recording import Recording
-from hasel_sysid.dataset import drive_levels, experiment
+from hasel_sysid.dataset import drive_levels
+from hasel_sysid.experiment import experiment_of
 
 
 def _runs(*levels: float):
     """One run per level, each held for a second."""
     time = np.arange(120) / 120
     return [
-        experiment(Recording(f"run{level}", time, np.zeros(120), np.tile([level, 0.0], (120, 1))))
+        experiment_of(Recording(f"run{level}", time, np.zeros(120), np.tile([level, 0.0], (120, 1))))
         for level in levels
     ]
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from hasel_recording import HASEL_PAIR, DriveChannel, RecordingWarning
 from hasel_sim.model import load_model
-from hasel_sysid.dataset import experiment, for_model
+from hasel_sysid.dataset import for_model
 from hasel_sysid.drive_match import matched
 from hasel_sysid.errors import SysidError
+from hasel_sysid.experiment import experiment_of
 
 THIRD = DriveChannel("third", "voltage", "V")
 
@@ -74,12 +75,12 @@ def test_another_quantity_is_refused(made_recording):
 def test_a_level_far_beyond_the_fitted_ones_is_refused(made_recording):
     """Between and a little above the fitted levels the model interpolates; far beyond it is not asked."""
     model = load_model("swimmer").with_levels([3500.0, 4500.0])
-    inside = [experiment(made_recording(voltage=4000.0)), experiment(made_recording(voltage=5500.0))]
+    inside = [experiment_of(made_recording(voltage=4000.0)), experiment_of(made_recording(voltage=5500.0))]
     assert for_model(model, inside) == inside
     with pytest.raises(
         SysidError, match=r"drives 'upper' with 9000 V, far beyond the levels .*\(3500, 4500 V\)"
     ):
-        for_model(model, [experiment(made_recording(voltage=9000.0))])
+        for_model(model, [experiment_of(made_recording(voltage=9000.0))])
 
 
 def test_amplitudes_named_in_kilovolts_are_taken_for_that(made_recording):
@@ -88,7 +89,7 @@ def test_amplitudes_named_in_kilovolts_are_taken_for_that(made_recording):
     with pytest.raises(
         SysidError, match=r"knows 5\.5 V: is amplitude_5500 meant where .* says amplitude_5\.5\?"
     ):
-        for_model(model, [experiment(made_recording(voltage=5500.0))])
+        for_model(model, [experiment_of(made_recording(voltage=5500.0))])
 
 
 def test_more_than_the_model_file_allows_is_refused(made_recording):
@@ -96,7 +97,7 @@ def test_more_than_the_model_file_allows_is_refused(made_recording):
     with pytest.raises(
         SysidError, match="with 45000 V, and model 'swimmer' allows 10000 V: is the column in V"
     ):
-        for_model(load_model("swimmer"), [experiment(made_recording(voltage=45000.0))])
+        for_model(load_model("swimmer"), [experiment_of(made_recording(voltage=45000.0))])
 
 
 def test_levels_are_those_of_the_channels_own_quantity(made_recording):
@@ -105,8 +106,8 @@ def test_levels_are_those_of_the_channels_own_quantity(made_recording):
     recording = made_recording(voltage=25000.0)
     run = replace(recording, drive_signal=recording.voltage[:, :1], channels=channel)
     model = load_model("arm").with_levels([10000.0, 20000.0])
-    assert for_model(model, [experiment(run)])[0].recording is run
+    assert for_model(model, [experiment_of(run)])[0].recording is run
     with pytest.raises(
         SysidError, match=r"with 25000 Pa, far beyond the levels that model 'arm' knows \(10000 Pa\)"
     ):
-        for_model(load_model("arm").with_levels([10000.0]), [experiment(run)])
+        for_model(load_model("arm").with_levels([10000.0]), [experiment_of(run)])

@@ -8,7 +8,7 @@ from hasel_recording import Recording
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import load_model
 from hasel_sim.run import Run, Simulation
-from hasel_sysid.dataset import Experiment
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.problem import Problem
 from hasel_sysid.testing.made_up_world import MadeUpWorld

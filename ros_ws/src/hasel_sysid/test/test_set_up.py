@@ -10,7 +10,8 @@ from hasel_sim.model import load_model
 from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
-from hasel_sysid.dataset import Experiment, prepared
+from hasel_sysid.dataset import prepared
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.improvement import improve
 from hasel_sysid.problem import Problem
 from hasel_sysid.result import Status

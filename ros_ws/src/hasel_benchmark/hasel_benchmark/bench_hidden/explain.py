@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 
 from hasel_sim.model import Model, load_model
-from hasel_sysid.dataset import Experiment, prepared
+from hasel_sysid.dataset import prepared
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.improvement import improve
 from hasel_sysid.problem import Problem
 

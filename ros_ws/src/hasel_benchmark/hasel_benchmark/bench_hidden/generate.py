@@ -13,7 +13,7 @@ from hasel_sim.effects.registry import find_effects
 from hasel_sim.errors import SimulationError
 from hasel_sim.parallel import simulate_all
 from hasel_sim.run import Run, Simulation
-from hasel_sysid.dataset import Experiment
+from hasel_sysid.experiment import Experiment
 
 from hasel_benchmark.bench_hidden.case import Case, draw_values, effect_source
 from hasel_benchmark.bench_hidden.noise import draw_noise, draw_offset

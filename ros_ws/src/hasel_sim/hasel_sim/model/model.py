@@ -96,6 +96,12 @@ class Model:
         return {name: parameter.value for name, parameter in self.parameters.items()}
 
     @property
+    def drive_unit(self) -> str:
+        """Unit of everything that drives the body; empty where units differ or nothing does."""
+        units = {channel.unit for channel in self.description.channels}
+        return units.pop() if len(units) == 1 else ""
+
+    @property
     def free(self) -> tuple[str, ...]:
         """Names of the parameters that a fit may change."""
         return tuple(name for name, parameter in self.parameters.items() if parameter.free)

@@ -9,8 +9,9 @@ from hasel_sim.parallel import executor
 
 from hasel_sysid.api.results import Diagnosed, Fitted, Improved, Recordings, Simulated
 from hasel_sysid.compare import compare
-from hasel_sysid.dataset import Experiment, for_model, load_experiments, prepared
+from hasel_sysid.dataset import for_model, load_experiments, prepared
 from hasel_sysid.estimation import fit_baseline, identify
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.improvement import diagnose as diagnosis_of
 from hasel_sysid.improvement import improve as improvement_of
 from hasel_sysid.problem import Problem

@@ -14,8 +14,8 @@ from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run, Simulation
 
 from hasel_sysid.bench_muscle.settled import SettledRun
-from hasel_sysid.dataset import Experiment
 from hasel_sysid.errors import SysidError
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.problem import Evaluation, Problem
 

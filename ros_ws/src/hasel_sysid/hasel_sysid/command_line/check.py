@@ -14,8 +14,9 @@ from hasel_sysid.command_line.parsers import check_parser
 from hasel_sysid.command_line.running import BAD_INPUT, run_command
 from hasel_sysid.data_gate.check import refusal
 from hasel_sysid.data_gate.summary import Summary, summary
-from hasel_sysid.dataset import experiment, for_model
+from hasel_sysid.dataset import for_model
 from hasel_sysid.errors import SysidError
+from hasel_sysid.experiment import experiment_of
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -66,7 +67,7 @@ def _for(model: Model | None, recording: Recording) -> tuple[Recording, tuple[st
     """The recording with the model's channels, and a sentence that it fits; as it is where it cannot be simulated."""
     if model is None or refusal(recording) is not None:
         return recording, ()
-    matched = for_model(model, [experiment(recording)])[0].recording
+    matched = for_model(model, [experiment_of(recording)])[0].recording
     driven = ", ".join(map(str, matched.channels)) if model.has_muscles else "nothing, a passive body"
     return matched, (f"{model.name}, driven by {driven}: fits",)
 

@@ -20,7 +20,7 @@ from hasel_sysid.command_line.workers import workers
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.compare.compare import comparison_of
 from hasel_sysid.data_gate import Finding
-from hasel_sysid.dataset import Experiment
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.improvement import improve
 from hasel_sysid.ledger import Ledger
 from hasel_sysid.problem import Problem

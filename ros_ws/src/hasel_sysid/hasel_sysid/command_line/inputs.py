@@ -12,8 +12,9 @@ from hasel_sim.model import Model, load_model
 from hasel_sysid.command_line.options import DEFAULT_MODEL
 from hasel_sysid.command_line.shown import announce
 from hasel_sysid.data_gate import Finding
-from hasel_sysid.dataset import Experiment, for_model, load_experiments, prepared
+from hasel_sysid.dataset import for_model, load_experiments, prepared
 from hasel_sysid.drive_match import check_levels
+from hasel_sysid.experiment import Experiment
 
 if TYPE_CHECKING:
     from hasel_sysid.noise.model import NoiseModel

@@ -9,7 +9,7 @@ from hasel_sysid.command_line.running import MISLEADING
 from hasel_sysid.compare import Comparison
 from hasel_sysid.compare.table import condition_table, run_table, speed_table
 from hasel_sysid.data_gate import Finding, Severity, check_recording
-from hasel_sysid.dataset import Experiment
+from hasel_sysid.experiment import Experiment
 
 
 def announce(experiments: Sequence[Experiment], but: Collection[str] = ()) -> list[Finding]:

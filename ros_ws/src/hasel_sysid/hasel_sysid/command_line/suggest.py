@@ -15,7 +15,6 @@ from hasel_sysid.command_line.parsers import suggest_parser
 from hasel_sysid.command_line.progress import progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.workers import workers
-from hasel_sysid.drive_match import drive_unit
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import fit_baseline
 from hasel_sysid.improvement import diagnose
@@ -66,7 +65,7 @@ def _highest(asked: float | None, model: Model) -> float:
     """The highest level to propose: what was asked for, else what is safe for the rig or was recorded already."""
     if asked is not None:
         return asked
-    return _SAFE_VOLTAGE if drive_unit(model) == "V" else float(max(model.levels, default=0.0))
+    return _SAFE_VOLTAGE if model.drive_unit == "V" else float(max(model.levels, default=0.0))
 
 
 def _write(best: Suggestion, options: argparse.Namespace) -> None:

@@ -11,8 +11,9 @@ from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.compare.run_comparison import RunComparison
 from hasel_sysid.compare.swimming_speed import swimming_speed
 from hasel_sysid.data_gate import check_against_model, check_recording
-from hasel_sysid.dataset import Experiment, prepared
+from hasel_sysid.dataset import prepared
 from hasel_sysid.errors import SysidError
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.where_it_fails.analyse import where_it_fails
 from hasel_sysid.where_it_fails.run_series import RunSeries, run_series
 

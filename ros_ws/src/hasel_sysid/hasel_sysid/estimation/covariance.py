@@ -7,12 +7,14 @@ import numpy as np
 from hasel_sim.errors import SimulationError
 
 from hasel_sysid.noise.model import NoiseModel
+from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Evaluation, Problem
 
 _UNSEEN = 1e-7
 """A direction of the scaled parameters with less than this share of the strongest one's response is not seen."""
-_FEWEST_RUNS = 4
 _ALONE = 1e-6
+_PART = 1e-3
+"""Of a direction or of an estimate, from which something is part of it."""
 _BEYOND_NOISE = 1.5
 """The scatter of a few runs is itself uncertain: it counts where it is this many times what the noise explains."""
 
@@ -43,7 +45,7 @@ def seen_directions(jacobian: np.ndarray) -> Directions:
     safe = np.where(scale > 0, scale, 1.0)
     left, strength, right = np.linalg.svd(jacobian / safe, full_matrices=False)
     seen = strength > _UNSEEN * strength[0] if strength[0] > 0 else np.zeros(size, dtype=bool)
-    undetermined = (scale == 0) | (np.abs(right[~seen]) > 1e-3).any(axis=0)
+    undetermined = (scale == 0) | (np.abs(right[~seen]) > _PART).any(axis=0)
     return Directions(left[:, seen], right[seen].T / strength[seen] / safe[:, None], undetermined)
 
 
@@ -79,12 +81,12 @@ def scatter_between_runs(jacobian: np.ndarray, residual: np.ndarray, runs: np.nd
     """Standard errors [parameters] of least squares at its optimum that take each run, not each frame, for one sample.
 
     The cluster-robust estimate CR2 (Bell and McCaffrey 2002) for the linearised problem. NaN for parameters that one
-    run alone determines or none does, and for fewer than four runs. jacobian [frames, parameters]; residual, runs
-    [frames].
+    run alone determines or none does, and for fewer runs than tell a scatter. jacobian [frames, parameters]; residual,
+    runs [frames].
     """
     size = jacobian.shape[1]
     numbers = np.unique(runs)
-    if size == 0 or len(numbers) < _FEWEST_RUNS:
+    if size == 0 or len(numbers) < POLICY.fewest_runs:
         return np.full(size, np.nan)
     seen = seen_directions(jacobian)
     changes = [_change_by(seen.left[runs == n], residual[runs == n], seen.to_parameters) for n in numbers]
@@ -98,7 +100,7 @@ def _change_by(basis: np.ndarray, residual: np.ndarray, to_parameters: np.ndarra
     shared = rest > _ALONE
     pull = share[shared] / np.sqrt(rest[shared]) * (inner.T[shared] @ residual)
     change = to_parameters @ (outer[shared].T @ pull)
-    alone = np.abs(to_parameters @ outer[~shared].T) > 1e-3 * np.linalg.norm(to_parameters, axis=1)[:, None]
+    alone = np.abs(to_parameters @ outer[~shared].T) > _PART * np.linalg.norm(to_parameters, axis=1)[:, None]
     change[alone.any(axis=1)] = np.nan
     return change
 

@@ -20,6 +20,7 @@ from hasel_sysid.estimation.covariance import (
 )
 from hasel_sysid.estimation.growing_horizon import horizons, in_phase, length
 from hasel_sysid.estimation.least_squares import (
+    MOST_STEPS,
     GaussNewton,
     at_bound,
     bounded_change,
@@ -36,7 +37,7 @@ Progress = Callable[[str, float], None]
 
 TOLERANCE = 1e-3
 """Relative change of the sum of squares at which a fit ends."""
-_MOST_STEPS, _MOST_MAPPED = 10, 3
+_MOST_MAPPED = 3
 _GENTLER = 4
 """How often the amplitudes of a start are halved until it can be simulated."""
 _FOLLOWED = 3
@@ -134,7 +135,7 @@ def descend(
     names = [_without_onsets(model) for model in models]
     begun = [one for one in problem.evaluate_each(models, names) if not isinstance(one, SimulationError)]
     searches = [GaussNewton(one, tolerance, first) for one in begun]
-    for _ in range(_MOST_STEPS):
+    for _ in range(MOST_STEPS):
         least = min((search.at.sum_of_squares for search in searches), default=0.0)
         going = [s for s in searches if not s.converged and s.may_reach(least)]
         if not going:
@@ -146,7 +147,7 @@ def descend(
     if found and found[0].names != found[0].model.free:
         whole = problem.evaluate_each([found[0].model], [found[0].model.free])[0]
         if not isinstance(whole, SimulationError):
-            found[0] = minimise(problem, whole, tolerance, _MOST_STEPS)[0]
+            found[0] = minimise(problem, whole, tolerance, MOST_STEPS)[0]
     return found
 
 
@@ -181,7 +182,7 @@ def mapped(problem: Problem, low: Evaluation, tolerance: float = TOLERANCE) -> E
 
 def exact(problem: Problem, fit: FittedModel, tolerance: float = 0.5 * TOLERANCE) -> FittedModel:
     """A fit gone on with by the model's own derivatives, to its end."""
-    evaluation, _ = minimise(problem, problem.evaluate(fit.model, fit.model.free), tolerance, _MOST_STEPS)
+    evaluation, _ = minimise(problem, problem.evaluate(fit.model, fit.model.free), tolerance, MOST_STEPS)
     return replace(fitted_model(evaluation, fit.iterations), in_phase_until=fit.in_phase_until)
 
 
@@ -258,7 +259,7 @@ def fit_from_starts(problem: Problem, model: Model, progress: Progress | None = 
     if progress:
         progress("the model itself", 0.6)
     start = problem.evaluate(led[0].model if led else begin[0], model.free)
-    evaluation, _ = minimise(problem, start, 0.5 * TOLERANCE, _MOST_STEPS)
+    evaluation, _ = minimise(problem, start, 0.5 * TOLERANCE, MOST_STEPS)
     return fitted_model(evaluation, problem.evaluations - before)
 
 

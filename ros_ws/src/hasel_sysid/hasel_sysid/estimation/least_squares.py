@@ -15,7 +15,10 @@ from hasel_sysid.problem import Evaluation, Problem
 _FIRST_RADIUS, _SMALLEST_RADIUS = 0.5, 1e-3
 _POOR, _GOOD = 0.25, 0.75
 """Share of its predicted decrease below which a step shrinks the region, and above which it widens it."""
-_OPTIMISM = 2.0
+OPTIMISM = 2.0
+"""Times what first order promises of the next step that a search which has not ended is given the credit of."""
+MOST_STEPS = 10
+"""Of one search."""
 _LEAST_SCALE = 1e-3
 _ROUNDS = 10
 """How often every parameter may come off a bound, at most."""
@@ -77,7 +80,7 @@ class GaussNewton:
     def may_reach(self, squares: float) -> bool:
         """Whether it would come so low, were the next step worth twice what first order promises of it."""
         here = self.at.sum_of_squares
-        return here - _OPTIMISM * (here - self.predicted) <= squares
+        return here - OPTIMISM * (here - self.predicted) <= squares
 
     def proposal(self) -> Model:
         """The model at the end of the next step."""

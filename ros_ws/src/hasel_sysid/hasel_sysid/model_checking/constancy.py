@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 from hasel_sim.run import Simulation
 
-from hasel_sysid.drive_match import drive_unit
 from hasel_sysid.estimation.covariance import (
     parameter_covariance,
     seen_directions,
@@ -77,7 +76,7 @@ def trends(fit: FittedModel, noise: NoiseModel, effects: Sequence[str]) -> list[
     found = []
     for condition, values in conditions(fit.evaluation.simulations).items():
         if np.isfinite(values).all() and values.max() > _ONE_CONDITION * values.min():
-            unit = "Hz" if condition == "frequency" else drive_unit(fit.model)
+            unit = "Hz" if condition == "frequency" else fit.model.drive_unit
             found += [_trend(inside, noise, name, condition, values, unit, numerical) for name in names]
     return found
 

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import gammaincc
 
-from hasel_sysid.drive_match import drive_unit
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Evaluation
@@ -112,7 +111,7 @@ def _labels(evaluation: Evaluation) -> dict[str, list[str]]:
         cycle = None if voltage is None or count < 2 else drive_cycle(time, voltage)
         level = ""
         if run.schedule is not None:
-            unit = drive_unit(evaluation.model)
+            unit = evaluation.model.drive_unit
             level = f"{np.abs(run.schedule.signal).max(initial=0.0):.5g} {unit}"
         side = [""] * count
         if voltage is not None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import minimize
 
-from hasel_sysid.noise.model import LONGEST_CORRELATION, NoiseModel, estimate_noise
+from hasel_sysid.noise.model import FEWEST, LONGEST_CORRELATION, NoiseModel, estimate_noise
 from hasel_sysid.problem import Evaluation
 from hasel_sysid.projection import orthonormal
 from hasel_sysid.saturated_model import regressors, unexplained_by
@@ -16,8 +16,6 @@ _ABOVE = 2.0
 """How many times the body's fastest frequency the band begins: what a wrong model moves wrongly lies below."""
 _OF_THE_RATE = 0.99
 """Share of the power of the angular rate that lies below the body's fastest frequency."""
-_FEWEST_FREQUENCIES = 16
-_FEWEST_FRAMES = 16
 
 
 def bounded_noise(fits: Sequence[Evaluation]) -> NoiseModel:
@@ -42,7 +40,7 @@ def noise_between_periods(evaluation: Evaluation) -> NoiseModel | None:
     residual, columns, series = [], [], []
     for number, (simulation, _, used, here) in enumerate(evaluation.each_series()):
         lag = _frames_per_period(simulation.run.time[used], simulation.run.schedule)
-        if lag is None or here.sum() < lag + _FEWEST_FRAMES:
+        if lag is None or here.sum() < lag + FEWEST:
             continue
         residual.append(_differences(evaluation.residual[here], lag))
         columns.append(_differences(evaluation.jacobian[here], lag))
@@ -81,7 +79,7 @@ def noise_above_the_band(evaluation: Evaluation) -> NoiseModel | None:
         omega.append(2 * np.pi * frequency[above] * frame_time)
         power.append(spectrum[above])
     angle, periodogram = np.concatenate(omega), np.concatenate(power)
-    if len(angle) < _FEWEST_FREQUENCIES or not periodogram.mean() > 0:
+    if len(angle) < FEWEST or not periodogram.mean() > 0:
         return None
     rho = LONGEST_CORRELATION
     shape = (1 - rho**2) / (1 - 2 * rho * np.cos(angle) + rho**2)

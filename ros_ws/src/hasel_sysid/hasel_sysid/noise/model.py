@@ -12,6 +12,9 @@ _SLOW_SHARE = 3.0 / 120.0
 LONGEST_CORRELATION = 0.95
 """Largest correlation between neighbouring frames that still counts as noise."""
 
+FEWEST = 16
+"""Frames, or frequencies, that tell a spectrum."""
+
 
 @dataclass(frozen=True)
 class NoiseModel:
@@ -99,7 +102,7 @@ def estimate_noise(residual: np.ndarray, runs: np.ndarray, fitted: np.ndarray, s
     for run in np.unique(runs):
         here = runs == run
         n = here.sum()
-        if n < 16:
+        if n < FEWEST:
             continue
         first = max(1, int(np.ceil(n * _SLOW_SHARE)))
         transform = np.fft.rfft(residual[here])[first:]

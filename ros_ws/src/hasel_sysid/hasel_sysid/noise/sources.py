@@ -4,19 +4,18 @@ from collections.abc import Sequence
 
 import numpy as np
 from hasel_sim.run import Run
+from scipy.stats import median_abs_deviation
 
-from hasel_sysid.dataset import Experiment
 from hasel_sysid.errors import SysidError
-from hasel_sysid.noise.model import NoiseModel, estimate_noise
+from hasel_sysid.experiment import Experiment
+from hasel_sysid.noise.model import FEWEST, NoiseModel, estimate_noise
 
-_FEWEST_FRAMES = 16
 _SEED_SHARE = 1 / 3
 """Share of the frames before the start from which the scatter at rest is first read."""
 _STILL = 6.0
 """Robust standard deviations beyond which a frame has moved."""
 _MUCH_LESS = 0.1
 """At rest a body scatters by less than this share of what it moves by; a stretch that does not is not at rest."""
-_TO_SIGMA = 1.4826
 
 
 def measured_noise(experiments: Sequence[Experiment]) -> NoiseModel | None:
@@ -59,7 +58,7 @@ def differences_of_repeats(experiments: Sequence[Experiment]) -> list[np.ndarray
         rest.remove(twin)
         for difference in ((one.outputs - twin.outputs) / np.sqrt(2.0)).T:
             seen = difference[np.isfinite(difference)]
-            if len(seen) >= _FEWEST_FRAMES and np.ptp(seen) > 0:
+            if len(seen) >= FEWEST and np.ptp(seen) > 0:
                 found.append(seen - seen.mean())
     return found
 
@@ -95,7 +94,7 @@ def _at_rest(experiment: Experiment, series: np.ndarray) -> np.ndarray | None:
     before = measured & (experiment.run.time < _start(experiment))
     early, motion = series[before], float(np.std(series[measured]))
     count = _still_frames(early)
-    if count < _FEWEST_FRAMES:
+    if count < FEWEST:
         return None
     stretch = early[:count] - early[:count].mean()
     scatter = float(np.std(stretch))
@@ -113,10 +112,10 @@ def _start(experiment: Experiment) -> float:
 
 def _still_frames(series: np.ndarray) -> int:
     """How many frames from the first on stay where the body rested."""
-    if len(series) < _FEWEST_FRAMES:
+    if len(series) < FEWEST:
         return 0
-    seed = series[: max(_FEWEST_FRAMES // 2, int(_SEED_SHARE * len(series)))]
+    seed = series[: max(FEWEST // 2, int(_SEED_SHARE * len(series)))]
     centre = np.median(seed)
-    spread = _TO_SIGMA * np.median(np.abs(seed - centre))
+    spread = median_abs_deviation(seed, scale="normal")
     moved = np.flatnonzero(np.abs(series - centre) > _STILL * spread)
     return int(moved[0]) if len(moved) else len(series)

@@ -20,14 +20,11 @@ _RESAMPLED = 2000
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """A fitted model in the one currency. elpd: of its left-out runs; whitened: its residual; discrepancy: rms of what
-    no model has.
-    """
+    """A fitted model in the one currency. elpd: of its left-out runs; whitened: its residual."""
 
     fitted: FittedSet
     whitened: Whitened
     elpd: Elpd
-    discrepancy: float = 0.0
 
 
 Models = Mapping[Names, Judged]
@@ -65,16 +62,18 @@ def choose(
     models: Models,
     policy: Policy,
     threshold: float,
+    discrepancy: float,
     likeness: Callable[[str, str], float],
     is_law: Callable[[Names], bool],
 ) -> Choice:
-    """threshold: of log-likelihood, that noise alone makes of the best of all candidates; likeness: of two candidates,
+    """threshold: of log-likelihood, that noise alone makes of the best of all candidates; discrepancy: rms of what no
+    model has; likeness: of two candidates,
     0 to 1; is_law: whether what a set adds has one value in every run.
 
     Of models that cannot be told apart the first that is a law stands in the place of the others; where none is, the
     best stays.
     """
-    best = smallest(models, policy, threshold)
+    best = smallest(models, policy, threshold, discrepancy)
     rivals = confidence_set(models, best, policy)
     no_laws = tuple(takewhile(lambda names: not is_law(names), rivals))
     if len(no_laws) == len(rivals):
@@ -100,7 +99,7 @@ def best_of(models: Models) -> Names:
     return max(plausible(models), key=lambda names: models[names].elpd.total)
 
 
-def smallest(models: Models, policy: Policy, threshold: float) -> Names:
+def smallest(models: Models, policy: Policy, threshold: float, discrepancy: float) -> Names:
     """The smallest set within one standard error of the best; and no candidate stays whose removal, refitted, costs
     less than that, or less than noise alone makes of the best of all candidates, or changes less than what no model
     has (backward check).
@@ -109,7 +108,9 @@ def smallest(models: Models, policy: Policy, threshold: float) -> Names:
     as_good = [n for n in plausible(models) if not is_better(models, best, n, policy)]
     found = min(as_good, key=lambda names: (len(names), -models[names].elpd.total))
     while parts := [
-        part for part in _parts(models, found) if not _is_needed(models, found, part, policy, threshold)
+        part
+        for part in _parts(models, found)
+        if not _is_needed(models, found, part, policy, threshold, discrepancy)
     ]:
         found = max(parts, key=lambda names: models[names].elpd.total)
     return found
@@ -121,13 +122,15 @@ def is_better(models: Models, one: Names, other: Names, policy: Policy) -> bool:
     return difference.total > policy.standard_errors * difference.error
 
 
-def _is_needed(models: Models, whole: Names, part: Names, policy: Policy, threshold: float) -> bool:
+def _is_needed(
+    models: Models, whole: Names, part: Names, policy: Policy, threshold: float, discrepancy: float
+) -> bool:
     """Whether it is likelier, predicts better, and changes the series by more than what no model has: the discrepancy
     is the same in every run, where a likelihood takes it for independent.
     """
     gain = models[whole].whitened.logarithm - models[part].whitened.logarithm
     change = models[whole].fitted.residual - models[part].fitted.residual
-    beyond = float(np.sqrt(np.mean(change**2))) > models[whole].discrepancy
+    beyond = float(np.sqrt(np.mean(change**2))) > discrepancy
     return beyond and gain > threshold * len(whole - part) and is_better(models, whole, part, policy)
 
 

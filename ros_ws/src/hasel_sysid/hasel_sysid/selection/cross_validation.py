@@ -7,13 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hasel_sysid.policy import POLICY
 from hasel_sysid.selection.likelihood import Whitened
 
 _PARTS, _PIECES = 4, 16
 """Of a single run every fourth of so many pieces is left out: a body that was let go shows most of itself at first, and
 what its first quarter is like no other quarter predicts."""
-_FEWEST_RUNS = 4
-"""Fewer do not tell how much their differences scatter."""
 _TINY = float(np.finfo(float).tiny)
 
 
@@ -36,7 +35,9 @@ class Elpd:
     def over(self, other: "Elpd") -> "Difference":
         """By how much this model predicts better than another."""
         by_run = self.densities - other.densities
-        scatter = 0.0 if self.powers is None or len(by_run) < _FEWEST_RUNS else _scatter(by_run, self.powers)
+        scatter = (
+            0.0 if self.powers is None or len(by_run) < POLICY.fewest_runs else _scatter(by_run, self.powers)
+        )
         by_noise = float(np.linalg.norm(self.residual - other.residual))
         return Difference(float(by_run.sum()), max(scatter, by_noise), by_noise)
 

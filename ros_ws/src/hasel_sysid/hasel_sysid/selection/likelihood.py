@@ -181,8 +181,8 @@ class Likelihood:
 
     @cached_property
     def _known(self) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Of every series: its frames, the directions of a free offset and the discretisation, whitened, and what is left
-        of each.
+        """Of every series: its frames, the directions of a free offset and the discretisation, whitened, and what is
+        left of each.
         """
         found = []
         for one in np.unique(self.series):

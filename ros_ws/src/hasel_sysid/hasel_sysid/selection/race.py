@@ -10,7 +10,7 @@ from hasel_sim.errors import SimulationError
 
 from hasel_sysid.candidates import Candidate
 from hasel_sysid.estimation.fit import TOLERANCE
-from hasel_sysid.estimation.least_squares import GaussNewton
+from hasel_sysid.estimation.least_squares import MOST_STEPS, OPTIMISM, GaussNewton
 from hasel_sysid.estimation.starts import Screened, Start, from_typical, screen, starts
 from hasel_sysid.problem import Evaluation, LowFidelityProblem
 from hasel_sysid.selection.likelihood import Likelihood
@@ -21,9 +21,6 @@ _ENTRIES = 12
 """Starts that take part at most, the most promising of all that were screened."""
 _OF_EACH = 3
 """Of them, starts of one candidate at most."""
-_MOST_STEPS = 10
-_OPTIMISM = 2.0
-"""Times what first order promises of the next step that a candidate is given the credit of."""
 
 
 def screen_typical(
@@ -58,7 +55,7 @@ def race(
     entries += _other_sizes(few, typical)
     entries.sort(key=lambda entry: entry[0])
     best = min([to_beat, *(share for share, _ in entries)])
-    needed = (1.0 - best) / _OPTIMISM
+    needed = (1.0 - best) / OPTIMISM
     able: list[Screened] = []
     for share, one in entries:
         same = sum(other.start.candidate.name == one.start.candidate.name for other in able)
@@ -109,9 +106,9 @@ def _run(
         for one, seen in zip(entries, begun, strict=True)
         if not isinstance(seen, SimulationError)
     ]
-    for _ in range(_MOST_STEPS):
+    for _ in range(MOST_STEPS):
         gains = [likelihood.of(s.at.residual, s.at.jacobian).logarithm - base for _, s in searches]
-        needed = (max(gains, default=0.0) - reach) / _OPTIMISM
+        needed = (max(gains, default=0.0) - reach) / OPTIMISM
         going = [
             s for gain, (_, s) in zip(gains, searches, strict=True) if gain >= needed and not s.converged
         ]

@@ -137,12 +137,11 @@ class Search:
         noise = self.problem.measured_noise or bounded_noise([f.fit.evaluation for f in self.fits.values()])
         known = self.baseline.evaluation
         measured = known.measured()
-        discrepancy = self.problem.discrepancy
         about = self._likeliest() if self.models else NOTHING
         changes = self._refinement_changes(about)
         shared, free = self.problem.shared_errors, self.problem.free_offset
         self.likelihood = Likelihood(
-            noise, known.runs, discrepancy, list(changes.values()), shared, free, known.series
+            noise, known.runs, self.problem.discrepancy, list(changes.values()), shared, free, known.series
         )
         self.models = {}
         enough = self.policy.near_noise * self.likelihood.allowed.mean_absolute
@@ -151,7 +150,7 @@ class Search:
                 continue  # a number that somebody measured is doubted only where it alone describes the runs
             white = self.likelihood.whitened(fitted)
             elpd = leave_one_run_out(white, measured, self.policy.prior_runs)
-            self.models[names] = Judged(fitted, white, elpd, discrepancy)
+            self.models[names] = Judged(fitted, white, elpd)
 
     def _refinement_changes(self, names: Names) -> dict[str, np.ndarray]:
         """By finer numerics at a fitted set; none of a model that is out of phase, where they mean nothing."""
@@ -190,6 +189,7 @@ class Search:
             self.models,
             self.policy,
             self.threshold,
+            self.problem.discrepancy,
             self._likeness,
             lambda names: self._is_law(self.fits[names], self.likelihood),
         )

@@ -12,7 +12,7 @@ from hasel_sim.model import Model
 from hasel_sim.simd import LANES
 from hasel_sim.simulate import simulate_many
 
-from hasel_sysid.drive_match import drive_unit, model_channels
+from hasel_sysid.drive_match import model_channels
 from hasel_sysid.errors import SysidError
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.problem import low_fidelity
@@ -56,7 +56,7 @@ def suggest(
     that it separates least. Raises SysidError where none is possible.
     """
     model = next(iter(candidates.values()))
-    levels, channels, unit = model.levels, model_channels(model) or HASEL_PAIR, drive_unit(model)
+    levels, channels, unit = model.levels, model_channels(model) or HASEL_PAIR, model.drive_unit
     if len(levels) and not unit:
         raise SysidError(
             f"model '{model.name}' is driven by {', '.join(map(str, channels))}, and experiments are only proposed for "

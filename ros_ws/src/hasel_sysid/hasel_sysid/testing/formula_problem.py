@@ -9,7 +9,7 @@ from hasel_sim.model import Model
 from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run, Simulation
 
-from hasel_sysid.dataset import Experiment
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.problem import Evaluation, Problem
 
 Formula = Callable[[Model, np.ndarray], np.ndarray]

@@ -132,7 +132,7 @@ class LinearWorld:
         known = [
             self.fitted(s, tuple(f"{n}.size" for n in s) if frozenset(s) in on_edge else ()) for s in sets
         ]
-        return choose(self.judged(known), POLICY, threshold, self._likeness, is_law)
+        return choose(self.judged(known), POLICY, threshold, 0.0, self._likeness, is_law)
 
     def _likeness(self, one: str, other: str) -> float:
         first, second = self.series[one], self.series[other]

@@ -14,7 +14,7 @@ from hasel_sim.model.constants import constants
 from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run, Simulation
 
-from hasel_sysid.dataset import Experiment
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.problem import Evaluation, Problem
 from hasel_sysid.time_limit import TimeLimit
 

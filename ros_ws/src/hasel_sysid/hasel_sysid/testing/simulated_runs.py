@@ -9,7 +9,7 @@ from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 
-from hasel_sysid.dataset import Experiment
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.problem import Problem
 from hasel_sysid.testing.made_up_world import box_drive
 

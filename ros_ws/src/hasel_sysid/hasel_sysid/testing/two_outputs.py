@@ -7,7 +7,7 @@ from hasel_recording import Recording
 from hasel_sim.model import Model
 from hasel_sim.run import Simulation
 
-from hasel_sysid.dataset import Experiment
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.problem import Evaluation
 from hasel_sysid.testing.made_up_world import NOISE, MadeUpProblem, MadeUpWorld
 

@@ -5,8 +5,8 @@ from concurrent.futures import Executor
 
 from hasel_sim.model import Model
 
-from hasel_sysid.dataset import Experiment
 from hasel_sysid.estimation import FittedModel
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.problem import Evaluation, Problem
 from hasel_sysid.workbench.step import Step
 

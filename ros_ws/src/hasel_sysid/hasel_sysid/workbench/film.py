@@ -9,7 +9,7 @@ from hasel_sim.model import Model
 from hasel_sim.model_mesh import model_mesh
 from hasel_sim.run import Simulation
 
-from hasel_sysid.dataset import Experiment
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.workbench.measured_markers import measured_markers
 
 _RING = (0, 4, 1, 5, 2, 6, 3, 7)

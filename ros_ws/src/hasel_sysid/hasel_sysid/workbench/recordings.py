@@ -10,8 +10,9 @@ from hasel_recording.reading import distinct_names
 from hasel_sim.model import Model
 
 from hasel_sysid.data_gate import check_recording
-from hasel_sysid.dataset import Experiment, for_model, usable
+from hasel_sysid.dataset import for_model, usable
 from hasel_sysid.errors import SysidError
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.workbench.state import Banner
 
 DEFAULT_MODEL = "swimmer"

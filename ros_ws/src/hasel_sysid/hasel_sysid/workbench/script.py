@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from hasel_sysid.dataset import Experiment
 from hasel_sysid.errors import SysidError
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.workbench.recordings import Reading
 from hasel_sysid.workbench.state import State
 

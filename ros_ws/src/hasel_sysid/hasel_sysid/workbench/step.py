@@ -8,8 +8,8 @@ from hasel_sim.run import Simulation
 
 from hasel_sysid.compare.compare import comparison_of
 from hasel_sysid.compare.comparison import Comparison
-from hasel_sysid.dataset import Experiment
 from hasel_sysid.estimation import FittedModel
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.problem import Evaluation
 
 

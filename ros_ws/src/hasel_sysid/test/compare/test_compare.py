@@ -11,8 +11,8 @@ from hasel_sim.run import Simulation
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.compare.compare import comparison_of, with_amplitudes
 from hasel_sysid.compare.table import condition_table, run_table
-from hasel_sysid.dataset import experiment
 from hasel_sysid.errors import SysidError
+from hasel_sysid.experiment import experiment_of
 from rich.console import Console
 
 
@@ -27,8 +27,8 @@ def _simulation(one, sin_theta: np.ndarray) -> Simulation:
 def compared(made_recording, angle) -> Comparison:
     """Two runs, the second one unseen, of a model that bends 10 % too little and sits 0.02 too low."""
     experiments = [
-        experiment(made_recording(voltage=4500.0, name="a")),
-        experiment(made_recording(voltage=5500.0, name="b", seed=1)),
+        experiment_of(made_recording(voltage=4500.0, name="a")),
+        experiment_of(made_recording(voltage=5500.0, name="b", seed=1)),
     ]
     simulations = [_simulation(e, 0.9 * angle(e.run.time, 2.0) - 0.02) for e in experiments]
     return comparison_of(load_model("swimmer"), experiments[:1], simulations, experiments[1:], "model")
@@ -81,14 +81,14 @@ def test_set_up_faults_are_found_first(made_recording, angle):
     """A flipped angle is reported as a fault of the set-up by the comparison."""
     recording = made_recording()
     flipped = Recording("flipped", recording.time_s, -recording.sin_theta, recording.voltage)
-    one = experiment(flipped)
+    one = experiment_of(flipped)
     compared = comparison_of(load_model("swimmer"), [one], [_simulation(one, angle(one.run.time, 2.0))])
     assert "sign flip or swapped channels" in [finding.fault for finding in compared.set_up]
 
 
 def test_amplitudes_are_kept_or_started(made_recording):
     """A fitted model keeps its voltages for unseen ones; one without gets a start value for each."""
-    one = experiment(made_recording(voltage=4250.0))
+    one = experiment_of(made_recording(voltage=4250.0))
     fitted = load_model("swimmer").with_levels(np.array([3500.0, 5500.0]))
     assert with_amplitudes(fitted, [one]).levels.tolist() == [3500.0, 5500.0]
     assert with_amplitudes(load_model("swimmer"), [one]).levels.tolist() == [4250.0]
@@ -97,7 +97,7 @@ def test_amplitudes_are_kept_or_started(made_recording):
 def test_beam_cannot_be_driven(made_recording):
     """A body without muscles against driven recordings is one sentence."""
     with pytest.raises(SysidError, match="has no muscles"):
-        compare(load_model("beam"), [experiment(made_recording())], SerialExecutor())
+        compare(load_model("beam"), [experiment_of(made_recording())], SerialExecutor())
 
 
 def test_nothing_to_compare():
@@ -111,7 +111,7 @@ def test_right_model_leaves_only_noise_on_unseen_data(unseen_rig: Path):
     values = {"amplitude_3500": 0.0268, "amplitude_4500": 0.0440, "amplitude_5500": 0.0624, "slope": 0.264}
     model = load_model("swimmer").with_levels(np.array([3500.0, 4500.0, 5500.0])).with_values(values)
     paths = [unseen_rig / "nothing_hidden" / name for name in ("fit_5500V_3.5Hz.csv", "val_4800V_2.5Hz.csv")]
-    fitted, unseen = (experiment(read_recording(path)) for path in paths)
+    fitted, unseen = (experiment_of(read_recording(path)) for path in paths)
     seen_progress = []
     compared = compare(
         model, [fitted], SerialExecutor(), [unseen], progress=lambda text, share: seen_progress.append(share)

@@ -16,7 +16,7 @@ from hasel_sysid.command_line.fit import main
 from hasel_sysid.compare import compare
 from hasel_sysid.compare.swimming_speed import forward_speed
 from hasel_sysid.compare.table import speed_table
-from hasel_sysid.dataset import experiment
+from hasel_sysid.experiment import experiment_of
 from rich.console import Console
 
 DRIVE = Boxes(5500.0, 5500.0, 2.0)
@@ -60,7 +60,7 @@ def test_models_are_compared_in_speed(fish, swum, tmp_path):
     write_csv(swum, tmp_path / "swum.csv")
     assert "head_x_m" in (tmp_path / "swum.csv").read_text()
     rough = fish.with_values({"skin_friction.along": 3.0, "skin_friction.thinning": 8.0})
-    found = [compare(model, [experiment(swum)], SerialExecutor()) for model in (fish, rough)]
+    found = [compare(model, [experiment_of(swum)], SerialExecutor()) for model in (fish, rough)]
     right, wrong = (comparison.runs[0].speed for comparison in found)
     assert right.simulated == pytest.approx(right.measured, rel=0.02)
     assert wrong.measured == right.measured
@@ -95,6 +95,8 @@ def test_a_fit_says_measured_and_simulated_speeds(fish, swum, tmp_path, capsys):
 
 def test_a_dry_body_has_no_speed(swum):
     """Nor one whose film is in pixels."""
-    dry = compare(load_model("swimmer").with_numerics(mesh_density=0.5), [experiment(swum)], SerialExecutor())
+    dry = compare(
+        load_model("swimmer").with_numerics(mesh_density=0.5), [experiment_of(swum)], SerialExecutor()
+    )
     assert dry.runs[0].speed is None and speed_table([dry]) is None
     assert dry.mean_speed_error is None

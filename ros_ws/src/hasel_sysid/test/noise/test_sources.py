@@ -5,8 +5,8 @@ import pytest
 from hasel_recording import Recording
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.run import Run
-from hasel_sysid.dataset import Experiment
 from hasel_sysid.errors import SysidError
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.noise.sources import given_noise, measured_noise
 

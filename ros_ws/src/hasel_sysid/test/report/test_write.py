@@ -12,7 +12,7 @@ import pytest
 from hasel_sim.model import load_model
 from hasel_sim.run import Simulation
 from hasel_sysid.compare.compare import comparison_of
-from hasel_sysid.dataset import experiment
+from hasel_sysid.experiment import experiment_of
 from hasel_sysid.report.content import NextRun, ParameterRow, RankedRow, ReportContent, RunOverlay, Stage
 from hasel_sysid.report.figures.overlay import driven_stretches, overlay_figure
 from hasel_sysid.report.figures.style import CHANNELS
@@ -57,7 +57,7 @@ class _Page(HTMLParser):
 
 
 def _comparison(made_recording, angle, label="model"):
-    experiments = [experiment(made_recording(name=f"<run {n}>", seed=n)) for n in range(2)]
+    experiments = [experiment_of(made_recording(name=f"<run {n}>", seed=n)) for n in range(2)]
     simulations = [
         Simulation(
             e.run,

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from hasel_recording import DriveChannel
 from hasel_sysid.where_it_fails.component import Kind
-from hasel_sysid.where_it_fails.components.free_swing import fit_swing
 from hasel_sysid.where_it_fails.components.upper_against_lower import half_wave_asymmetry
 from hasel_sysid.where_it_fails.in_one_run import analyse_run
 from hasel_sysid.where_it_fails.run_series import RunSeries
 from hasel_sysid.where_it_fails.split import split
+from hasel_sysid.where_it_fails.swing import fit_swing
 
 
 def _component(run, kind):
