@@ -62,6 +62,9 @@ bench: build ## measure the speeds that the README states
 bench-hidden: build ## measure how often the right hidden effect is named
 	@bin/ros2-run hasel_benchmark bench_hidden
 
+bench-fits: build ## measure how often a fit ends as likely as the truth
+	@bin/ros2-run hasel_benchmark bench_fits
+
 bench-far: build ## measure how often a constant that is far off is named
 	@bin/ros2-run hasel_benchmark bench_far
 

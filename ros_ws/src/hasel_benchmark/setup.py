@@ -21,6 +21,7 @@ setup(
     entry_points={
         "console_scripts": [
             "bench_far = hasel_benchmark.entry:bench_far",
+            "bench_fits = hasel_benchmark.entry:bench_fits",
             "bench_hidden = hasel_benchmark.entry:bench_hidden",
         ]
     },

@@ -14,6 +14,12 @@ def bench_far() -> int:
 
 
 @command
+def bench_fits() -> int:
+    """`bench_fits`: does a fit reach the likelihood of the truth?"""
+    return _run("bench_fits")
+
+
+@command
 def bench_hidden() -> int:
     """`bench_hidden`: how often is the right hidden effect named?"""
     return _run("bench_hidden")
