@@ -55,7 +55,7 @@ docs: build ## write the reference from the docstrings, build/docs/index.html
 demo: build ## fit the swimmer, compare on unseen runs, replay one, write report.html (BODY=DIR, MUSCLE=DIR, FISHSIM=DIR: measured ones too)
 	@bin/ros2-run hasel_bringup demo $(foreach folder,$(BODY) $(BEAM),--body $(folder)) $(foreach folder,$(MUSCLE),--muscle $(folder)) $(foreach folder,$(FISHSIM),--fish $(folder))
 
-bench: build ## measure the speeds that the README states
+bench: build ## measure the speeds that docs/results.md states
 	@bin/ros2-run hasel_bringup bench
 	@bin/ros2-run hasel_tracker bench
 

@@ -10,7 +10,8 @@ from hasel_sim.simulator_node import PARAMETERS as SIMULATOR
 from hasel_sysid.sysid_node import PARAMETERS as SYSID
 
 ROOT = Path(__file__).resolve().parents[2]
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+LIVE = (ROOT / "docs" / "live.md").read_text(encoding="utf-8")
 SOURCES = "\n".join(
     path.read_text(encoding="utf-8")
     for path in sorted((ROOT / "ros_ws" / "src").rglob("*.py"))
@@ -21,7 +22,7 @@ SOURCES = "\n".join(
 @pytest.mark.parametrize("node, table", [("simulator", SIMULATOR), ("sysid", SYSID)])
 def test_parameters_are_those_of_the_nodes(node, table):
     """Every parameter has its row with default, unit and meaning, and no row is about another."""
-    rows = re.findall(rf"^\| {node} \| `(\w+)` \| (\S+) \| (\S*) ?\| (.*) \|$", README, flags=re.M)
+    rows = re.findall(rf"^\| {node} \| `(\w+)` \| (\S+) \| (\S*) ?\| (.*) \|$", LIVE, flags=re.M)
     expected = [
         (p.name, "none" if p.default == [""] else f"`{p.default}`", p.unit or "", p.description)
         for p in table
@@ -29,30 +30,56 @@ def test_parameters_are_those_of_the_nodes(node, table):
     assert rows == expected
 
 
-def test_topics_and_services_exist():
-    """Every /hasel/… name of the README is a topic, or relative to the namespace a name in the code."""
-    for name in sorted(set(re.findall(r"`(/hasel/[a-z_/]+)`", README)) - set(TOPIC_TYPES)):
+def test_the_readme_is_a_page():
+    """What it is, two commands, the steps: everything else is in the documentation."""
+    assert PAGES[0].stat().st_size <= 8000
+
+
+def test_every_page_is_reached_from_the_readme():
+    """By a link of its own, or of a page that has one."""
+    reached, todo = set(), [PAGES[0]]
+    while todo:
+        page = todo.pop()
+        if page.suffix == ".md" and page not in reached:
+            reached.add(page)
+            todo += [(page.parent / link).resolve() for link in _links(page)]
+    assert set(PAGES) <= reached
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_topics_and_services_exist(page):
+    """Every /hasel/… name of a page is a topic, or relative to the namespace a name in the code."""
+    named = set(re.findall(r"`(/hasel/[a-z_/]+)`", page.read_text(encoding="utf-8")))
+    for name in sorted(named - set(TOPIC_TYPES)):
         assert f'"{name.removeprefix("/hasel/")}"' in SOURCES, name
 
 
-def test_executables_exist():
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_executables_exist(page):
     """Every `ros2 run` and `bin/ros2-run` line names an executable that a package installs."""
-    for package, executable in re.findall(r"(?:ros2 run|ros2-run) (hasel_\w+) (\w+)", README):
+    lines = re.findall(r"(?:ros2 run|ros2-run) (hasel_\w+) (\w+)", page.read_text(encoding="utf-8"))
+    for package, executable in lines:
         setup = (ROOT / "ros_ws" / "src" / package / "setup.py").read_text(encoding="utf-8")
         assert f'"{executable} = ' in setup, (package, executable)
 
 
-def test_links_lead_somewhere():
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page):
     """Every relative link and picture is a file of the repository."""
-    for target in re.findall(r"\]\(([^)#:]+)\)", README):
-        assert (ROOT / target).exists(), target
+    for target in _links(page):
+        assert (page.parent / target).exists(), target
+
+
+def _links(page: Path) -> list[str]:
+    return re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8"))
 
 
 def test_figures_of_hidden_effects_are_the_benchmarks():
     """Every row of the table stands in the page that the benchmark wrote."""
     page = (ROOT / "docs" / "hidden_effects_untouched.md").read_text(encoding="utf-8").splitlines()
-    section = README.split("## Is the right effect named?")[1].split("\n## ")[0]
-    assert "(docs/hidden_effects_untouched.md)" in section
+    results = (ROOT / "docs" / "results.md").read_text(encoding="utf-8")
+    section = results.split("## Is the right effect named?")[1].split("\n## ")[0]
+    assert "(hidden_effects_untouched.md)" in section
     rows = [line for line in section.splitlines() if line.startswith("| ")]
     assert len(rows) > 5
     assert [row for row in rows if row not in page] == []
