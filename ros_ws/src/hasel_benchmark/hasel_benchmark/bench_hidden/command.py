@@ -13,8 +13,9 @@ from hasel_benchmark.bench_hidden.case import Case
 from hasel_benchmark.bench_hidden.case_list import list_cases, quick_cases
 from hasel_benchmark.bench_hidden.explain import explain
 from hasel_benchmark.bench_hidden.options import KINDS, PAGE, parser
-from hasel_benchmark.bench_hidden.outcome import Outcome
+from hasel_benchmark.bench_hidden.outcome import Outcome, outcome_from_dict
 from hasel_benchmark.bench_hidden.page import as_json, as_markdown, outcomes_of
+from hasel_benchmark.bench_hidden.paired import group_sizes, paired, times
 from hasel_benchmark.bench_hidden.run_cases import run_cases
 from hasel_benchmark.errors import BenchmarkError
 
@@ -43,6 +44,7 @@ def _bench(options: argparse.Namespace) -> int:
         raise BenchmarkError(
             f"{options.output} already holds results; go on with --resume, or name another folder with --output."
         )
+    before = _outcomes_at(options.against) if options.against else {}
     page = options.page or _default_page(options)
     known = _known(page) if options.resume else {}
     outcomes: list[Outcome] = []
@@ -57,7 +59,26 @@ def _bench(options: argparse.Namespace) -> int:
         stopped = True
         _say(f"Stopped after {len(outcomes)} of {len(cases)} cases; go on with --resume.")
     _write(outcomes, len(cases), page)
+    if before:
+        figures = (group_sizes(before, outcomes), times(before, outcomes))
+        print("\n".join([*map(str, paired(before, outcomes)), *figures]))
     return 130 if stopped else 0
+
+
+def _outcomes_at(path: Path) -> dict[str, Outcome]:
+    """Of an earlier run, by the name of their case. Raises BenchmarkError where there are none."""
+    if path.is_dir():
+        found = [
+            outcome_from_dict(json.loads(file.read_text())["outcome"]) for file in path.glob("**/*.json")
+        ]
+        known = {outcome.case: outcome for outcome in found}
+    else:
+        known = outcomes_of(json.loads(path.read_text())) if path.is_file() else {}
+    if not known:
+        raise BenchmarkError(
+            f"{path} holds no outcomes; expected an output folder of bench_hidden, or the JSON beside its page."
+        )
+    return known
 
 
 def _known(page: Path) -> dict[str, Outcome]:

@@ -46,6 +46,12 @@ def parser() -> argparse.ArgumentParser:
         "--output", type=Path, default=Path("output/bench_hidden"), metavar="DIR", help="default: %(default)s"
     )
     options.add_argument("--page", type=Path, metavar="FILE", help=f"default: {PAGE}, in DIR for a part")
+    options.add_argument(
+        "--against",
+        type=Path,
+        metavar="PATH",
+        help="compare with an earlier search on the same cases: its output folder, or the JSON beside its page",
+    )
     options.add_argument("--jobs", type=int, metavar="N", help="cases at once (default: one per core)")
     options.add_argument(
         "--alone",

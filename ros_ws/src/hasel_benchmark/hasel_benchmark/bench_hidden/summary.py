@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
 
@@ -10,7 +9,6 @@ from hasel_benchmark.bench_hidden.outcome import Outcome
 from hasel_benchmark.bench_hidden.share import wilson_interval
 
 CORES_OF_THE_TIME_BARS = 2
-T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -62,84 +60,124 @@ class Bar:
         return f"{value:.0f} {self.unit}" if self.unit else f"{value:.2g}"
 
 
+@dataclass(frozen=True)
+class Line:
+    """A share of cases. among: the cases that it is about; holds: what is counted of them; least, most: its bars."""
+
+    what: str
+    among: Callable[[Outcome], bool]
+    holds: Callable[[Outcome], bool]
+    least: float | None = None
+    most: float | None = None
+
+
+def is_seen(o: Outcome) -> bool:
+    """Whether one effect of the catalogue is hidden, and to be seen."""
+    return o.kind == "single" and o.visible
+
+
+def _strong(o: Outcome) -> bool:
+    return o.kind == "strong" and o.visible
+
+
+def _both(o: Outcome) -> bool:
+    return o.kind == "pair" and o.visible
+
+
+def _explicable(o: Outcome) -> bool:
+    return is_seen(o) or _both(o)
+
+
+def _unlisted(o: Outcome) -> bool:
+    return o.kind == "unlisted" and o.visible
+
+
+def _faulty(o: Outcome) -> bool:
+    return o.kind == "set_up"
+
+
+LINES = (
+    Line("one visible effect hidden: named first", is_seen, lambda o: o.right, least=0.95),
+    Line("… or within the stated group", is_seen, lambda o: o.right_within_group, least=0.98),
+    Line("… and added to the model", is_seen, lambda o: o.all_named),
+    Line("one strong effect hidden: named first", _strong, lambda o: o.right, least=0.9),
+    Line("… strong: or within the stated group", _strong, lambda o: o.right_within_group, least=0.95),
+    Line(
+        "one effect hidden that leaves hardly a trace: another one accused with confidence",
+        lambda o: o.kind == "single" and not o.visible,
+        lambda o: o.accuses_with_confidence and not o.right_within_group,
+    ),
+    Line(
+        "nothing hidden, white noise: something reported",
+        lambda o: o.kind == "nothing" and o.colour == "white",
+        lambda o: o.reports_something,
+        most=0.02,
+    ),
+    Line(
+        "nothing hidden, coloured noise: something reported",
+        lambda o: o.kind == "nothing" and o.colour == "coloured",
+        lambda o: o.reports_something,
+        most=0.02,
+    ),
+    Line(
+        "not in the catalogue: a listed one accused",
+        _unlisted,
+        lambda o: o.accuses_with_confidence,
+        most=0.05,
+    ),
+    Line("… said to be none of them, or not wholly", _unlisted, lambda o: o.says_none_of_them, least=0.95),
+    Line("two effects hidden: both named", _both, lambda o: o.all_named, least=0.9),
+    Line("… both: or within the stated groups", _both, lambda o: o.all_named_within_group, least=0.95),
+    Line(
+        "one or two effects hidden: exactly these, and nothing beside them",
+        _explicable,
+        lambda o: o.exact,
+        least=0.9,
+    ),
+    Line("a fault of the set-up hidden: named", _faulty, lambda o: o.fault_named, least=0.95),
+    Line("… and what is beside it exactly as it is", _faulty, lambda o: o.fault_named and o.exact),
+    Line(
+        "no fault of the set-up hidden: one reported",
+        lambda o: not o.fault,
+        lambda o: bool(o.set_up),
+        most=0.02,
+    ),
+)
+"""Every share that is counted, in the order of the page."""
+
+
 def bars(outcomes: Sequence[Outcome]) -> list[Bar]:
     """The numbers of all cases that have an answer."""
     answered = [o for o in outcomes if not o.failure]
-    nothing, single, strong, pair, unlisted, set_up = (
-        [o for o in answered if o.kind == kind]
-        for kind in ("nothing", "single", "strong", "pair", "unlisted", "set_up")
+    seen, explicable = ([o for o in answered if among(o)] for among in (is_seen, _explicable))
+    sizes = [o.group_size for o in seen]
+    covered = [e.covered for o in explicable if o.all_named for e in o.estimates if e.covered is not None]
+    removed = (
+        ("fitted", [o.removed_fitted for o in explicable], 0.95),
+        ("unseen", [o.removed_unseen for o in explicable], 0.9),
     )
-    seen, hard = [o for o in single if o.visible], [o for o in single if not o.visible]
-    seen_strong = [o for o in strong if o.visible]
-    both, seen_unlisted = [o for o in pair if o.visible], [o for o in unlisted if o.visible]
-    explicable = [*seen, *both]
-    white, coloured = ([o for o in nothing if o.colour == colour] for colour in ("white", "coloured"))
-    covered = [e.covered for o in [*seen, *both] if o.all_named for e in o.estimates if e.covered is not None]
     return [
-        _share("one visible effect hidden: named first", seen, lambda o: o.right, least=0.95),
-        _share("… or within the stated group", seen, lambda o: o.right_within_group, least=0.98),
-        _share("… and added to the model", seen, lambda o: o.all_named),
+        *(share_of(line, answered) for line in LINES),
         Bar(
-            "… size of the stated group (mean)",
-            float(np.mean([o.group_size for o in seen])) if seen else None,
+            "size of the stated group (mean)",
+            float(np.mean(sizes)) if sizes else None,
             None,
             None,
             len(seen),
             "",
         ),
-        _share("one strong effect hidden: named first", seen_strong, lambda o: o.right, least=0.9),
-        _share("… or within the stated group", seen_strong, lambda o: o.right_within_group, least=0.95),
-        _share(
-            "one effect hidden that leaves hardly a trace: another one accused with confidence",
-            hard,
-            lambda o: o.accuses_with_confidence and not o.right_within_group,
-        ),
-        _share(
-            "nothing hidden, white noise: something reported", white, lambda o: o.reports_something, most=0.02
-        ),
-        _share(
-            "nothing hidden, coloured noise: something reported",
-            coloured,
-            lambda o: o.reports_something,
-            most=0.02,
-        ),
-        _share(
-            "not in the catalogue: a listed one accused",
-            seen_unlisted,
-            lambda o: o.accuses_with_confidence,
-            most=0.05,
-        ),
-        _share(
-            "… said to be none of them, or not wholly",
-            seen_unlisted,
-            lambda o: o.says_none_of_them,
-            least=0.95,
-        ),
-        _share("two effects hidden: both named", both, lambda o: o.all_named, least=0.9),
-        _share("… or within the stated groups", both, lambda o: o.all_named_within_group, least=0.95),
-        _share(
-            "one or two effects hidden: exactly these, and nothing beside them",
-            explicable,
-            lambda o: o.exact,
-            least=0.9,
-        ),
-        _share("a fault of the set-up hidden: named", set_up, lambda o: o.fault_named, least=0.95),
-        _share("… and what is beside it exactly as it is", set_up, lambda o: o.fault_named and o.exact),
-        _share(
-            "no fault of the set-up hidden: one reported",
-            [o for o in answered if not o.fault],
-            lambda o: bool(o.set_up),
-            most=0.02,
-        ),
-        _share("95 % intervals that cover the truth", covered, bool, least=0.93, most=0.97),
-        _median(
-            "excess error removed, fitted runs (median)", [o.removed_fitted for o in explicable], least=0.95
-        ),
-        _median(
-            "excess error removed, unseen runs (median)", [o.removed_unseen for o in explicable], least=0.9
+        _share("95 % intervals that cover the truth", covered, least=0.93, most=0.97),
+        *(
+            _median(f"excess error removed, {which} runs (median)", own, least=bar)
+            for which, own, bar in removed
         ),
         *_times(answered),
     ]
+
+
+def share_of(line: Line, outcomes: Iterable[Outcome]) -> Bar:
+    """Of the cases that a line is about, how many it holds for."""
+    return _share(line.what, [line.holds(o) for o in outcomes if line.among(o)], line.least, line.most)
 
 
 def _times(outcomes: Sequence[Outcome]) -> list[Bar]:
@@ -170,16 +208,12 @@ def _times(outcomes: Sequence[Outcome]) -> list[Bar]:
 
 
 def _share(
-    what: str,
-    among: Sequence[T],
-    holds: Callable[[T], bool],
-    least: float | None = None,
-    most: float | None = None,
+    what: str, held: Sequence[bool | None], least: float | None = None, most: float | None = None
 ) -> Bar:
-    if not among:
+    if not held:
         return Bar(what, None, least, most, 0)
-    share = float(np.mean([holds(one) for one in among]))
-    return Bar(what, share, least, most, len(among), interval=wilson_interval(share, len(among)))
+    share = float(np.mean(held))
+    return Bar(what, share, least, most, len(held), interval=wilson_interval(share, len(held)))
 
 
 def _median(
