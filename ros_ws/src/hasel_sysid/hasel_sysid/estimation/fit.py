@@ -51,7 +51,8 @@ class FittedModel:
     model: with fitted values and standard errors; evaluation: at these values; at_bound: parameters on a bound;
     undetermined: parameters that these recordings do not determine; iterations: simulations of all runs;
     in_phase_until: how long after its start [s] the model moves with the body, None for all frames;
-    changes_by_refinement: what finer numerics do to the simulated series [frames], as far as that was looked at.
+    changes_by_refinement: what finer numerics do to the simulated series [frames], as far as that was looked at;
+    converged: whether the last step gave next to nothing.
     """
 
     model: Model
@@ -62,6 +63,7 @@ class FittedModel:
     method: str = "least squares"
     in_phase_until: float | None = None
     changes_by_refinement: Mapping[str, np.ndarray] = field(default_factory=dict)
+    converged: bool = True
 
     @property
     def mean_absolute_error(self) -> float:
@@ -76,6 +78,10 @@ class FittedModel:
             notes.append(
                 f"The model is in phase with the first {self.in_phase_until:.2g} s of the runs only, to which it was "
                 "fitted: something else is missing."
+            )
+        if not self.converged:
+            notes.append(
+                f"The fit had not converged after {MOST_STEPS} steps: fit again, beginning with its result."
             )
         notes += [_at_bound(self.model.parameters[name]) for name in self.at_bound]
         notes += [f"{name} cannot be determined from these recordings." for name in self.undetermined]
@@ -182,8 +188,9 @@ def mapped(problem: Problem, low: Evaluation, tolerance: float = TOLERANCE) -> E
 
 def exact(problem: Problem, fit: FittedModel, tolerance: float = 0.5 * TOLERANCE) -> FittedModel:
     """A fit gone on with by the model's own derivatives, to its end."""
-    evaluation, _ = minimise(problem, problem.evaluate(fit.model, fit.model.free), tolerance, MOST_STEPS)
-    return replace(fitted_model(evaluation, fit.iterations), in_phase_until=fit.in_phase_until)
+    evaluation, ended = minimise(problem, problem.evaluate(fit.model, fit.model.free), tolerance, MOST_STEPS)
+    found = fitted_model(evaluation, fit.iterations)
+    return replace(found, in_phase_until=fit.in_phase_until, converged=ended)
 
 
 def fit(
@@ -259,8 +266,8 @@ def fit_from_starts(problem: Problem, model: Model, progress: Progress | None = 
     if progress:
         progress("the model itself", 0.6)
     start = problem.evaluate(led[0].model if led else begin[0], model.free)
-    evaluation, _ = minimise(problem, start, 0.5 * TOLERANCE, MOST_STEPS)
-    return fitted_model(evaluation, problem.evaluations - before)
+    evaluation, ended = minimise(problem, start, 0.5 * TOLERANCE, MOST_STEPS)
+    return replace(fitted_model(evaluation, problem.evaluations - before), converged=ended)
 
 
 class _Coarse(Problem):

@@ -175,3 +175,12 @@ def test_a_value_on_a_bound_is_said(value, sentence):
     nothing = np.zeros(0)
     evaluation = Evaluation(model, names, (), nothing, np.zeros((0, 1)), nothing, nothing, ())
     assert FittedModel(model, evaluation, names, (), 1, "least squares").sentences == [sentence]
+
+
+def test_a_fit_that_has_not_converged_says_so(problem):
+    """A tolerance that no step reaches; the same fit with the usual one has nothing to say."""
+    begun = fitted_model(problem.evaluate(body(0.25, 0.025), (MASS, DAMPING)))
+    short = exact(problem, begun, tolerance=-1.0)
+    assert not short.converged and "had not converged after 10 steps" in str(short)
+    ended = exact(problem, begun)
+    assert ended.converged and "converged" not in str(ended)
