@@ -17,11 +17,11 @@ from hasel_sim.model import Model
 from hasel_sim.model_mesh import marker_points, model_mesh
 
 SUFFIXES = (".png", ".svg", ".pdf")
-SOFT, SPINE = "#d9d2c5", "#44505c"
+SOFT, SPINE, MARKER = "#d9d2c5", "#44505c", "#2ca02c"
 MUSCLES = ("#d9654b", "#4b86b4", "#8a5fa8", "#c9a227", "#3f8f6b", "#b0547c")
 """Colours of the muscles in the model file's order, from the start again where there are more."""
 HATCHES = ("//", "\\\\", "xx", "..")
-_AROUND = [0, 4, 1, 5, 2, 6, 3, 7]
+AROUND = [0, 4, 1, 5, 2, 6, 3, 7]
 """Local nodes of an element in the order of its edge."""
 
 
@@ -60,17 +60,29 @@ def save_picture(figure: Figure, path: Path) -> None:
         ) from None
 
 
+def element_colours(mesh: Mesh) -> np.ndarray:
+    """By region and muscle, [elements]."""
+    colours = np.where(mesh.region == Region.SPINE, SPINE, SOFT).astype(object)
+    for number in np.unique(mesh.muscle[mesh.muscle > 0]):
+        colours[mesh.muscle == number] = muscle_colour(int(number))
+    return colours
+
+
+def muscle_colour(number: int) -> str:
+    """Of a muscle, counted from 1."""
+    return MUSCLES[(number - 1) % len(MUSCLES)]
+
+
 def _add_elements(axes, mesh: Mesh, model: Model) -> list[Patch]:
     """Draw every element; what its colours and hatches mean comes back."""
-    outlines = 1e3 * mesh.nodes[mesh.elements[:, _AROUND]]
+    outlines = 1e3 * mesh.nodes[mesh.elements[:, AROUND]]
     description = model.description
-    colours = np.where(mesh.region == Region.SPINE, SPINE, SOFT).astype(object)
+    colours = element_colours(mesh)
     handles = [Patch(color=SOFT, label="soft" if model.has_muscles or model.has_spine else "body")]
     if model.has_spine:
         handles.append(Patch(color=SPINE, label="spine and fin"))
     for number, muscle in enumerate(description.muscles, start=1):
-        colour = MUSCLES[(number - 1) % len(MUSCLES)]
-        colours[mesh.muscle == number] = colour
+        colour = muscle_colour(number)
         handles.append(Patch(color=colour, label=f"muscle {muscle.name} ({muscle.channel})"))
     axes.add_collection(
         PolyCollection(list(outlines), facecolors=list(colours), edgecolors="white", linewidths=0.5)
@@ -97,7 +109,7 @@ def _add_markers(axes, model: Model) -> None:
     points, names = 1e3 * marker_points(model), model.description.marker_names()
     for point, name in zip(points, names, strict=True):
         label = "markers" if name == names[0] else None
-        axes.plot(*point, "o", color="#2ca02c", markeredgecolor="white", markersize=9, label=label)
+        axes.plot(*point, "o", color=MARKER, markeredgecolor="white", markersize=9, label=label)
         axes.annotate(name, point, (0, 9), textcoords="offset points", ha="center", fontsize=9)
 
 

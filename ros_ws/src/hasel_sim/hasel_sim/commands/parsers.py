@@ -58,6 +58,12 @@ def show_mesh_parser() -> argparse.ArgumentParser:
         "--output", type=Path, metavar="FILE", help="PNG, SVG or PDF (default: MODEL_mesh.png)"
     )
     options.add_argument("--density", type=float, metavar="D", help="mesh density, instead of the model's")
+    options.add_argument(
+        "--bent",
+        type=float,
+        metavar="LEVEL",
+        help="bent by its first drive, held at this level: the markers and the angle between them",
+    )
     return options
 
 

@@ -5,6 +5,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from hasel_sim.angle_picture import draw_angle
 from hasel_sim.commands.parsers import show_mesh_parser
 from hasel_sim.errors import HaselSimError
 from hasel_sim.mesh_picture import draw_mesh, save_picture
@@ -23,7 +24,7 @@ def run(options: argparse.Namespace) -> int:
         if options.density is not None:
             model = model.with_numerics(mesh_density=options.density)
         path = options.output or Path(f"{model.name}_mesh.png")
-        save_picture(draw_mesh(model), path)
+        save_picture(draw_mesh(model) if options.bent is None else draw_angle(model, options.bent), path)
     except HaselSimError as error:
         print(f"show_mesh: {error}", file=sys.stderr)
         return 1

@@ -2,7 +2,12 @@
 
 import numpy as np
 import pytest
+from hasel_sim.angle_picture import draw_angle
 from hasel_sim.commands.show_mesh import main
+from hasel_sim.drive.schedule import DriveSchedule
+from hasel_sim.model import load_model
+from hasel_sim.run import Run
+from hasel_sim.simulate import simulate
 from matplotlib.image import imread
 
 
@@ -28,9 +33,25 @@ def test_a_vector_picture_of_another_model_and_density(tmp_path):
     assert path.read_text().startswith("<?xml")
 
 
+def test_the_bent_body_shows_the_angle_between_its_markers(tmp_path):
+    """θ is that of a run held at this level; the picture is written as any other."""
+    model = load_model("swimmer").with_numerics(mesh_density=0.5).with_levels([5500.0])
+    texts = [text.get_text() for text in draw_angle(model, 5500.0).axes[0].texts]
+    (said,) = (text for text in texts if "θ" in text)
+    held = DriveSchedule(np.zeros(1), np.array([[5500.0, 0.0]]))
+    seen = simulate(model, Run("held", np.arange(0.0, 0.5, 1 / 60), held)).sin_theta
+    largest = np.degrees(np.arcsin(seen[np.argmax(np.abs(seen))]))
+    assert said == f"θ = {largest:.0f}°" and abs(largest) > 5
+    assert {"head", "middle", "tail"} < set(texts)
+    path = tmp_path / "bent.svg"
+    assert main(["--density", "0.5", "--bent", "5500", "--output", str(path)]) == 0
+    assert path.read_text().startswith("<?xml")
+
+
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
+        (["beam", "--bent", "5500"], "nothing drives model 'beam'"),
         (["swimer"], "the nearest known one is 'swimmer'"),
         (["--output", "mesh.bmp"], "expected .png, .svg, .pdf"),
         (["--density", "-1"], "numerics.mesh_density is -1.0"),
