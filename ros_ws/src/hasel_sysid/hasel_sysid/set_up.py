@@ -23,7 +23,6 @@ DECIDED = ("sign flip or swapped channels", "dead channel", "command lag", "moti
 _LONGEST_SHIFT_S, _LONGEST_STEP_S = 0.3, 0.1
 _MOST_STEPS, _SHIFT_TOLERANCE = 6, 0.1
 _FEWEST_FRAMES = 3
-_COMPARE_CLOCKS = "compare the clocks of supply and camera"
 
 
 @dataclass(frozen=True)
@@ -81,11 +80,7 @@ def hypotheses(problem: Problem, models: Sequence[Model]) -> list[SetUpFault]:
             runs = tuple(e.name for e in read.experiments)
         if runs:
             found.append(SetUpFault(what, runs, len(runs) == len(read.experiments), reading, advice))
-    return [
-        *found,
-        *_one_clock(problem, models[-1], squares),
-        *_clocks(problem, models[-1], recorded, squares),
-    ]
+    return [*found, *_clocks(problem, models[-1], recorded, squares)]
 
 
 def _kinds(experiments: Sequence[Experiment]) -> list[tuple[str, str, Reading]]:
@@ -118,25 +113,12 @@ def _rate(seen: Evaluation) -> np.ndarray:
     return np.concatenate([rate - rate.mean() for rate in rates])
 
 
-def _one_clock(problem: Problem, model: Model, squares: np.ndarray) -> list[SetUpFault]:
-    """An angle that comes before its command in all runs alike; one that comes after is left to the effects that are
-    a lag.
-    """
-    if any(e.run.schedule is None for e in problem.experiments):
-        return []
-    names = tuple(e.name for e in problem.experiments)
-    lags, left = _settled(problem, model, dict.fromkeys(names, 0.0), together=True)
-    lag = lags[names[0]]
-    if lag > -_frame(problem) or not _removes_most(squares.sum(), left):
-        return []
-    what = f"the angle comes {-1e3 * lag:.0f} ms before its command"
-    return [SetUpFault(what, names, True, _shifted({}, lag), _COMPARE_CLOCKS)]
-
-
 def _clocks(
     problem: Problem, model: Model, recorded: Sequence[Evaluation], squares: np.ndarray
 ) -> list[SetUpFault]:
-    """The few runs whose angle is shifted in time. A lag that most share is left to the effects that are one."""
+    """The few runs whose angle is shifted in time. What most share is left to the effects that are a lag, the clocks of
+    camera and drive among them.
+    """
     shifts: dict[str, float] = {}
     for number, experiment in enumerate(problem.experiments):
         if len(experiment.run.time) < _FEWEST_FRAMES or experiment.run.schedule is None:
@@ -146,27 +128,22 @@ def _clocks(
             shifts[experiment.name] = lag
     if not shifts or _most(shifts, problem.experiments):
         return []
-    shifts, _ = _settled(problem, model, shifts)
+    shifts = _settled(problem, model, shifts)
     told = ", ".join(f"{1e3 * lag:+.0f} ms" for lag in shifts.values())
     what = f"the clock of the angle is off by {told}"
-    return [SetUpFault(what, tuple(shifts), False, _shifted(shifts), _COMPARE_CLOCKS)]
+    return [
+        SetUpFault(what, tuple(shifts), False, _shifted(shifts), "compare the clocks of supply and camera")
+    ]
 
 
-def _settled(
-    problem: Problem, model: Model, lags: Mapping[str, float], together: bool = False
-) -> tuple[dict[str, float], float]:
-    """Lags [s] of runs, by name, found with the model's parameters (Gauss-Newton, a few steps), and the squares left.
-
-    together: whether they are one lag.
-    """
-    lags, left, change = dict(lags), np.inf, np.array([np.inf])
-    here = [[e.name == name for e in problem.experiments] for name in lags]
-    whose = np.any(here, axis=0)[None] if together else np.array(here)
+def _settled(problem: Problem, model: Model, lags: Mapping[str, float]) -> dict[str, float]:
+    """Lags [s] of runs, by name, found with the model's parameters (Gauss-Newton, a few steps)."""
+    lags, change = dict(lags), np.array([np.inf])
+    whose = np.array([[e.name == name for e in problem.experiments] for name in lags])
     for _ in range(_MOST_STEPS):
         seen = _evaluated(_as_read(problem, _shifted(lags)), model)
         if seen is None:
             break
-        left = seen.sum_of_squares
         if np.abs(change).max() < _SHIFT_TOLERANCE * _frame(problem):
             break
         columns = -_rate(seen)[:, None] * whose[:, seen.runs].T
@@ -176,9 +153,8 @@ def _settled(
         step, _ = bounded_change(seen.residual, np.column_stack([seen.jacobian, columns]), down, up)
         change = step[len(value) :]
         model = model.with_values(dict(zip(seen.names, value + step[: len(value)], strict=True)))
-        moved = np.broadcast_to(change, len(lags))
-        lags = {name: lag + float(by) for (name, lag), by in zip(lags.items(), moved, strict=True)}
-    return lags, left
+        lags = {name: lag + float(by) for (name, lag), by in zip(lags.items(), change, strict=True)}
+    return lags
 
 
 def _frame(problem: Problem) -> float:
@@ -274,14 +250,14 @@ def _without(channel: str) -> Reading:
     return reading
 
 
-def _shifted(lags: Mapping[str, float], otherwise: float = 0.0) -> Reading:
-    """lags [s]: of the angle behind the drive, by name of the run; otherwise: of any other run."""
+def _shifted(lags: Mapping[str, float]) -> Reading:
+    """lags [s]: of the angle behind the drive, by name of the run; none of any other."""
 
     def reading(experiment: Experiment) -> Experiment:
         schedule = experiment.run.schedule
         if schedule is None:
             return experiment
-        lag = lags.get(experiment.name, otherwise)
+        lag = lags.get(experiment.name, 0.0)
         return _driven_by(experiment, schedule.time + lag, schedule.signal)
 
     return reading

@@ -42,7 +42,6 @@ FAULTS = {
     "exchanged in run 1": ((_exchanged, 1.0), (1,)),
     "wrong sign in all runs": ((lambda schedule: schedule, -1.0), range(4)),
     "clock of the angle is off by +150 ms in run 3": ((_moved(0.15), 1.0), (3,)),
-    "before its command in all runs": ((_moved(-0.05), 1.0), range(4)),
 }
 
 
@@ -105,10 +104,13 @@ def test_what_is_missing_is_named_beside_the_fault():
     [
         pytest.param("quadratic_drag", {"coefficient": 2.5}, marks=pytest.mark.slow),
         ("camera_latency", {"latency": 0.04}),
+        ("camera_latency", {"latency": -0.05}),
     ],
 )
 def test_strong_physics_is_no_fault(effect, values):
-    """A drag ten times the typical one, and a camera that is late in every run."""
+    """A drag ten times the typical one; clocks of camera and drive that differ in every run alike, either way, are an
+    effect of the catalogue.
+    """
     found = improved(measured(effect, **{f"{effect}.{name}": value for name, value in values.items()}))
     assert found.set_up is None
     assert found.missing == (effect,)

@@ -89,12 +89,14 @@ class Outcome:
     @property
     def exact(self) -> bool:
         """Whether what is said to be missing is what is hidden, and nothing beside it."""
-        return set(self.missing) == set(self.hidden)
+        own = FAULTS[self.fault].effect if self.fault else ""
+        return set(self.missing) == {*self.hidden, *filter(None, [own])}
 
     @property
     def fault_named(self) -> bool:
-        """Whether the hidden fault of the set-up is said."""
-        return any(words in self.set_up for words in FAULTS[self.fault].said)
+        """Whether the hidden fault of the set-up is said, or the effect is named that is this fault."""
+        fault = FAULTS[self.fault]
+        return fault.effect in self.missing or any(words in self.set_up for words in fault.said)
 
     @property
     def group_size(self) -> int:

@@ -13,13 +13,14 @@ _LATE_S, _EARLY_S = 0.15, -0.05
 @dataclass(frozen=True)
 class SetUpFaultHidden:
     """everywhere: in all runs, or in one; drives: the run that the truth makes of a command; sign: of the angle;
-    said: words that name it, either of them.
+    said: words that name it, either of them; effect: of the catalogue that is this fault, if there is one.
     """
 
     everywhere: bool
     drives: Callable[[Run], Run]
     said: tuple[str, ...]
     sign: float = 1.0
+    effect: str = ""
 
     def runs(self, fitted: Sequence[str], every: Sequence[str], generator: np.random.Generator) -> set[str]:
         """The names of the runs that have it: of every one, or of one that is fitted."""
@@ -59,8 +60,6 @@ FAULTS = {
     "exchanged_channels": SetUpFaultHidden(False, _exchanged, _OPPOSITE),
     "inverted_angle": SetUpFaultHidden(True, _as_it_is, _OPPOSITE, sign=-1.0),
     "late_clock": SetUpFaultHidden(False, _late(_LATE_S), ("clock of the angle is off",)),
-    "early_clock": SetUpFaultHidden(
-        True, _late(_EARLY_S), ("before its command", "clock of the angle is off")
-    ),
+    "early_clock": SetUpFaultHidden(True, _late(_EARLY_S), (), effect="camera_latency"),
 }
 """What is hidden, by name."""

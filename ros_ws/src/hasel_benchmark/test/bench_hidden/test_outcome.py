@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 
 import pytest
 from hasel_benchmark.bench_hidden.case import Case
@@ -102,3 +103,21 @@ def test_survives_being_kept_in_a_file():
     """What is written as JSON is read back the same."""
     found = outcome(["quadratic_drag"])
     assert outcome_from_dict(json.loads(json.dumps(found.as_dict()))) == found
+
+
+@pytest.mark.parametrize(
+    ("fault", "missing", "said", "named", "exact"),
+    [
+        ("dead_upper_channel", (), "the upper channel is dead in run 2", True, True),
+        ("dead_upper_channel", ("quadratic_drag",), "the upper channel is dead in run 2", True, False),
+        ("dead_upper_channel", ("muscle_asymmetry",), "", False, False),
+        ("early_clock", ("camera_latency",), "", True, True),
+        ("early_clock", ("charging_lag",), "", False, False),
+    ],
+)
+def test_a_fault_of_the_set_up_is_named_by_its_words_or_as_the_effect_that_it_is(
+    fault, missing, said, named, exact
+):
+    """Clocks that differ in every run alike are an effect of the catalogue; nothing is beside it."""
+    found = replace(outcome([], "set_up"), fault=fault, missing=missing, set_up=said)
+    assert (found.fault_named, found.exact) == (named, exact)
