@@ -2,12 +2,15 @@
 
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Executor
 from pathlib import Path
 
 import numpy as np
 from hasel_recording import Recording, RecordingError, RecordingWarning, read_recordings
 from hasel_recording.plateaus import FINEST, roundest
+from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
+from hasel_sim.parallel import submit_all
 
 from hasel_sysid.data_gate import refusal
 from hasel_sysid.drive_match import check_levels, matched
@@ -46,6 +49,29 @@ def usable(recordings: Iterable[Recording]) -> list[Experiment]:
             refused.append(str(fault))
     if not good:
         raise RecordingError(" ".join(refused))
+    for sentence in refused:
+        warnings.warn(f"Skipped: {sentence}", RecordingWarning, stacklevel=2)
+    return good
+
+
+def simulable(
+    model: Model, experiments: Sequence[Experiment], pool: Executor, share: float = 1.0
+) -> list[Experiment]:
+    """The experiments that the model can follow; each other one is skipped with a RecordingWarning.
+
+    share: of the model's amplitudes; `GENTLEST` where a fit is to begin.
+    Raises SimulationError where experiments are given and none is left.
+    """
+    good, refused = [], []
+    futures = submit_all(pool, model.with_amplitudes_times(share), [each.run for each in experiments])
+    for each, future in zip(experiments, futures, strict=True):
+        try:
+            future.result()
+            good.append(each)
+        except SimulationError as error:
+            refused.append(f"{each.name} cannot be simulated: {error}")
+    if refused and not good:
+        raise SimulationError(" ".join(refused))
     for sentence in refused:
         warnings.warn(f"Skipped: {sentence}", RecordingWarning, stacklevel=2)
     return good

@@ -9,6 +9,9 @@ from hasel_sim.run import Run
 
 from hasel_sysid.errors import SysidError
 
+GENTLEST = 1 / 8
+"""Share of its amplitudes at which a body can be simulated, if it can be at all."""
+
 
 @dataclass(frozen=True)
 class Experiment:

@@ -135,6 +135,12 @@ class Model:
             parameters[name] = replace(self.parameter(name), value=float(value), standard_error=error)
         return replace(self, parameters=uncorrelated(parameters, standard_errors or ()))
 
+    def with_amplitudes_times(self, share: float) -> "Model":
+        """The model with all its amplitudes times a share."""
+        return self.with_values(
+            {name: share * v for name, v in self.values.items() if self.is_amplitude(name)}
+        )
+
     def with_covariance(self, names: Sequence[str], covariance: np.ndarray) -> "Model":
         """A copy in which the errors of these parameters have this covariance [n, n], infinite where not determined."""
         checked = [self.parameter(name).name for name in names]

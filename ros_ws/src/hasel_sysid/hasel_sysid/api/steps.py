@@ -9,9 +9,9 @@ from hasel_sim.parallel import executor
 
 from hasel_sysid.api.results import Diagnosed, Fitted, Improved, Recordings, Simulated
 from hasel_sysid.compare import compare
-from hasel_sysid.dataset import for_model, load_experiments, prepared
+from hasel_sysid.dataset import for_model, load_experiments, prepared, simulable
 from hasel_sysid.estimation import fit_baseline, identify
-from hasel_sysid.experiment import Experiment
+from hasel_sysid.experiment import GENTLEST, Experiment
 from hasel_sysid.improvement import diagnose as diagnosis_of
 from hasel_sysid.improvement import improve as improvement_of
 from hasel_sysid.problem import Problem
@@ -76,8 +76,9 @@ def fit(
     """
     start, fitted = _prepared(model, recordings)
     with executor(jobs) as pool:
+        fitted = simulable(start, fitted, pool, GENTLEST)
         result = identify(Problem(fitted, pool), start, method)
-        others = for_model(model, unseen) if unseen else []
+        others = simulable(result.model, for_model(model, unseen), pool) if unseen else []
         found = compare(result.model, fitted, pool, others, f"{_named(model)}, fitted")
     return Fitted(found, result)
 
@@ -92,7 +93,7 @@ def diagnose(
     """
     start, fitted = _prepared(model, recordings)
     with executor(jobs) as pool:
-        problem = Problem(fitted, pool)
+        problem = Problem(simulable(start, fitted, pool, GENTLEST), pool)
         result = fit_baseline(problem, start)
         return Diagnosed(diagnosis_of(problem, result, effects), result)
 
@@ -111,7 +112,10 @@ def improve(
     """
     start, fitted = _prepared(model, recordings)
     with executor(jobs) as pool:
-        validation = Problem(for_model(model, unseen), pool) if unseen else None
+        fitted, others = (
+            simulable(start, part, pool, GENTLEST) for part in (fitted, for_model(model, unseen))
+        )
+        validation = Problem(others, pool) if others else None
         return Improved(improvement_of(Problem(fitted, pool), start, validation, effects))
 
 

@@ -4,6 +4,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
+from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
 from hasel_sysid.command_line.inputs import chosen_model, load_all
@@ -14,7 +15,7 @@ from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import code_after, show
 from hasel_sysid.command_line.workers import workers
 from hasel_sysid.compare import Comparison, compare
-from hasel_sysid.dataset import for_model
+from hasel_sysid.dataset import for_model, simulable
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.report.from_results import comparison_content, never_fitted
 from hasel_sysid.report.write import write_report
@@ -52,7 +53,13 @@ def _compare(options: argparse.Namespace) -> int:
                     progress(text, (done + share) / len(models))
 
                 every = for_model(model, [*experiments, *unseen])
-                comparisons.append(compare(model, every[:seen], pool, every[seen:], label, step))
+                fitted, others = every[:seen], every[seen:]
+                try:
+                    found = compare(model, fitted, pool, others, label, step)
+                except SimulationError:
+                    fitted, others = (simulable(model, part, pool) for part in (fitted, others))
+                    found = compare(model, fitted, pool, others, label, step)
+                comparisons.append(found)
     except KeyboardInterrupt:
         if comparisons:
             _finish(options, comparisons, firsts)

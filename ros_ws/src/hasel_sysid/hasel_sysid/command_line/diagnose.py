@@ -4,7 +4,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from hasel_sysid.command_line.inputs import load_inputs
+from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import diagnose_parser
 from hasel_sysid.command_line.progress import part, progress_bar
@@ -35,6 +35,7 @@ def run(options: argparse.Namespace) -> int:
 def _diagnose(options: argparse.Namespace) -> int:
     given, limit = load_inputs(options), TimeLimit(options.seconds)
     with workers(options) as pool, progress_bar("diagnose") as progress:
+        given = that_can_be_simulated(given, pool)
         problem = Problem(given.experiments, pool, given.noise, limit)
         fit = fit_baseline(problem, given.model, part(progress, "fit: ", 0.0, 0.3))
         found = diagnose(problem, fit, options.effects, part(progress, "diagnosis: ", 0.3, 0.95))

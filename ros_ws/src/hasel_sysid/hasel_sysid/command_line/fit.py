@@ -8,7 +8,7 @@ from pathlib import Path
 from hasel_sim.model import Model, save_model
 
 from hasel_sysid.command_line.best_so_far import BestSoFar
-from hasel_sysid.command_line.inputs import load_inputs
+from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import fit_parser
 from hasel_sysid.command_line.progress import part, progress_bar
@@ -45,6 +45,7 @@ def _fit(options: argparse.Namespace) -> int:
     problem = None
     try:
         with workers(options) as pool, progress_bar("fit") as progress:
+            given = that_can_be_simulated(given, pool)
             problem = BestSoFar(given.experiments, pool)
             result = identify(problem, given.model, options.method, part(progress, "", 0.0, 0.9))
             label, last = f"{given.label}, fitted", part(progress, "", 0.95, 1.0)

@@ -9,7 +9,7 @@ from pathlib import Path
 from hasel_sim.model import Model, save_model
 from hasel_sim.parallel import simulate_all
 
-from hasel_sysid.command_line.inputs import load_inputs
+from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import improve_parser
 from hasel_sysid.command_line.progress import part, progress_bar
@@ -47,7 +47,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _improve(options: argparse.Namespace) -> int:
     given = load_inputs(options, DECIDED)
-    experiments, unseen, label, model = given.experiments, given.unseen, given.label, given.model
+    label, model = given.label, given.model
     options.output.mkdir(parents=True, exist_ok=True)
     limit = TimeLimit(options.seconds)
     ledger, written = Ledger(options.output), []
@@ -58,6 +58,8 @@ def _improve(options: argparse.Namespace) -> int:
 
     try:
         with workers(options) as pool, progress_bar("improve") as progress:
+            given = that_can_be_simulated(given, pool)
+            experiments, unseen = given.experiments, given.unseen
             start = compare(model, experiments, pool, unseen, label, part(progress, "start: ", 0.0, 0.03))
             found = improve(
                 Problem(experiments, pool, given.noise, limit),

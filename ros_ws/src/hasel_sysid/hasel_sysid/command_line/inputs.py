@@ -2,7 +2,8 @@
 
 import argparse
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from concurrent.futures import Executor
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,9 +13,9 @@ from hasel_sim.model import Model, load_model
 from hasel_sysid.command_line.options import DEFAULT_MODEL
 from hasel_sysid.command_line.shown import announce
 from hasel_sysid.data_gate import Finding
-from hasel_sysid.dataset import for_model, load_experiments, prepared
+from hasel_sysid.dataset import for_model, load_experiments, prepared, simulable
 from hasel_sysid.drive_match import check_levels
-from hasel_sysid.experiment import Experiment
+from hasel_sysid.experiment import GENTLEST, Experiment
 
 if TYPE_CHECKING:
     from hasel_sysid.noise.model import NoiseModel
@@ -45,6 +46,12 @@ def load_inputs(options: argparse.Namespace, decided_later: Collection[str] = ()
     model = prepared(model, experiments)
     check_levels(model, [each.recording for each in unseen])
     return Inputs(experiments, unseen, label, model, said, noise)
+
+
+def that_can_be_simulated(given: Inputs, pool: Executor) -> Inputs:
+    """The inputs without runs that the model cannot follow, of which a note tells."""
+    fitted, unseen = (simulable(given.model, e, pool, GENTLEST) for e in (given.experiments, given.unseen))
+    return replace(given, experiments=fitted, unseen=unseen)
 
 
 def _noise(given: float | None) -> "NoiseModel | None":

@@ -9,7 +9,7 @@ from hasel_recording import HASEL_PAIR
 from hasel_sim.model import Model
 from ruamel.yaml import YAML
 
-from hasel_sysid.command_line.inputs import load_inputs
+from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import suggest_parser
 from hasel_sysid.command_line.progress import progress_bar
@@ -39,6 +39,7 @@ def run(options: argparse.Namespace) -> int:
 def _suggest(options: argparse.Namespace) -> None:
     given = load_inputs(options)
     with workers(options) as pool, progress_bar("suggest") as progress:
+        given = that_can_be_simulated(given, pool)
         problem = Problem(given.experiments, pool, given.noise)
         named = any(not name.startswith("+") for name in options.effects or ())
         fit = fit_baseline(problem, given.model, lambda text, share: progress(text, 0.15 * share))

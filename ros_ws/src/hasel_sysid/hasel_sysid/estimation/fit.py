@@ -29,6 +29,7 @@ from hasel_sysid.estimation.least_squares import (
     values_and_bounds,
 )
 from hasel_sysid.estimation.starts import screen, starts
+from hasel_sysid.experiment import GENTLEST
 from hasel_sysid.noise.model import estimate_noise
 from hasel_sysid.problem import Evaluation, LowFidelityProblem, Problem
 
@@ -38,8 +39,6 @@ Progress = Callable[[str, float], None]
 TOLERANCE = 1e-3
 """Relative change of the sum of squares at which a fit ends."""
 _MOST_MAPPED = 3
-_GENTLER = 4
-"""How often the amplitudes of a start are halved until it can be simulated."""
 _FOLLOWED = 3
 """Starts of an effect that a fit follows, the most promising of all that were screened."""
 
@@ -290,15 +289,15 @@ class _Coarse(Problem):
 
 def _that_runs(problem: Problem, model: Model) -> Model:
     """The model, its amplitudes halved until the motion is gentle enough to be simulated."""
-    for attempt in range(_GENTLER):
-        (seen,) = problem.evaluate_each([model], [()])
+    share = 1.0
+    while True:
+        gentle = model.with_amplitudes_times(share)
+        (seen,) = problem.evaluate_each([gentle], [()])
         if not isinstance(seen, SimulationError):
-            return model
-        amplitudes = {name: 0.5 * v for name, v in model.values.items() if model.is_amplitude(name)}
-        if attempt == _GENTLER - 1 or not amplitudes:
+            return gentle
+        if share <= GENTLEST or not any(map(model.is_amplitude, model.values)):
             raise seen
-        model = model.with_values(amplitudes)
-    return model
+        share *= 0.5
 
 
 def _standard_starts(problem: Problem, model: Model, effect: Effect) -> list[Model]:

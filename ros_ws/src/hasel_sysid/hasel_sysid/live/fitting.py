@@ -7,9 +7,10 @@ from hasel_recording import Recording, read_recordings
 from hasel_sim.model import Model
 from hasel_sim.parallel import executor
 
-from hasel_sysid.dataset import for_model, prepared, usable
+from hasel_sysid.dataset import for_model, prepared, simulable, usable
 from hasel_sysid.estimation import FittedModel, fit_baseline, identify
 from hasel_sysid.estimation.fit import Progress
+from hasel_sysid.experiment import GENTLEST
 from hasel_sysid.improvement import diagnose
 from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Problem
@@ -33,8 +34,9 @@ def fit_recordings(
     """
     experiments = for_model(model.with_levels([]), usable(recordings))
     with executor(jobs or None) as pool:
-        problem = Problem(experiments, pool)
-        return identify(problem, prepared(model, experiments), method or DEFAULT_METHOD, progress)
+        start = prepared(model, experiments)
+        problem = Problem(simulable(start, experiments, pool, GENTLEST), pool)
+        return identify(problem, start, method or DEFAULT_METHOD, progress)
 
 
 def diagnose_recordings(
@@ -50,8 +52,9 @@ def diagnose_recordings(
     """
     experiments = for_model(model.with_levels([]), usable(recordings))
     with executor(jobs or None) as pool:
-        problem = Problem(experiments, pool)
-        fit = fit_baseline(problem, prepared(model, experiments), progress)
+        start = prepared(model, experiments)
+        problem = Problem(simulable(start, experiments, pool, GENTLEST), pool)
+        fit = fit_baseline(problem, start, progress)
         return diagnose(problem, fit, effects or None, progress)
 
 
