@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from hasel_sim.effects.base import Coefficients, Effect, EffectParameter, ForceEffect, MaterialEffect
+from hasel_sim.effects.guarded import guarded
 from hasel_sim.first_run import announce_compilation
 from hasel_sim.mechanics.branches import Branches
 from hasel_sim.mechanics.force_law import ForceLaw
@@ -107,16 +108,16 @@ class Builder:
         coefficients, _ = _material(self._described, self.mesh, self.nodes)
         branches, fading = [], []
         for effect in self._of(MaterialEffect):
-            effect.modify(coefficients, values[effect.id])
-            branches += effect.branches(values[effect.id])
-            fading += effect.fading(values[effect.id])
+            guarded(effect, "modify", coefficients, values[effect.id])
+            branches += guarded(effect, "branches", values[effect.id])
+            fading += guarded(effect, "fading", values[effect.id])
         plane_stress = self.model.description.material.plane == "stress"
         order = self.model.description.numerics.quadrature_order
         return Solid(self.mesh, self.nodes, coefficients, Branches(branches, fading), plane_stress, order)
 
     def _sites(self, effect: ForceEffect, p: SimpleNamespace) -> Sites:
         if effect.sites == "points":
-            return point_sites(self.mesh, effect.points(marker_points(self.model)[:3], p))
+            return point_sites(self.mesh, guarded(effect, "points", marker_points(self.model)[:3], p))
         if effect.sites not in self._known_sites:
             self._known_sites[effect.sites] = self._sites_of_all(effect.sites)
         return self._known_sites[effect.sites]

@@ -6,6 +6,7 @@ import numpy as np
 from hasel_recording.marker_angle import sin_theta_from_markers
 
 from hasel_sim.effects.base import ObservationEffect
+from hasel_sim.effects.guarded import guarded
 from hasel_sim.mesh.mesh import Mesh
 
 
@@ -66,8 +67,8 @@ def observe(
 ) -> np.ndarray:
     """The measured series [n] from marker positions and lines across [n, 3, 2] at times [s] [n]."""
     for effect in effects:
-        positions = effect.markers(positions, across, values[effect.id])
+        positions = guarded(effect, "markers", positions, across, values[effect.id])
     series = sin_theta_from_markers(positions)
     for effect in effects:
-        series = effect.angle(time, series, values[effect.id])
+        series = guarded(effect, "angle", time, series, values[effect.id])
     return series

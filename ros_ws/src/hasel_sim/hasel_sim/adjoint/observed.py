@@ -5,6 +5,7 @@ from hasel_recording.marker_angle import sin_theta_from_markers
 
 from hasel_sim.adjoint.trajectory import Trajectory
 from hasel_sim.effects.base import ObservationEffect
+from hasel_sim.effects.guarded import guarded
 
 _STEP = 1e-6
 
@@ -30,7 +31,7 @@ def _angles(trajectory: Trajectory, markers: np.ndarray, lines: np.ndarray) -> n
     """sin theta before the effects that act on the series itself."""
     values = trajectory.prepared.model.effect_values()
     for effect in trajectory.prepared.observed_by:
-        markers = effect.markers(markers, lines, values[effect.id])
+        markers = guarded(effect, "markers", markers, lines, values[effect.id])
     return sin_theta_from_markers(markers)
 
 
@@ -44,7 +45,7 @@ def _reverse_angles(trajectory: Trajectory, weights: np.ndarray) -> np.ndarray:
 
     def measured(series: np.ndarray) -> np.ndarray:
         for effect in effects:
-            series = effect.angle(time, series, values[effect.id])
+            series = guarded(effect, "angle", time, series, values[effect.id])
         return series
 
     series = _angles(trajectory, trajectory.markers, trajectory.lines)

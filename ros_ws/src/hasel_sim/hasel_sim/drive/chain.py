@@ -11,6 +11,7 @@ from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.drive.sloped_box import limit_rate, target_contraction
 from hasel_sim.effects.base import DriveEffect, DriveStage
 from hasel_sim.effects.first_order_lag import first_order_lag
+from hasel_sim.effects.guarded import guarded
 from hasel_sim.model import Model
 
 _SECANTS = 3
@@ -121,8 +122,8 @@ class DriveChain:
             for effect in self.effects:
                 if effect.stage == stage:
                     p: SimpleNamespace = effect_values[effect.id]
-                    signal = effect.respond(time, signal, p)
-                    time = effect.clock(time, p)
+                    signal = guarded(effect, "respond", time, signal, p)
+                    time = guarded(effect, "clock", time, p)
         return time, signal
 
     def _onsets(self, values: dict[str, float]) -> np.ndarray:

@@ -6,7 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 
 from hasel_sim.effects.base import Coefficients, MaterialEffect, MaterialPoints
-from hasel_sim.effects.check_tools import called, expect, guarded, repeatable, same
+from hasel_sim.effects.check_tools import called, expect, repeatable, same
+from hasel_sim.effects.guarded import guarded
 from hasel_sim.mesh.mesh import Region
 
 _OF_CONSTANTS = ("modify", "branches", "fading")

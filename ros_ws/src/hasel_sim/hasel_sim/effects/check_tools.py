@@ -1,10 +1,11 @@
-"""What the checks of an effect share: the one sentence, a guarded call, and equality up to round-off."""
+"""What the checks of an effect share: the one sentence, a call whose result is looked at, and equality to round-off."""
 
 from copy import deepcopy
 
 import numpy as np
 
 from hasel_sim.effects.base import Effect
+from hasel_sim.effects.guarded import guarded
 from hasel_sim.errors import ModelError
 
 
@@ -31,16 +32,6 @@ def called(effect: Effect, method: str, shape: tuple[int, ...], *arguments) -> n
     )
     repeatable(effect, method, np.array_equal(result, again))
     return result
-
-
-def guarded(effect: Effect, method: str, *arguments):
-    """What a method returns; any failure of it becomes a ModelError."""
-    try:
-        return getattr(effect, method)(*arguments)
-    except Exception as error:  # noqa: BLE001  a user's method may fail in any way
-        return expect(
-            False, effect, f"fails in {method} ({type(error).__name__}: {error})", "correct that method"
-        )
 
 
 def repeatable(effect: Effect, method: str, same_again: bool) -> None:

@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Sequence
 from copy import copy
+from functools import partial
 from types import SimpleNamespace
 from typing import Any, TypeVar
 
 import numpy as np
 
 from hasel_sim.effects.base import ForceEffect, SiteState, Surroundings, normal
+from hasel_sim.effects.guarded import guarded
 from hasel_sim.mechanics.copies import ALONE, Copies
 from hasel_sim.mechanics.laws import (
     OF_THE_DRIVE,
@@ -60,7 +62,7 @@ class SiteForce:
     ) -> None:
         self.effect, self.sites, self._muscles = effect, sites, muscles
         self._method = "flux" if flux else "force"
-        self._respond = getattr(effect, self._method)
+        self._respond = partial(guarded, effect, self._method)
         self._gravity = np.array(gravity)
         self._reference = sites.value(reference[..., None])[..., 0]
         on_skin = effect.sites == "skin"

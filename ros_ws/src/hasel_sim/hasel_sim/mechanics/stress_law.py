@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hasel_sim.effects.base import MaterialEffect, MaterialPoints
+from hasel_sim.effects.guarded import guarded
 from hasel_sim.mechanics import strain
 from hasel_sim.mechanics.copies import ALONE, Copies
 from hasel_sim.mechanics.laws import (
@@ -167,7 +168,7 @@ class StressLaw:
         def ask(lanes: np.ndarray, values: SimpleNamespace) -> np.ndarray | None:
             at = self._points(rows, drive, lanes, copies)
             with np.errstate(invalid="ignore", divide="ignore"):  # inside out: NaN, and the step is refused
-                stress = np.asarray(self.effect.first_piola(at, values)).reshape(-1, 4)
+                stress = np.asarray(guarded(self.effect, "first_piola", at, values)).reshape(-1, 4)
             if len(lanes) == 1 or not at.looked:
                 return stress
             self._groups = one_by_one(self._groups)

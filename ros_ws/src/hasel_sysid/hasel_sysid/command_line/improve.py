@@ -90,7 +90,7 @@ def _improve(options: argparse.Namespace) -> int:
     lines = improvement_lines(found, stages, suggestions)
     further = len(found.diagnosis.findings) - 1
     others = "tables of all runs, where the model fails" + (
-        f", the other {further} effects" if further else ""
+        f", the other {further} effects" if further > 1 else ", the other effect" if further else ""
     )
     summarise(lines, everything, options.all, others)
     _finish(options, found, start, stages, suggestions, suspected)
