@@ -12,8 +12,8 @@ from hasel_driver.shvps_supply import ShvpsSupply
 from hasel_driver.supply import Supply
 
 
-def make_supply(parameters: Mapping[str, Any]) -> Supply:
-    """A supply, not yet opened. Raises LimitError where a parameter makes no sense."""
+def limits_of(parameters: Mapping[str, Any]) -> Limits:
+    """The limits that the parameters set. Raises LimitError where together they make no sense."""
     limits = Limits(
         maximum_voltage_v=parameters["maximum_voltage"],
         slew_v_per_ms=parameters["slew_rate"],
@@ -24,6 +24,12 @@ def make_supply(parameters: Mapping[str, Any]) -> Supply:
         load_f=parameters["load_capacitance"],
     )
     limits.check_sum()
+    return limits
+
+
+def make_supply(parameters: Mapping[str, Any]) -> Supply:
+    """A supply, not yet opened. Raises LimitError where a parameter makes no sense."""
+    limits = limits_of(parameters)
     if parameters["backend"] == "hasel":
         return HaselSupply(SerialPort(parameters["port"], protocol.BAUD), limits)
     if not parameters["second_port"]:

@@ -11,7 +11,6 @@ from hasel_driver.mode import Mode
 from hasel_driver.supply import Reading
 
 STALE_S = 0.2
-QUIET_STALE_S = 3.0  # where nothing is armed, a gap in the telemetry is borne, with a warning
 TRANSITION_S = 0.3  # time the board has to follow a request
 PROOF_S = 0.9  # for the test pulse of arming
 GROUND_S = 0.3  # a supply that should be grounded, and is not
@@ -42,7 +41,7 @@ class Check:
 
 
 def _no_telemetry(sight: Sight) -> str | None:
-    return None if sight.reading else f"none for {STALE_S if sight.armed else STALE_S + QUIET_STALE_S:g} s"
+    return None if sight.reading else f"none for {STALE_S:g} s"
 
 
 def _unexpected(sight: Sight) -> str | None:
@@ -101,7 +100,7 @@ CHECKS: tuple[Check, ...] = (
     Check(
         FaultCode.NO_TELEMETRY,
         _no_telemetry,
-        lambda sight: 0.0 if sight.armed else QUIET_STALE_S,
+        _for(0.0),
         "what is not reported is not known",
     ),
     Check(

@@ -59,6 +59,7 @@ class DriverNode(LifecycleNode):
         self._retrying = self._port_missing = False
         self._store: FaultStore | None = None
         self._last_problem = ""
+        self._silent = False  # the supply, at rest
         self._configured_s = 0.0
         self._last_limits: Limits | None = None
         self._claim = Claim(time.monotonic)
@@ -252,6 +253,13 @@ class DriverNode(LifecycleNode):
             self.experiments.record_state(message)
         self.history.take(status)
         self._keep(status.fault)
+        if bool(status.silent_s) != self._silent:
+            self._silent = not self._silent
+            self.get_logger().warning(
+                "The supply does not report: its state is unknown, and it cannot be armed."
+                if self._silent
+                else "The supply reports again."
+            )
 
     def _keep(self, fault: Fault | None) -> None:
         store = self._store
@@ -292,6 +300,7 @@ class DriverNode(LifecycleNode):
                 "device": supervisor.name,
                 "maximum_voltage_v": supervisor.maximum_voltage_v,
                 "rejected_commands": supervisor.rejected_commands,
+                "garbled_lines": supervisor.garbled_lines,
                 "interlock_closed": status.interlock_closed,
                 "grounds_itself_without_host": supervisor.capabilities.deadman,
                 "thread_alive": thread.is_alive(),

@@ -86,6 +86,9 @@ NEED_PROOF = {FaultCode.NOT_GROUNDED, FaultCode.GROUND_NOT_PROVEN, FaultCode.MON
 # These a restarted node has still.
 OUTLIVE_RESTART = NEED_PROOF | {FaultCode.EMERGENCY_STOP, FaultCode.DISCREPANCY}
 
+# While nothing is armed, by the board's last word too, these are no fault: the state is unknown, and arming refused.
+BORNE_AT_REST = {FaultCode.NO_TELEMETRY, FaultCode.GARBAGE_RECEIVED}
+
 
 class SupplyFaultError(Exception):
     """Raised where a fault is found; whoever catches it grounds the output and latches `fault`."""

@@ -30,7 +30,7 @@ class Limits:
     heartbeat_s: float = 0.3
     dead_time_s: float = 0.005
     contacts_read: bool = False  # auxiliary contacts of the ground relays are wired
-    load_f: float = 1.5e-9  # of the largest muscle
+    load_f: float = 4.5e-9  # of the largest muscle with its cable
 
     @property
     def silence_to_ground_s(self) -> float:

@@ -72,8 +72,9 @@ def to_diagnostics(
     if status is None:
         entry.level, entry.message = DiagnosticStatus.WARN, "not configured: the port is closed"
     else:
-        entry.level = DiagnosticStatus.ERROR if status.mode is Mode.FAULT else DiagnosticStatus.OK
-        entry.message = str(status)
+        entry.level = DiagnosticStatus.WARN if status.silent_s else DiagnosticStatus.OK
+        entry.level = DiagnosticStatus.ERROR if status.mode is Mode.FAULT else entry.level
+        entry.message = str(status) + (f", no report for {status.silent_s:.1f} s" if status.silent_s else "")
         details = {"mode": status.mode.name, "output": status.output, **details}
     entry.values = [KeyValue(key=key, value=str(value)) for key, value in details.items()]
     array = DiagnosticArray(status=[entry])

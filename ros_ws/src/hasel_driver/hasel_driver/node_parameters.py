@@ -8,6 +8,7 @@ from hasel_recording.declared_parameters import descriptor
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 
+from hasel_driver.backends import limits_of
 from hasel_driver.errors import DriverError, LimitError
 from hasel_driver.parameters import LOWERABLE, PARAMETERS, Parameter
 
@@ -33,6 +34,7 @@ def declare(node: Node, in_use: Callable[[], bool], lower: Callable[[float], Non
             for change in changes:
                 if change.name in TABLE:
                     _check_change(TABLE[change.name], change.value, in_use(), lower)
+            limits_of(values(node) | {change.name: change.value for change in changes})
         except DriverError as error:
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)

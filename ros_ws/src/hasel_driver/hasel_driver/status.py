@@ -31,6 +31,7 @@ class Status:
     measured_v: Voltages
     current_a: Voltages
     interlock_closed: tuple[bool, bool] | None = None
+    silent_s: float = 0.0  # since the last report of a supply at rest, where that is too long ago
 
     @property
     def output(self) -> str:

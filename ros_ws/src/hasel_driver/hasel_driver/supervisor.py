@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 
 from hasel_driver.checks import STALE_S, Sight, Watch, volts
 from hasel_driver.errors import LimitError, PortError, RefusedError
-from hasel_driver.faults import NEED_PROOF, Fault, FaultCode, SupplyFaultError
+from hasel_driver.faults import BORNE_AT_REST, NEED_PROOF, Fault, FaultCode, SupplyFaultError
 from hasel_driver.ground import Ground
 from hasel_driver.limits import Limits, Voltages, clip
 from hasel_driver.mode import Mode
@@ -37,7 +37,7 @@ class Supervisor:
         self._inherited: Fault | None = None
         self.name: str | None = None  # of the device; None while not connected
         self.fault: Fault | None = None
-        self.rejected_commands = 0
+        self.rejected_commands = self.garbled_lines = 0
         self._reading: Reading | None = None
         self._armed_wanted = False
         self._requested_s = -math.inf  # when a change of mode was last asked for
@@ -97,9 +97,9 @@ class Supervisor:
         now_s = self._clock()
         reading = self._fresh_reading(now_s)
         if reading is None:
-            borne = self.connected and self.fault is None and not self._armed_wanted
-            mode = Mode.STANDBY if borne else Mode.FAULT
-            return Status(now_s, mode, self.fault, None, UNKNOWN, UNKNOWN, UNKNOWN)
+            silent_s = now_s - self._reading.time_s if self.fault is None and self._at_rest() else 0.0
+            mode = Mode.STANDBY if silent_s else Mode.FAULT
+            return Status(now_s, mode, self.fault, None, UNKNOWN, UNKNOWN, UNKNOWN, silent_s=silent_s)
         ground = self._ground(reading)
         mode = Mode.ACTIVE if ground is Ground.NOT and reading.mode is not Mode.FAULT else reading.mode
         mode = Mode.FAULT if self.fault else mode
@@ -112,6 +112,11 @@ class Supervisor:
         unproven = self.capabilities.proves_grounded and status.quiet is False
         if status.mode is not Mode.STANDBY and not (unproven and status.mode is Mode.ACTIVE):
             raise RefusedError(f"Arming needs the state STANDBY, it is {status}: see to that first.")
+        if status.silent_s:
+            raise RefusedError(
+                f"The supply has not reported for {status.silent_s:.1f} s, so nothing is known of its output:"
+                " arm when it does; if it does not, look at its cable and power."
+            )
         if unproven:
             raise RefusedError(
                 f"Arming needs a discharged output, it is {status}, {volts(status.measured_v)} measured:"
@@ -242,7 +247,7 @@ class Supervisor:
             return False
         now_s = self._clock()
         readings: list[Reading] = []
-        self._guard(lambda: readings.extend(self._supply.service(now_s, self._may_keep_alive())))
+        self._guard(lambda: readings.extend(self._supply.service(now_s, heartbeat=self._armed_wanted)))
         for reading in readings:
             self._reading = reading
             self._judge(reading)
@@ -314,16 +319,17 @@ class Supervisor:
             sight = Sight(fresh, self.limits, self._armed_wanted, self._proving, asked_s, self._unfollowed)
             found = self._watch.look(sight, now_s)
             if found is not None:
-                self.fail(Fault(*found))
+                self._take(Fault(*found))
         if self._armed_wanted and not self._experiment_running and now_s - self._used_s > self.idle_disarm_s:
             self.disarm()
         proven = fresh is not None and not fresh.mode.may_be_live
         if self.fault is not None and not proven and now_s - self._stop_sent_s > STOP_REPEAT_S:
             self._send_stop()
 
-    def _may_keep_alive(self) -> bool:
-        """An armed board gets heartbeats only while nothing is wrong, so that its own timeout can work."""
-        return self._armed_wanted or (self._reading is not None and not self._reading.mode.may_be_live)
+    def _at_rest(self) -> bool:
+        """Nothing is armed, and the board's last word, however old, is that."""
+        reading = self._reading if self.connected and not self._armed_wanted else None
+        return reading is not None and not reading.mode.may_be_live
 
     def _fresh_reading(self, now_s: float) -> Reading | None:
         if self._reading is None or not self.connected or now_s - self._reading.time_s > STALE_S:
@@ -343,4 +349,10 @@ class Supervisor:
         try:
             action()
         except SupplyFaultError as problem:
-            self.fail(problem.fault)
+            self._take(problem.fault)
+
+    def _take(self, fault: Fault) -> None:
+        if fault.code is FaultCode.GARBAGE_RECEIVED:
+            self.garbled_lines += 1
+        if not (fault.code in BORNE_AT_REST and self._at_rest()):
+            self.fail(fault)

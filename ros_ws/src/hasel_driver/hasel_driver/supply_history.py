@@ -2,11 +2,16 @@
 
 One JSON object a line, appended and never rewritten:
 `{"time": "2026-01-31T12:00:00+00:00", "event": "fault", "code": 2, "name": "OVERCURRENT", "text": …, …}`
-`{"time": …, "event": "leakage", "channel": "upper", "voltage_v": 5000.0, "current_a": 5e-06, "resistance_ohm": 1e9}`
+`{"time": …, "event": "leakage", "channel": "upper", "voltage_v": 5000.0, "current_a": 5.2e-06, "reports": 5950,
+"spread_a": 4e-07, "resistance_ohm": 9.6e8}`
+
+The board's monitor counts in steps of 1 µA. The mean of a minute's reports is finer by as much as they scatter over
+those steps, which `spread_a`, their standard deviation, tells: where it is 0, the current is known to 1 µA only.
 """
 
 import json
 import queue
+import statistics
 import threading
 from collections.abc import Callable
 from datetime import datetime, timezone
@@ -91,13 +96,15 @@ class SupplyHistory:
         due = status.time_s - self._noted_s[channel] >= LEAKAGE_PERIOD_S
         if due and status.time_s - begun_s >= 2 * SETTLED_S:
             self._noted_s[channel] = status.time_s
-            mean_a = sum(self._currents[channel]) / len(self._currents[channel])
-            self.leakage_a[channel] = mean_a
+            currents_a, self._currents[channel] = self._currents[channel], []
+            mean_a = self.leakage_a[channel] = statistics.fmean(currents_a)
             self._note(
                 event="leakage",
                 channel=CHANNELS[channel],
                 voltage_v=voltage_v,
                 current_a=mean_a,
+                reports=len(currents_a),
+                spread_a=statistics.pstdev(currents_a),
                 resistance_ohm=abs(voltage_v) / mean_a if mean_a > 0 else None,
             )
 

@@ -34,6 +34,7 @@ INPUTS = {
     "reset": "reset the board",
     "overcurrent": "short the upper muscle by 2 MΩ until `recover`",
     "interlock": "open both channels of the interlock until `recover`",
+    "bounce": "open both channels for 2 ms, as a contact that bounces or a disturbance on its line does",
     "interlock_a": "open its first channel only",
     "interlock_b": "open its second channel only",
     "weld": "weld the upper muscle's positive contact, so that its ground contact cannot close",
@@ -148,6 +149,12 @@ class VirtualSupply:
 
     def _inject_interlock(self) -> None:
         self.board.interlock_closed = [False, False]
+
+    def _inject_bounce(self) -> None:
+        self.board.interlock_closed = [False, False]
+        for _ in range(2):
+            self.board.tick()
+        self.board.interlock_closed = [True, True]
 
     def _inject_interlock_a(self) -> None:
         self.board.interlock_closed[0] = False

@@ -156,6 +156,16 @@ def test_either_channel_of_the_interlock_grounds(board, rig, channel):
     assert board.ask("CLEAR") == (True, "CLEAR")
 
 
+def test_an_interlock_that_bounces_for_two_milliseconds_is_no_fault(board, rig):
+    """A spike on a long line, or a contact's bounce, does not end an experiment; 3 ms do."""
+    drive(board, 5000, 0)
+    for _ in range(5):
+        rig.say("bounce")
+        assert board.listen(0.05)[-1].mode is Mode.ACTIVE
+    rig.say("interlock")
+    assert board.listen(0.1)[-1].fault_code == INTERLOCK
+
+
 def test_calibration_corrects_output_and_monitor_and_survives_a_reset(board, rig):
     """Gains and offsets are clipped, kept by the board, and make output and monitor agree with the truth."""
     rig.say("miscalibrate")

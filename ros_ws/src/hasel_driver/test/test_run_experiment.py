@@ -292,6 +292,7 @@ REFUSALS = {
     "frequency_hz is nan": {"frequency": float("nan")},
     "rest_time is -1.0 s": {"rest_time": -1.0},
     "duty is 0.0": {"duty": 0.0},
+    "lasts 6e+06 s, at most 3600 s": {"frequency": 0.01, "periods": 60_000},
     "There is no waveform file": {"waveform_file": "no_such.csv"},
     "waveform_file is '/etc/shadow', a file below": {"waveform_file": "/etc/shadow"},
     "output is '/proc/no/such/place.mcap', a file below": {"output": "/proc/no/such/place.mcap"},

@@ -25,6 +25,15 @@ def test_a_message_heard_twice_counts_once():
     assert not holders
 
 
+def test_an_older_stop_heard_after_its_release_is_still_a_stop():
+    """Each of our subscriptions has its own queue: it is told once, and holds nothing any more."""
+    holders = StopHolders()
+    holders.take(A, 2, "/a", False)
+    assert holders.take(A, 1, "/a", True)
+    assert not holders.take(A, 1, "/a", True)
+    assert not holders
+
+
 def test_release_names_who_held():
     """Whoever is gone is marked, and released by the service only."""
     holders = StopHolders()

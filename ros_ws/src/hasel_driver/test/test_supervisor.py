@@ -330,16 +330,41 @@ def test_what_nobody_uses_is_disarmed(case):
 
 
 def test_a_gap_in_the_telemetry_is_borne_while_nothing_is_armed(case):
-    """Unknown, but no fault, for three seconds; then it is one."""
+    """Unknown, however long, and no fault; nothing can be armed until the supply reports again."""
     case.pass_time(0.5)
     case.supply.silent = True
-    case.pass_time(2.5)
+    case.pass_time(10.0)
     status = case.supervisor.status()
     assert (status.mode, status.output, status.fault) == (Mode.STANDBY, "unknown", None)
-    with pytest.raises(RefusedError):
-        case.supervisor.begin_experiment()
-    case.pass_time(1.0)
+    assert status.silent_s == pytest.approx(10.0, abs=0.1)
+    with pytest.raises(RefusedError, match="not reported for 10"):
+        case.supervisor.arm()
+    case.supply.silent = False
+    case.pass_time(0.1)
+    case.arm()
+    assert case.supervisor.status().mode is Mode.ARMED
+
+
+def test_a_supply_that_falls_silent_before_it_says_that_it_is_disarmed_is_a_fault(case):
+    """What was armed by its last word is not at rest."""
+    case.arm()
+    case.supply.silent = True
+    case.supervisor.disarm()
+    case.pass_time(0.3)
     assert case.supervisor.fault.code is FaultCode.NO_TELEMETRY
+
+
+def test_a_garbled_line_is_borne_while_nothing_is_armed(case):
+    """As a gap begins and ends with; it is counted. Armed, it is a fault."""
+    case.pass_time(0.5)
+    case.supply.broken = True
+    case.pass_time(0.01)
+    case.supply.broken = False
+    assert (case.supervisor.fault, case.supervisor.garbled_lines) == (None, 1)
+    case.arm()
+    case.supply.broken = True
+    case.pass_time(0.01)
+    assert case.supervisor.fault.code is FaultCode.GARBAGE_RECEIVED
 
 
 BROKEN = {

@@ -2,6 +2,7 @@
 
 import json
 import math
+import random
 
 import pytest
 from hasel_driver.faults import Fault, FaultCode
@@ -56,6 +57,20 @@ def test_leakage_is_the_current_at_a_voltage_that_stands_still(path):
     assert [entry["event"] for entry in entries] == ["leakage"] * 3
     assert entries[0]["channel"] == "upper"
     assert entries[0]["resistance_ohm"] == pytest.approx(1e9, rel=0.01)
+
+
+def test_the_trend_of_leakage_is_finer_than_the_monitors_step(path):
+    """Reports of whole µA that scatter as the ADC's noise does: the growth by a quarter of a step is seen."""
+    noise = random.Random(1)
+    history = SupplyHistory(str(path), pytest.fail)
+    for index in range(13_000):
+        true_ua = 5.2 if index < 6_120 else 5.45
+        history.take(status(index * 0.01, 5000.0, math.floor(noise.gauss(true_ua, 0.6) + 0.5) * 1e-6))
+    history.close()
+    entries = [json.loads(line) for line in path.read_text().splitlines()]
+    assert [entry["current_a"] * 1e6 for entry in entries[1:]] == pytest.approx([5.2, 5.45], abs=0.05)
+    assert [entry["reports"] for entry in entries[1:]] == pytest.approx([6000, 6000], rel=0.01)
+    assert entries[1]["spread_a"] > 3e-7
 
 
 def test_a_place_that_cannot_be_written_is_said_and_costs_nothing(tmp_path):

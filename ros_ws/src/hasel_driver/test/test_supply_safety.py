@@ -127,3 +127,18 @@ def test_a_trip_by_charging_says_what_to_change(loaded_rig):
         assert "lower slew_rate" in str(bench.supervisor.fault)
     finally:
         bench.close()
+
+
+@pytest.mark.rounds(1, 10)
+def test_a_gap_in_the_telemetry_at_rest_passes(bench, rounds):
+    """A line that falls silent, cut wherever, and comes back: no fault, no claim meanwhile, and armed at once."""
+    for _ in range(rounds):
+        bench.await_mode(Mode.STANDBY)
+        bench.rig.say("silence")
+        assert bench.wait_until(lambda: bench.status().silent_s > 0.5)
+        assert bench.status().output == "unknown"
+        bench.rig.say("recover")
+        assert bench.wait_until(lambda: not bench.status().silent_s)
+        assert bench.supervisor.fault is None
+        bench.arm()
+        bench.call(bench.supervisor.disarm)

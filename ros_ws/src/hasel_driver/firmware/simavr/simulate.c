@@ -198,6 +198,18 @@ static void exchange(void) {
   transmitted_count = 0;
 }
 
+static void run_until(uint64_t target) {
+  static uint64_t next_tick;
+  while (avr->cycle < target) {
+    avr_run(avr);
+    feed_uart();
+    if (avr->cycle >= next_tick) {
+      next_tick = avr->cycle + TICK_CYCLES;
+      tick();
+    }
+  }
+}
+
 static void recover(void) {
   silent = deaf = noise = truncate_next = contact_welded = ground_broken = boot_lost = false;
   interlock_open[0] = interlock_open[1] = false;
@@ -225,6 +237,14 @@ static void print_output(void) {
          contacts[1] == GROUND, peaks_v[0], peaks_v[1]);
 }
 
+static void bounce(void) {
+  interlock_open[0] = interlock_open[1] = true;
+  set_interlock();
+  run_until(avr->cycle + 2 * TICK_CYCLES);
+  interlock_open[0] = interlock_open[1] = false;
+  set_interlock();
+}
+
 static bool obey(const char* word) {
   if (!strcmp(word, "quit")) return false;
   if (!strcmp(word, "silence")) silent = true;
@@ -232,6 +252,7 @@ static bool obey(const char* word) {
   else if (!strcmp(word, "noise")) noise = true;
   else if (!strcmp(word, "truncate")) truncate_next = true;
   else if (!strcmp(word, "interlock")) interlock_open[0] = interlock_open[1] = true, set_interlock();
+  else if (!strcmp(word, "bounce")) bounce();
   else if (!strcmp(word, "interlock_a")) interlock_open[0] = true, set_interlock();
   else if (!strcmp(word, "interlock_b")) interlock_open[1] = true, set_interlock();
   else if (!strcmp(word, "weld")) contact_welded = true;
@@ -279,18 +300,6 @@ static bool obey_input(void) {
 
 static void sleep_callback(avr_t* self, avr_cycle_count_t cycles) {
   (void)self, (void)cycles;  // pace() keeps real time
-}
-
-static void run_until(uint64_t target) {
-  static uint64_t next_tick;
-  while (avr->cycle < target) {
-    avr_run(avr);
-    feed_uart();
-    if (avr->cycle >= next_tick) {
-      next_tick = avr->cycle + TICK_CYCLES;
-      tick();
-    }
-  }
 }
 
 static void start(const char* path) {
