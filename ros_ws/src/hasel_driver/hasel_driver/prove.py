@@ -1,23 +1,47 @@
 """`ros2 run hasel_driver prove`: breaks the simulated supply's hardware, kind by kind, and judges what the driver says.
 
-The truth is the simulated contacts and voltages, never the driver's word. With `--firmware` (firmware/build) the sketch
-in simavr is tried instead of the virtual supply. The table is printed, and the exit code is 0 where nothing was wrong.
+Then other nodes come: a second driver of its name, and strangers. The truth is the simulated contacts and voltages,
+never a node's word. With `--firmware` (firmware/build) the sketch in simavr is tried instead of the virtual supply.
+The table is printed, and the exit code is 0 where nothing was wrong.
 """
 
 import argparse
 import sys
-from collections.abc import Sequence
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from hasel_driver.bench_options import firmware_files
+from hasel_driver.errors import RefusedError
 from hasel_driver.testing.bench import Bench
-from hasel_driver.testing.kinds import KINDS, UNSEEN, Kind, try_kind
+from hasel_driver.testing.kinds import KINDS, UNSEEN, Kind, Trial, try_kind
 from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Rig
 
+DISCOVERY_S = 3.5  # within which a driver that runs already is known
 
-def prove(command: list[str], kinds: Sequence[Kind], rounds: int) -> list[tuple[str, float, list[str]]]:
-    """For each kind its name, the longest time to its fault [s], and what was wrong."""
-    rows = []
+
+@dataclass(frozen=True)
+class Row:
+    """What became of a kind, all rounds together; `otherwise`: what is expected of one that need not be found."""
+
+    name: str
+    trials: Sequence[Trial]
+    otherwise: str
+
+    @property
+    def wrong(self) -> list[str]:
+        """Sentences."""
+        return [text for trial in self.trials for text in trial.wrong]
+
+    def __str__(self) -> str:
+        times_s = [trial.found_s for trial in self.trials if trial.found_s is not None]
+        found = f"{1e3 * max(times_s):.0f} ms" if times_s else self.otherwise
+        return f"| {self.name} | {found} | {'; '.join(self.wrong) or 'nothing'} |"
+
+
+def prove_hardware(command: list[str], kinds: Sequence[Kind], rounds: int) -> Iterator[Row]:
+    """Each kind on a supply of its own, started by `command`, with the driver's thread on it."""
     for kind in kinds:
         rig = Rig(command)
         bench = Bench(rig)
@@ -26,11 +50,30 @@ def prove(command: list[str], kinds: Sequence[Kind], rounds: int) -> list[tuple[
         finally:
             bench.close()
             rig.close()
-        slowest_s = max(
-            (trial.found_s for trial in trials if trial.found_s is not None), default=float("nan")
-        )
-        rows.append((kind.name, slowest_s, [text for trial in trials for text in trial.wrong]))
-    return rows
+        yield Row(kind.name, trials, "not before the next arming")
+
+
+def prove_neighbours(command: list[str], rounds: int) -> Iterator[Row]:
+    """Each kind of other node, which a driver on a supply meets. Raises RefusedError where one runs already."""
+    from hasel_driver.testing.neighbours import NEIGHBOURS, drivers, meet
+    from hasel_driver.testing.ros_client import RosClient
+
+    user = RosClient()
+    try:
+        time.sleep(DISCOVERY_S)
+        if drivers(user):
+            raise RefusedError(
+                "A driver answers to /hasel already: end it first, or set a ROS_DOMAIN_ID of your own."
+            )
+        for kind in NEIGHBOURS:
+            rig = Rig(command)
+            try:
+                trials = [meet(rig, user, kind) for _ in range(rounds)]
+            finally:
+                rig.close()
+            yield Row(kind.name, trials, "not obeyed")
+    finally:
+        user.close()
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -49,10 +92,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
         kinds = [kind for kind in kinds if not kind.virtual_only]
     print(f"| kind | found within, of {options.rounds} | wrong |\n|---|---|---|")
     failed = False
-    for name, slowest_s, wrong in prove(command, kinds, options.rounds):
-        failed |= bool(wrong)
-        found = f"{1e3 * slowest_s:.0f} ms" if slowest_s == slowest_s else "not before the next arming"
-        print(f"| {name} | {found} | {'; '.join(wrong) or 'nothing'} |", flush=True)
+    try:
+        for prove in (
+            prove_hardware(command, kinds, options.rounds),
+            prove_neighbours(command, options.rounds),
+        ):
+            for row in prove:
+                failed |= bool(row.wrong)
+                print(row, flush=True)
+    except RefusedError as error:
+        print(error, file=sys.stderr)
+        return 1
     return int(failed)
 
 

@@ -27,7 +27,7 @@ NEEDED_FILES = {
 }
 NEEDED_PROGRAMS = {"gcc-avr": "avr-g++", "gcc": "cc", "make": "make"}
 GROUNDED_WITHIN_S = 0.5
-ALSO_ON_FIRMWARE_SLOWLY = {"test_run_experiment.py", "test_driver_node.py"}
+ALSO_ON_FIRMWARE_SLOWLY = {"test_run_experiment.py", "test_driver_node.py", "test_neighbours.py"}
 
 
 @pytest.fixture(scope="session")

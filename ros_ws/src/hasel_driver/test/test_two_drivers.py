@@ -8,13 +8,9 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
 pytest.importorskip("hasel_interfaces", reason="the workspace is not built")
 
-from hasel_driver.faults import FaultCode
 from hasel_driver.mode import Mode
 from hasel_driver.testing.hooks import PUNCTUALITY
 from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Rig
-from hasel_driver.testing.ros_client import another_node
-from hasel_interfaces.msg import SupplyState
-from std_srvs.srv import Trigger
 
 
 @pytest.fixture
@@ -56,18 +52,3 @@ def test_a_driver_that_was_killed_does_not_keep_its_successor_from_arming(start_
     start_driver(virtual_rig.port).arm()
     time.sleep(0.5)
     assert ros.state.mode == Mode.ARMED
-
-
-@pytest.mark.parametrize("what", ["state", "service"])
-def test_a_stranger_that_uses_the_drivers_names_is_a_fault(start_driver, virtual_rig, ros, what):
-    """Another publisher of the state, or server of a service, would be believed in the driver's place."""
-    driver = start_driver(virtual_rig.port)
-    driver.arm()
-    with another_node("stranger") as node:
-        if what == "state":
-            node.create_publisher(SupplyState, "/hasel/state", 10)
-        else:
-            node.create_service(Trigger, "/hasel/emergency_stop", lambda _, response: response)
-        ros.wait(lambda: ros.state.fault_code == FaultCode.TWO_DRIVERS)
-        assert "/stranger" in ros.state.fault_text
-        assert not virtual_rig.live

@@ -168,6 +168,12 @@ class RosClient:
                 raise AssertionError(f"waited {timeout_s} s in vain, the last state is {self.states[-1:]}")
             time.sleep(0.005)
 
+    def false_proofs(self, rig: Rig) -> list[str]:
+        """States, of whatever driver, that call the output grounded while it was live in truth."""
+        offset_s = time.time() - time.monotonic()
+        proofs = [(_stamp_s(state) - offset_s, state) for state in list(self.heard) if state.grounded]
+        return [str(state) for time_s, state in proofs if rig.refutes_dead_at(time_s)]
+
     def false_claims(self, rig: Rig, since_s: float) -> list[str]:
         """States stamped after `since_s` (monotonic) [s] that claim no voltage while the output was live in truth."""
         offset_s = time.time() - time.monotonic()
