@@ -9,6 +9,8 @@ import time
 from collections.abc import Callable, Iterator
 
 from hasel_interfaces.msg import SupplyState
+from hasel_recording.node_usage import user_arguments
+from rclpy._rclpy_pybind11 import RCLError
 
 from hasel_driver.console_link import ConsoleLink
 from hasel_driver.console_options import HELP, parser
@@ -155,12 +157,16 @@ def _number(word: str) -> float:
 
 def main() -> int:
     """Command line; returns the exit code."""
-    return run(parser().parse_args().namespace)
+    return run(parser().parse_args(user_arguments(sys.argv[1:])).namespace)
 
 
 def run(namespace: str) -> int:
     """Obey what is typed until the end; returns the exit code."""
-    link = ConsoleLink(namespace)
+    try:
+        link = ConsoleLink(namespace)
+    except RCLError as error:  # as without the keys that are asked for
+        print(f"console: {' '.join(str(error).split())}", file=sys.stderr)
+        return 1
     for number in (signal.SIGTERM, signal.SIGHUP):  # as Ctrl-C: nobody is left who could stop
         signal.signal(number, signal.default_int_handler)
     try:

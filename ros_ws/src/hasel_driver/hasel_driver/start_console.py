@@ -2,12 +2,14 @@
 
 import sys
 
+from hasel_recording.node_usage import user_arguments
+
 from hasel_driver.console_options import parser
 
 
 def main() -> int:
     """Run the console until it is left; returns the exit code."""
-    options = parser().parse_args()
+    options = parser().parse_args(user_arguments(sys.argv[1:]))
     from hasel_driver.console import run
 
     return run(options.namespace)

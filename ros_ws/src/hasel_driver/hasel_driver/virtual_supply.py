@@ -5,7 +5,6 @@ the output goes live and dead (host's monotonic clock [s]) and answers the quest
 """
 
 import argparse
-import itertools
 import os
 import random
 import re
@@ -15,6 +14,8 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+
+from hasel_recording.node_usage import user_arguments
 
 from hasel_driver.errors import PortError
 from hasel_driver.pseudo_terminal import PseudoTerminal
@@ -233,8 +234,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="virtual_supply", description=__doc__.splitlines()[0])
     parser.add_argument("--link", type=Path, help="also make the port available under this name")
     parser.add_argument("--capacitance-nf", type=float, default=0.5, help="capacitance of each muscle [nF]")
-    own = itertools.takewhile(lambda word: word != "--ros-args", sys.argv[1:])  # launch files add some
-    arguments = parser.parse_args(list(own))
+    arguments = parser.parse_args(user_arguments(sys.argv[1:]))  # launch files add ROS's
     upper, lower = (VirtualMuscle(capacitance_f=arguments.capacitance_nf * 1e-9) for _ in range(2))
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:

@@ -11,4 +11,4 @@ from hasel_driver.testing.neighbours import NEIGHBOURS, meet
 @pytest.mark.parametrize("kind", NEIGHBOURS, ids=lambda kind: kind.name)
 def test_a_neighbour_is_found_or_not_obeyed(rig, ros, kind):
     """Truth is what the simulated muscles have, never a node's word."""
-    assert meet(rig, ros, kind).wrong == []
+    assert meet(ros, kind, rig).wrong == []

@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 import xml.etree.ElementTree as Tree
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from hasel_driver.mode import Mode
 
 POLICY = Path(__file__).parents[1] / "security" / "policy.xml"
 NAMESPACE = "/hasel/"
+DISCOVERY_S = 5.0
 
 
 def names(enclave: str, kind: str, permission: str) -> set[str]:
@@ -48,37 +50,119 @@ def test_every_topic_and_service_of_the_node_is_in_the_policy(start_driver, virt
         assert {n for n in served if "_action" not in n} <= names("/hasel/driver", "service", "reply")
 
 
-def test_without_usable_keys_the_driver_ends(tmp_path, virtual_rig):
-    """Asked to enforce security and unable to, it says so in a sentence instead of running open to everybody."""
-    protected = {
+def protected(keys: Path) -> dict[str, str]:
+    """The environment in which nothing runs without its key."""
+    own = {
         "ROS_SECURITY_ENABLE": "true",
         "ROS_SECURITY_STRATEGY": "Enforce",
-        "ROS_SECURITY_KEYSTORE": str(tmp_path),
+        "ROS_SECURITY_KEYSTORE": str(keys),
     }
-    done = subprocess.run(
-        [sys.executable, "-m", "hasel_driver.driver_node", "--ros-args", "-p", f"port:={virtual_rig.port}"]
-        + ["-p", "state_folder:=" + str(tmp_path), "-p", f"history_file:={tmp_path}/history.jsonl"],
-        env=os.environ | protected,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
+    return os.environ | own
+
+
+def run(words: list[str], environment: dict[str, str], typed: str = "") -> subprocess.CompletedProcess:
+    """A command to its end."""
+    return subprocess.run(
+        words, env=environment, input=typed, capture_output=True, text=True, timeout=120, check=False
     )
+
+
+def worthless_keys(folder: Path) -> Path:
+    """A key store of the right form with a key of its own for the driver, which signs nothing that is a permission."""
+    enclave = folder / "enclaves" / "hasel" / "driver"
+    enclave.mkdir(parents=True)
+    certificate, key = enclave / "cert.pem", enclave / "key.pem"
+    making = [
+        "openssl",
+        "req",
+        "-x509",
+        "-newkey",
+        "ec",
+        "-pkeyopt",
+        "ec_paramgen_curve:prime256v1",
+        "-nodes",
+    ]
+    subprocess.run(
+        [*making, "-subj", "/CN=driver", "-keyout", key, "-out", certificate], check=True, capture_output=True
+    )
+    for name in ("identity_ca.cert.pem", "permissions_ca.cert.pem"):
+        shutil.copy(certificate, enclave / name)
+    for name in ("governance", "permissions"):
+        (enclave / f"{name}.xml").write_text("<dds/>")
+        signing = [
+            "openssl",
+            "smime",
+            "-sign",
+            "-text",
+            "-in",
+            enclave / f"{name}.xml",
+            "-signer",
+            certificate,
+        ]
+        subprocess.run([*signing, "-inkey", key, "-out", enclave / f"{name}.p7s"], check=True)
+    return folder
+
+
+@pytest.mark.parametrize("keys", ["none", "worthless"])
+def test_without_usable_keys_the_driver_ends(tmp_path, virtual_rig, keys):
+    """Asked to enforce security and unable to, it says so in a sentence instead of running open to everybody."""
+    if keys == "worthless" and shutil.which("openssl") is None:
+        pytest.skip("needs openssl")
+    folder = worthless_keys(tmp_path / "keys") if keys == "worthless" else tmp_path
+    command = [sys.executable, "-m", "hasel_driver.driver_node", "--ros-args", "--enclave", "/hasel/driver"]
+    command += ["-p", f"port:={virtual_rig.port}", "-p", f"state_folder:={tmp_path}"]
+    done = run([*command, "-p", f"history_file:={tmp_path}/history.jsonl"], protected(folder))
     assert (done.returncode, "Traceback" in done.stderr) == (1, False), done.stderr
     assert "hasel_driver:" in done.stderr
+    assert virtual_rig.changes == []
 
 
-@pytest.mark.skipif(shutil.which("ros2") is None, reason="needs ROS 2 from apt with its package sros2")
-def test_keys_are_made_of_the_policy(tmp_path):
-    """`ros2 security` accepts the policy."""
-    for words in (
-        ["create_keystore", str(tmp_path / "keys")],
-        ["generate_artifacts", "-k", str(tmp_path / "keys"), "-p", str(POLICY)],
-    ):
-        done = subprocess.run(
-            ["ros2", "security", *words], capture_output=True, text=True, timeout=120, check=False
-        )
+def test_without_usable_keys_the_console_ends(tmp_path):
+    """With a sentence, and with the words that `ros2 run` hands on to ROS."""
+    words = [sys.executable, "-m", "hasel_driver.console", "--ros-args", "--enclave", "/hasel/commander"]
+    done = run(words, protected(tmp_path))
+    assert (done.returncode, "Traceback" in done.stderr) == (1, False), done.stderr
+    assert done.stderr.startswith("console: ")
+
+
+@pytest.fixture(scope="module")
+def keys(tmp_path_factory) -> Path:
+    """Made of the policy by ROS 2's own tool."""
+    if shutil.which("ros2") is None:
+        pytest.skip("needs ROS 2 from apt with its package sros2")
+    folder = tmp_path_factory.mktemp("keys")
+    for words in (["create_keystore", folder], ["generate_artifacts", "-k", folder, "-p", POLICY]):
+        done = run(["ros2", "security", *map(str, words)], dict(os.environ))
         if "invalid choice" in done.stderr:
             pytest.skip("ROS 2 is there without its package sros2")
         assert done.returncode == 0, done.stderr
-    assert (tmp_path / "keys" / "enclaves" / "hasel" / "driver" / "permissions.p7s").is_file()
+    return folder
+
+
+def test_keys_are_made_of_the_policy(keys):
+    """`ros2 security` accepts the policy."""
+    assert (keys / "enclaves" / "hasel" / "driver" / "permissions.p7s").is_file()
+
+
+def test_only_the_commanders_key_arms(keys, tmp_path, virtual_rig):
+    """The driver under its key: who has the observer's, or none, does not arm it."""
+    driver = [sys.executable, "-m", "hasel_driver.driver_node", "--ros-args", "--enclave", "/hasel/driver"]
+    for word in (
+        f"port:={virtual_rig.port}",
+        f"state_folder:={tmp_path}",
+        f"history_file:={tmp_path}/h.jsonl",
+    ):
+        driver += ["-p", word]
+    console = [sys.executable, "-m", "hasel_driver.console", "--ros-args", "--enclave"]
+    with subprocess.Popen(driver, env=protected(keys)) as process:
+        try:
+            time.sleep(DISCOVERY_S)
+            assert process.poll() is None
+            unprotected = run([*console, "/"], dict(os.environ), "arm\nquit\n")
+            observer = run([*console, "/hasel/observer"], protected(keys), "arm\nquit\n")
+            assert "Armed" not in unprotected.stdout + observer.stdout
+            assert not virtual_rig.live
+            commander = run([*console, "/hasel/commander"], protected(keys), "arm\nquit\n")
+            assert "Armed" in commander.stdout, commander.stderr
+        finally:
+            process.terminate()

@@ -105,7 +105,7 @@ NEIGHBOURS: tuple[Neighbour, ...] = (
 )
 
 
-def meet(rig: Rig, user: RosClient, kind: Neighbour) -> Trial:
+def meet(user: RosClient, kind: Neighbour, rig: Rig) -> Trial:
     """Start a driver, let the neighbour come, and judge what is said and done by the supplies' own output."""
     trial = Trial()
     user.wait(lambda: not drivers(user), COMES_WITHIN_S)
