@@ -12,6 +12,7 @@ SIN_THETA = "sin_theta"
 TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}
 THETA_UNITS = {"deg": 0.017453292519943295, "rad": 1.0, "mrad": 1e-3}
 MARKER_UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "px": 1.0}
+MEANINGS = "time, sin_theta, theta, <marker>_x, <marker>_y or <quantity>_<channel>, such as voltage_upper"
 
 _MARKER = re.compile(r"(?P<marker>.+)_(?P<axis>[xy])_(?P<unit>" + "|".join(MARKER_UNITS) + ")")
 
@@ -74,7 +75,7 @@ class _Reader:
     """Sorts columns by what they are; a column that is mapped counts before one that has the name itself."""
 
     def __init__(self, names: list[str], meant: Mapping[str, str], source: str, angle: bool) -> None:
-        self.source, self.names, self.angle = source, names, angle
+        self.source, self.names, self.meant, self.angle = source, names, meant, angle
         self.left = {meant[name]: name for name in names if name in meant}
         mapped = {_role(name) for name in self.left}
         self.unused = [name for name in names if name not in meant and _role(name.lower()) in mapped]
@@ -165,8 +166,11 @@ class _Reader:
             f"{q}_{unit}" for q, units in (("time", TIME_UNITS), ("theta", THETA_UNITS)) for unit in units
         ]
         known += ["voltage_upper_v", "voltage_lower_v"]
-        for name in self.left:
+        for name, own in self.left.items():
             near = nearest(name, known)
+            if own in self.meant and not (name in known or _MARKER.fullmatch(name) or is_drive_column(name)):
+                hint = f"did you mean {near!r}?" if near else f"expected {MEANINGS}."
+                raise RecordingError(f"--map gives {name}={own}, but nothing is called {name!r} here: {hint}")
             if near not in (None, *self.names) and name not in known:
                 raise RecordingError(
                     f"{self.source} has a column {name!r} that is not known: did you mean {near!r}?"

@@ -29,7 +29,11 @@ def read_csv(path: Path, mapping: Mapping[str, str] | None = None, own_drive: bo
     text = read_text(path)
     columns = understand(text.names, meant_names(mapping or {}, text.names, str(path), own_drive), str(path))
     for name in columns.unused:
-        warnings.warn(f"{path}: column {name!r} is not used.", RecordingWarning, stacklevel=3)
+        warnings.warn(
+            f"{path}: column {name!r} is not used; --map says what a column is.",
+            RecordingWarning,
+            stacklevel=3,
+        )
     text = until_drive_ends(text, columns)
     numbers = CsvNumbers(text)
     time_s = numbers.times(columns.time)

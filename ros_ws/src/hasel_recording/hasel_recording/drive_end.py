@@ -21,6 +21,8 @@ def until_drive_ends(text: CsvText, columns: Columns) -> CsvText:
     if not left_out:
         return text
     warnings.warn(
-        f"{text.path}: {left_out} frames after the drive's end were left out.", RecordingWarning, stacklevel=4
+        f"{text.path}: {left_out} frames after the drive's end were left out: what drove the body then is not known.",
+        RecordingWarning,
+        stacklevel=4,
     )
     return replace(text, lines=text.lines[:-left_out], cells=text.cells[:-left_out])

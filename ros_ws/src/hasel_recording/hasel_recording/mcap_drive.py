@@ -51,7 +51,7 @@ def stamped_messages(file: McapFile, topic: str) -> tuple[list[Any], np.ndarray]
     if late.size:
         raise RecordingError(
             f"{file.path}: message {late[0] + 2} on {topic} is not later than the one before; "
-            "was the topic published by two nodes, or the clock set during the run?"
+            "was the topic published by two nodes, or the clock set during the run? Record one node, by one clock."
         )
     return messages, stamps
 

@@ -72,7 +72,7 @@ class McapFile:
                 damaged += 1
         if damaged:
             warnings.warn(
-                f"{self.path}: {damaged} damaged messages on {topic} were left out.",
+                f"{self.path}: {damaged} damaged messages on {topic} were left out; restore the file from a copy.",
                 RecordingWarning,
                 stacklevel=5,
             )
@@ -96,6 +96,10 @@ class McapFile:
 
     def missing(self, topic: str) -> RecordingError:
         """Return the error that says a topic is missing and which there are."""
+        if topic in self.messages:
+            return RecordingError(
+                f"{self.path}: no message on {topic} can be read: restore the file from a copy."
+            )
         near = nearest(topic, self.messages)
         present = ", ".join(sorted(self.messages)) or "no message at all"
         hint = f"is {near} meant? Then remap it." if near else "record it too."

@@ -76,7 +76,8 @@ def _driven(path: Path, frame_ns: np.ndarray, drive: StampedDrive | None) -> np.
     for left_out, where in ((early, f"before the first {drive.topic}"), (late, "after the drive's end")):
         if left_out.any():
             warnings.warn(
-                f"{path}: {np.count_nonzero(left_out)} frames {where} were left out.",
+                f"{path}: {np.count_nonzero(left_out)} frames {where} were left out: what drove the body then is not "
+                "known.",
                 RecordingWarning,
                 stacklevel=4,
             )

@@ -30,7 +30,7 @@ def check_frames(recording: Recording) -> list[Finding]:
                 "time order",
                 backwards,
                 f"{backwards} frames do not come after the one before",
-                "sort the rows by time and remove doubles, or record with one clock",
+                "sort the rows by time, or record with one clock",
             )
         ]
     return _unit(steps) or [*_length(time), *_gaps(steps), *_jitter(steps), *_rate(steps)]

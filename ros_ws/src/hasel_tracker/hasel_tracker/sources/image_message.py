@@ -38,7 +38,8 @@ def image_of(message: Any) -> np.ndarray:
 def _raw(message: Any) -> np.ndarray:
     if message.encoding not in TO_BGR:
         raise TrackerError(
-            f"The image topic sends '{message.encoding}'; expected a colour image: {', '.join(TO_BGR)}."
+            f"The image topic sends '{message.encoding}'; expected a colour image: set the camera driver to one of "
+            f"{', '.join(TO_BGR)}."
         )
     channels, conversion, depth = TO_BGR[message.encoding]
     lines = message.height * 3 // 2 if message.encoding in HALF_COLOURS else message.height
@@ -59,6 +60,6 @@ def _compressed(message: Any) -> np.ndarray:
     image = cv2.imdecode(np.frombuffer(message.data, np.uint8), cv2.IMREAD_COLOR)
     if image is None:
         raise TrackerError(
-            f"The image topic sends '{message.format}' that cannot be decoded; expected JPEG or PNG."
+            f"The image topic sends '{message.format}' that cannot be decoded; expected JPEG or PNG: check its driver."
         )
     return image
