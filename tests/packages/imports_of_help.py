@@ -1,4 +1,6 @@
-"""Prints as JSON what each executable of ours says to --help and which of the modules named are imported by then.
+"""Prints as JSON what each executable of ours says to an option and which of the modules named are imported by then.
+
+Called with the option, --help or --version, and the modules.
 
 Each runs in a process forked from this one, in which nothing but the standard library is imported.
 """
@@ -11,9 +13,9 @@ import sys
 from importlib.metadata import EntryPoint, distributions
 
 
-def asked_for_help(entry: EntryPoint, watched: list[str]) -> dict:
-    """Call an executable's function with --help, in this process."""
-    sys.argv = [entry.name, "--help"]
+def asked(entry: EntryPoint, option: str, watched: list[str]) -> dict:
+    """Call an executable's function with the option, in this process."""
+    sys.argv = [entry.name, option]
     code, said = None, io.StringIO()
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
         try:
@@ -23,12 +25,12 @@ def asked_for_help(entry: EntryPoint, watched: list[str]) -> dict:
     return {"code": code or 0, "said": said.getvalue(), "imported": [m for m in watched if m in sys.modules]}
 
 
-def in_a_fork(entry: EntryPoint, watched: list[str]) -> dict:
+def in_a_fork(entry: EntryPoint, option: str, watched: list[str]) -> dict:
     """The same in a process of its own."""
     reading, writing = os.pipe()
     if os.fork() == 0:
         with os.fdopen(writing, "w", encoding="utf-8") as pipe:
-            json.dump(asked_for_help(entry, watched), pipe)
+            json.dump(asked(entry, option, watched), pipe)
         os._exit(0)
     os.close(writing)
     with os.fdopen(reading, encoding="utf-8") as pipe:
@@ -44,4 +46,5 @@ if __name__ == "__main__":
         if distribution.name.startswith("hasel_")
         for entry in distribution.entry_points.select(group="console_scripts")
     }
-    print(json.dumps({name: in_a_fork(entry, sys.argv[1:]) for name, entry in entries.items()}))
+    option, *watched = sys.argv[1:]
+    print(json.dumps({name: in_a_fork(entry, option, watched) for name, entry in entries.items()}))

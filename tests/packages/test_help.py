@@ -1,9 +1,10 @@
-"""`--help` of every executable answers at once, on a slow machine too, since nothing heavy is imported for it."""
+"""`--help` and `--version` of every executable answer at once: nothing heavy is imported for them."""
 
 import json
 import re
 import subprocess
 import sys
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -30,13 +31,23 @@ EXECUTABLES = sorted(
 )
 
 
+def _answers(option: str) -> dict[str, dict]:
+    script = Path(__file__).with_name("imports_of_help.py")
+    command = [sys.executable, str(script), option, *HEAVY, "rclpy"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=300)
+    return json.loads(done.stdout)
+
+
 @pytest.fixture(scope="module")
 def answers() -> dict[str, dict]:
     """What every executable says to --help, its exit code and the heavy modules that are imported by then."""
-    script = Path(__file__).with_name("imports_of_help.py")
-    command = [sys.executable, str(script), *HEAVY, "rclpy"]
-    done = subprocess.run(command, capture_output=True, text=True, check=True, timeout=300)
-    return json.loads(done.stdout)
+    return _answers("--help")
+
+
+@pytest.fixture(scope="module")
+def versions() -> dict[str, dict]:
+    """The same of --version."""
+    return _answers("--version")
 
 
 def test_all_executables_are_asked(answers):
@@ -52,3 +63,13 @@ def test_help_imports_nothing_heavy(name, answers):
     assert answer["said"].startswith(f"usage: {name.split()[1]} ")
     assert answer["code"] == 0
     assert set(answer["imported"]) <= ({"rclpy"} if name in NODES else set())
+
+
+@pytest.mark.parametrize("name", EXECUTABLES)
+def test_version_is_that_of_the_package(name, versions):
+    """Package and version as its metadata says, exit code 0, and no heavy library; `convert` is of one package."""
+    answer = versions[name]
+    package = "hasel_recording" if name.endswith(" convert") else name.split()[0]
+    assert answer["said"] == f"{package} {version(package)}\n"
+    assert answer["code"] == 0
+    assert answer["imported"] == []

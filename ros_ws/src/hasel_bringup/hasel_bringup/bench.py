@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ament_index_python.packages import PackageNotFoundError, get_package_prefix
+from hasel_recording.command_entry import command
 
 from hasel_bringup import start_up
 from hasel_bringup.errors import BringupError
@@ -26,6 +27,7 @@ def bench_executable(package: str) -> Path:
     return path
 
 
+@command
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run all; returns 0 if each reached its bars, 1 if one is missing, else the first other code."""
     given = sys.argv[1:] if arguments is None else list(arguments)

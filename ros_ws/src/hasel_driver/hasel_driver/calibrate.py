@@ -13,6 +13,8 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 
+from hasel_recording.command_entry import command
+
 from hasel_driver import protocol
 from hasel_driver.board_handshake import BoardHandshake
 from hasel_driver.calibration import Calibration
@@ -171,6 +173,7 @@ def _ask_leave(voltage_v: float) -> bool:
     return input(f"{voltage_v:g} V come next. Hands off, and type yes: ").strip() == "yes"
 
 
+@command
 def main(arguments: Sequence[str] | None = None) -> int:
     """Command line; 0 when the corrections were stored, or were not wanted."""
     parser = argparse.ArgumentParser(

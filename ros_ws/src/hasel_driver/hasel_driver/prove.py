@@ -15,6 +15,8 @@ from functools import partial
 from itertools import chain
 from pathlib import Path
 
+from hasel_recording.command_entry import command
+
 from hasel_driver.bench_options import firmware_files
 from hasel_driver.errors import RefusedError
 from hasel_driver.testing.bench import Bench
@@ -105,6 +107,7 @@ def prove_neighbours(trials: Trials) -> Iterator[Row]:
         user.close()
 
 
+@command
 def main(arguments: Sequence[str] | None = None) -> int:
     """Command line; 0 where nothing was wrong, else 1."""
     parser = argparse.ArgumentParser(

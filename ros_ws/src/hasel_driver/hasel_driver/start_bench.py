@@ -2,9 +2,12 @@
 
 import sys
 
+from hasel_recording.command_entry import command
+
 from hasel_driver.bench_options import options_from
 
 
+@command
 def main() -> int:
     """Run the benchmark; returns the exit code."""
     options = options_from()

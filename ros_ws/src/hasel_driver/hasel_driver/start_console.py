@@ -2,11 +2,13 @@
 
 import sys
 
+from hasel_recording.command_entry import command
 from hasel_recording.node_usage import user_arguments
 
 from hasel_driver.console_options import parser
 
 
+@command
 def main() -> int:
     """Run the console until it is left; returns the exit code."""
     options = parser().parse_args(user_arguments(sys.argv[1:]))

@@ -3,11 +3,13 @@
 import signal
 import sys
 
+from hasel_recording.command_entry import command
 from hasel_recording.node_usage import answer_help
 
 from hasel_driver.parameters import PARAMETERS
 
 
+@command
 def main() -> int:
     """Run the node until it is shut down; returns the exit code."""
     answer_help(

@@ -8,6 +8,8 @@ import math
 import sys
 from dataclasses import dataclass
 
+from hasel_recording.command_entry import command
+
 TOUCHABLE_CHARGE_C = 45e-6
 LOWEST_VOLTAGE_V, HIGHEST_VOLTAGE_V = 450.0, 15_000.0
 TOUCHABLE_VOLTAGE_V = 50.0
@@ -53,6 +55,7 @@ class StoredCharge:
         )
 
 
+@command
 def main() -> None:
     """Command line."""
     parser = argparse.ArgumentParser(prog="stored_charge", description=__doc__.splitlines()[0])
@@ -72,4 +75,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

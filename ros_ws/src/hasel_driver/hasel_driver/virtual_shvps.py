@@ -5,6 +5,8 @@ import sys
 import time
 from pathlib import Path
 
+from hasel_recording.command_entry import command
+
 from hasel_driver.pseudo_terminal import PseudoTerminal
 from hasel_driver.virtual_muscle import Contact, VirtualMuscle
 
@@ -77,6 +79,7 @@ def serve(board: VirtualShvps, port: PseudoTerminal, running) -> None:
         time.sleep(0.001)
 
 
+@command
 def main() -> None:
     """Command line of the emulation."""
     parser = argparse.ArgumentParser(prog="virtual_shvps", description=__doc__)
@@ -94,4 +97,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -15,6 +15,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from hasel_recording.command_entry import command
 from hasel_recording.node_usage import user_arguments
 
 from hasel_driver.errors import PortError
@@ -229,6 +230,7 @@ def _tell(text: str) -> None:
     print(text, flush=True)
 
 
+@command
 def main() -> None:
     """Command line of the virtual supply."""
     parser = argparse.ArgumentParser(prog="virtual_supply", description=__doc__.splitlines()[0])
@@ -265,4 +267,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

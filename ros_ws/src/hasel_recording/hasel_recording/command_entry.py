@@ -10,6 +10,7 @@ from collections.abc import Callable
 from concurrent.futures.process import BrokenProcessPool
 from datetime import datetime
 from functools import wraps
+from itertools import takewhile
 from pathlib import Path
 
 BAD_INPUT, UNEXPECTED, INTERRUPTED = 2, 70, 130
@@ -27,11 +28,21 @@ REMEDIES = {
 
 
 def command(main: Callable[..., int | None]) -> Callable[..., int]:
-    """A command's main function, with the machine prepared before it and everything caught that may leave it."""
+    """A command's main function, with the machine prepared before it and everything caught that may leave it.
+
+    --version is answered here, before anything is imported, with the version of the package that the command is of.
+    """
 
     @wraps(main)
     def guarded(*arguments, **options) -> int:
         def work() -> int | None:
+            given = arguments[0] if arguments and arguments[0] is not None else sys.argv[1:]
+            if "--version" in takewhile(lambda each: each not in ("--", "--ros-args"), given):
+                from importlib.metadata import version  # takes as long to import as all else here
+
+                package = main.__module__.partition(".")[0]
+                print(f"{package} {version(package)}")
+                return 0
             prepare_machine()
             return main(*arguments, **options)
 

@@ -21,7 +21,10 @@ def test_warnings_are_lines_too(tmp_path, capsys):
     path = tmp_path / "extra.csv"
     path.write_text("time_s,sin_theta,operator\n0,0.1,Ann\n")
     assert info_main([str(path)]) == 0
-    assert capsys.readouterr().err == f"warning: {path}: column 'operator' is not used; --map says what a column is.\n"
+    assert (
+        capsys.readouterr().err
+        == f"warning: {path}: column 'operator' is not used; --map says what a column is.\n"
+    )
 
 
 def test_info_shows_the_header(csv_file, capsys):

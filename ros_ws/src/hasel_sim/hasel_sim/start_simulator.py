@@ -2,11 +2,13 @@
 
 import sys
 
+from hasel_recording.command_entry import command
 from hasel_recording.node_usage import answer_help
 
 from hasel_sim.simulator_parameters import PARAMETERS
 
 
+@command
 def main() -> int:
     """Run the node until it is interrupted; returns the exit code."""
     answer_help(

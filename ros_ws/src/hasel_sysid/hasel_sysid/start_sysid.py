@@ -1,5 +1,7 @@
 """`ros2 run hasel_sysid sysid`: where the executable begins; --help is answered before anything is started."""
 
+import sys
+
 from hasel_recording.command_entry import command
 from hasel_recording.node_usage import answer_help
 
@@ -21,4 +23,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -1,8 +1,11 @@
 """Where the executables begin: options are read before anything heavy is imported, so that --help answers at once."""
 
+from hasel_recording.command_entry import command
+
 from hasel_sim.commands import parsers
 
 
+@command
 def bench() -> int:
     """`bench`."""
     options = parsers.bench_parser().parse_args()
@@ -11,6 +14,7 @@ def bench() -> int:
     return run(options)
 
 
+@command
 def effects() -> int:
     """`effects [NAME…]`."""
     options = parsers.effects_parser().parse_args()
@@ -19,6 +23,7 @@ def effects() -> int:
     return run(options)
 
 
+@command
 def optimise() -> int:
     """`optimise`."""
     options = parsers.optimise_parser().parse_args()
@@ -27,6 +32,7 @@ def optimise() -> int:
     return run(options)
 
 
+@command
 def show_mesh() -> int:
     """`show_mesh [MODEL]`."""
     options = parsers.show_mesh_parser().parse_args()
@@ -35,6 +41,7 @@ def show_mesh() -> int:
     return run(options)
 
 
+@command
 def swim() -> int:
     """`swim`."""
     options = parsers.swim_parser().parse_args()
