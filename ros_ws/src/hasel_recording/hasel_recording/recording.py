@@ -143,6 +143,8 @@ class Recording:
             f", |sin θ| up to {np.abs(self.sin_theta[self.valid]).max():.3g}" if lost < frames else ""
         )
 
+    __repr__ = __str__
+
 
 def largest_levels(channels: tuple[DriveChannel, ...], values: np.ndarray) -> dict[str, float]:
     """Return the largest magnitude of a drive [n, channels] per unit, without the units that are zero throughout."""

@@ -14,6 +14,10 @@ if TYPE_CHECKING:
 
 def __getattr__(name: str) -> Any:
     missing = f"module 'hasel_sysid' has no attribute {name!r}"
+    if name == "__version__":
+        from importlib.metadata import version  # takes a while, and few ask
+
+        return version("hasel_sysid")
     if name.startswith("_"):
         raise AttributeError(missing)
     facade = import_module("hasel_sysid.api")

@@ -37,6 +37,11 @@ class Experiment:
         """What was measured of what a simulation gives: sin theta alone, [n, outputs]."""
         return self.sin_theta[:, None]
 
+    def __str__(self) -> str:
+        return str(self.recording)
+
+    __repr__ = __str__
+
 
 def experiment_of(recording: Recording) -> Experiment:
     """The run of a recording, its start taken from the header lines.

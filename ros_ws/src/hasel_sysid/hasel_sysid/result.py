@@ -123,6 +123,8 @@ class Finding:
             imitated = ""
         return f"{self.effect} cannot be seen: {imitated}{self._no_size_shows(unit)}."
 
+    __repr__ = __str__
+
 
 _IN_ITS_PLACE = {Verdict.MISSING: Verdict.MISSING_IF_SIZE_MATTERS}
 _NEEDS_A_MODEL = (Verdict.ABSENT, Verdict.INCONCLUSIVE, Verdict.CANNOT_BE_SEEN)
@@ -210,6 +212,8 @@ class Diagnosis:
         ]
         return "\n".join(lines)
 
+    __repr__ = __str__
+
 
 @dataclass(frozen=True)
 class Stage:
@@ -239,6 +243,8 @@ class Stage:
         what = " + ".join(("baseline", *self.added))
         unseen = "" if self.mae_validation is None else f", {self.mae_validation:.5f} on unseen runs"
         return f"{what}: mean |Δ sin θ| {self.mae_fit:.5f} on fitted runs{unseen}"
+
+    __repr__ = __str__
 
 
 @dataclass(frozen=True)
@@ -270,6 +276,8 @@ class WrongConstant:
             f"One number of the model file, {self.name} = {value} in place of {self.given:g}{unit}, {does}: measure it "
             "before an effect is believed in."
         )
+
+    __repr__ = __str__
 
     def to_json(self) -> dict:
         """For `improve --json`."""
@@ -365,6 +373,8 @@ class Improvement:
         return "\n".join(
             [*map(str, self.stages), self.why, *self.contradictions, *self.open_values.values(), *judged]
         )
+
+    __repr__ = __str__
 
 
 def table_of_models(models: Sequence[ComparedModel]) -> str:

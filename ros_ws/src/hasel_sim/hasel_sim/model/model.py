@@ -274,3 +274,19 @@ class Model:
                 f"numerics.{problem['loc'][0]} is {problem['input']!r}; {problem['msg'].lower()}: correct it"
             ) from None
         return replace(self, description=self.description.model_copy(update={"numerics": numerics}))
+
+    def __str__(self) -> str:
+        driven = " and ".join(channel.column.column for channel in self.description.channels)
+        effects = ", ".join(effect.id for effect in self.effects)
+        held = [name for name, parameter in self.parameters.items() if not parameter.free]
+        lines = [
+            f"{self.name}: {f'driven by {driven}' if driven else 'passive'}, "
+            f"{f'with the effects {effects}' if effects else 'without effects'}.",
+            *(f"  {parameter}" for parameter in self.parameters.values() if parameter.free),
+            *([f"  held: {', '.join(held)}"] if held else []),
+        ]
+        return "\n".join(lines)
+
+    def __repr__(self) -> str:
+        named = " + ".join([self.name, *(effect.id for effect in self.effects)])
+        return f"<Model {named}, {len(self.parameters)} parameters>"

@@ -10,7 +10,9 @@ from hasel_sysid.api.picture import Picture
 from hasel_sysid.compare import Comparison
 from hasel_sysid.estimation import FittedModel
 from hasel_sysid.experiment import Experiment
-from hasel_sysid.result import Diagnosis, Improvement
+from hasel_sysid.result import Diagnosis, Improvement, Verdict
+
+_MOST_SAID = 8
 
 
 class Recordings(tuple[Experiment, ...]):
@@ -26,6 +28,8 @@ class Recordings(tuple[Experiment, ...]):
 
     def __str__(self) -> str:
         return "\n".join(str(each.recording) for each in self)
+
+    __repr__ = __str__
 
     def plot(self) -> Picture:
         """Measured sin θ of every recording."""
@@ -46,6 +50,8 @@ class Simulated:
     def __str__(self) -> str:
         return "\n".join([str(self.comparison), *(f"  {line}" for line in self.comparison.where.sentences())])
 
+    __repr__ = __str__
+
     def plot(self, *others: "Simulated") -> Picture:
         """Measured against simulated, with other models beside this one."""
         return draw_comparisons([self.comparison, *(other.comparison for other in others)])
@@ -60,6 +66,8 @@ class Fitted(Simulated):
     def __str__(self) -> str:
         return f"{self.result}\n{super().__str__()}"
 
+    __repr__ = __str__
+
 
 @dataclass(frozen=True)
 class Diagnosed:
@@ -69,7 +77,18 @@ class Diagnosed:
     fitted: FittedModel
 
     def __str__(self) -> str:
-        return "\n".join(filter(None, [str(self.diagnosis), str(self.diagnosis.goodness or "")]))
+        said = [each for each in self.diagnosis.findings if each.verdict is not Verdict.ABSENT]
+        absent = len(self.diagnosis.findings) - len(said)
+        lines = [
+            f"Noise floor {self.diagnosis.measured.mean_absolute:.2g} mean |Δ sin θ|.",
+            *map(str, said[:_MOST_SAID]),
+            *([f"Of {len(said) - _MOST_SAID} others less is to be said."] if len(said) > _MOST_SAID else []),
+            *([f"{absent} further effects are absent; all are in diagnosis.findings."] if absent else []),
+            str(self.diagnosis.goodness or ""),
+        ]
+        return "\n".join(filter(None, lines))
+
+    __repr__ = __str__
 
     def plot(self) -> Picture:
         """The most probable effects, with the share of the error that each removes."""
@@ -89,6 +108,8 @@ class Improved:
 
     def __str__(self) -> str:
         return str(self.improvement)
+
+    __repr__ = __str__
 
     def plot(self) -> Picture:
         """The error falling, on fitted and on unseen runs."""

@@ -1,20 +1,27 @@
 """The steps as functions: load, model, simulate, fit, diagnose, improve, save."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import TypeAlias
 
-from hasel_recording import RecordingError
+from hasel_recording import Recording, RecordingError
 from hasel_sim.model import Model, load_model, save_model
 from hasel_sim.parallel import executor
 
 from hasel_sysid.api.results import Diagnosed, Fitted, Improved, Recordings, Simulated
 from hasel_sysid.compare import compare
-from hasel_sysid.dataset import for_model, load_experiments, prepared, simulable
+from hasel_sysid.dataset import for_model, load_experiments, prepared, simulable, usable
+from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import fit_baseline, identify
 from hasel_sysid.experiment import GENTLEST, Experiment
 from hasel_sysid.improvement import diagnose as diagnosis_of
 from hasel_sysid.improvement import improve as improvement_of
 from hasel_sysid.problem import Problem
+
+AnyModel: TypeAlias = Model | str | Path | Simulated | Improved
+"""A model, a result that has one, or a model's name or file."""
+AnyRecordings: TypeAlias = Sequence[Experiment | Recording | str | Path] | Experiment | Recording | str | Path
+"""Recordings as `load` gives them, one of them, or paths."""
 
 
 def load(
@@ -38,16 +45,16 @@ def model(name: str | Path = "swimmer", *effects: str) -> Model:
     return load_model(name).with_effects(*effects)
 
 
-def save(model: Model, path: str | Path) -> Path:
+def save(model: AnyModel, path: str | Path) -> Path:
     """Write a model file, ready for `model`, the commands and the nodes."""
-    save_model(model, path)
+    save_model(_model(model), path)
     return Path(path)
 
 
 def simulate(
-    model: Model,
-    recordings: Sequence[Experiment],
-    unseen: Sequence[Experiment] = (),
+    model: AnyModel,
+    recordings: AnyRecordings,
+    unseen: AnyRecordings = (),
     jobs: int = 1,
     label: str | None = None,
 ) -> Simulated:
@@ -56,16 +63,17 @@ def simulate(
     label: what to call the model (default: its name and effects).
     Raises SysidError where model and recordings do not fit, SimulationError.
     """
-    every = for_model(model, [*recordings, *unseen])
-    count = len(recordings)
+    model, seen = _model(model), _experiments(recordings)
+    every = for_model(model, [*seen, *_experiments(unseen)])
+    count = len(seen)
     with executor(jobs) as pool:
         return Simulated(compare(model, every[:count], pool, every[count:], label or _named(model)))
 
 
 def fit(
-    model: Model,
-    recordings: Sequence[Experiment],
-    unseen: Sequence[Experiment] = (),
+    model: AnyModel,
+    recordings: AnyRecordings,
+    unseen: AnyRecordings = (),
     method: str = "least_squares",
     jobs: int = 1,
 ) -> Fitted:
@@ -78,13 +86,13 @@ def fit(
     with executor(jobs) as pool:
         fitted = simulable(start, fitted, pool, GENTLEST)
         result = identify(Problem(fitted, pool), start, method)
-        others = simulable(result.model, for_model(model, unseen), pool) if unseen else []
-        found = compare(result.model, fitted, pool, others, f"{_named(model)}, fitted")
+        others = simulable(result.model, for_model(start, _experiments(unseen)), pool) if unseen else []
+        found = compare(result.model, fitted, pool, others, f"{_named(start)}, fitted")
     return Fitted(found, result)
 
 
 def diagnose(
-    model: Model, recordings: Sequence[Experiment], effects: Sequence[str] | None = None, jobs: int = 1
+    model: AnyModel, recordings: AnyRecordings, effects: Sequence[str] | None = None, jobs: int = 1
 ) -> Diagnosed:
     """Fit, and rank the effects that the model may lack.
 
@@ -99,9 +107,9 @@ def diagnose(
 
 
 def improve(
-    model: Model,
-    recordings: Sequence[Experiment],
-    unseen: Sequence[Experiment] = (),
+    model: AnyModel,
+    recordings: AnyRecordings,
+    unseen: AnyRecordings = (),
     effects: Sequence[str] | None = None,
     jobs: int = 1,
 ) -> Improved:
@@ -112,17 +120,51 @@ def improve(
     """
     start, fitted = _prepared(model, recordings)
     with executor(jobs) as pool:
-        fitted, others = (
-            simulable(start, part, pool, GENTLEST) for part in (fitted, for_model(model, unseen))
-        )
+        others = for_model(start, _experiments(unseen)) if unseen else []
+        fitted, others = (simulable(start, part, pool, GENTLEST) for part in (fitted, others))
         validation = Problem(others, pool) if others else None
         return Improved(improvement_of(Problem(fitted, pool), start, validation, effects))
 
 
-def _prepared(model: Model, recordings: Sequence[Experiment]) -> tuple[Model, list[Experiment]]:
+def _prepared(model: AnyModel, recordings: AnyRecordings) -> tuple[Model, list[Experiment]]:
     """The model with an amplitude for every level of the recordings, and these with the model's channels."""
-    fitted = for_model(model.with_levels([]), recordings)
+    model = _model(model)
+    fitted = for_model(model.with_levels([]), _experiments(recordings))
     return prepared(model, fitted), fitted
+
+
+def _model(given: AnyModel) -> Model:
+    """The model itself, or the one of this name or file."""
+    if isinstance(given, (str, Path)):
+        return load_model(given)
+    if isinstance(given, (Simulated, Improved)):
+        return given.model
+    if isinstance(given, Model):
+        return given
+    raise SysidError(
+        f"found a {type(given).__name__} where a model is expected: give h.model(...), the name of one such as "
+        "'swimmer', or its file"
+    )
+
+
+def _experiments(given: AnyRecordings) -> list[Experiment]:
+    """The recordings themselves, or those at a path or several."""
+    if isinstance(given, (str, Path)):
+        return list(load(given))
+    found: list[Experiment] = []
+    for each in given if isinstance(given, Iterable) else [given]:
+        if isinstance(each, (str, Path)):
+            found += load(each)
+        elif isinstance(each, Recording):
+            found += usable([each])
+        elif isinstance(each, Experiment):
+            found.append(each)
+        else:
+            raise SysidError(
+                f"found a {type(each).__name__} where recordings are expected: give h.load(...), or paths such as "
+                "'runs/*.csv'"
+            )
+    return found
 
 
 def _named(model: Model) -> str:

@@ -1,5 +1,7 @@
-"""Progress on the terminal with the time left."""
+"""Progress with the time left: a bar on the terminal, lines in a log."""
 
+import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import timedelta
@@ -22,6 +24,15 @@ Show = Callable[[str, float], None]
 
 _ENOUGH_TO_TELL = 0.02
 """Share done before which what is left is not told."""
+_LINE_EVERY_S = 60.0
+"""In a log a line says that it goes on, also where no new stage begins."""
+
+
+def time_left(elapsed_s: float, share: float) -> str:
+    """Such as `about 0:02:10 left`, if the rest goes on as what was done; empty at the very beginning."""
+    if share < _ENOUGH_TO_TELL or not elapsed_s:
+        return ""
+    return f"about {timedelta(seconds=round(elapsed_s * (1.0 - share) / share))} left"
 
 
 class TimeLeft(ProgressColumn):
@@ -29,16 +40,19 @@ class TimeLeft(ProgressColumn):
 
     def render(self, task: Task) -> Text:
         """Such as `about 0:02:10 left`; nothing at the very beginning."""
-        if task.completed < _ENOUGH_TO_TELL or not task.elapsed:
-            return Text("")
-        left = task.elapsed * (1.0 - task.completed) / task.completed
-        return Text(f"about {timedelta(seconds=round(left))} left")
+        return Text(time_left(task.elapsed or 0.0, task.completed))
 
 
 @contextmanager
 def progress_bar(title: str) -> Iterator[Show]:
-    """A bar on stderr that never goes back; call what it gives with a line of text and the share done, 0 to 1."""
+    """A bar on stderr that never goes back; call what it gives with a line of text and the share done, 0 to 1.
+
+    Where stderr is no terminal, it is lines; see `log_lines`.
+    """
     console = Console(stderr=True)
+    if not console.is_terminal:
+        yield never_back(log_lines(title))
+        return
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -46,9 +60,31 @@ def progress_bar(title: str) -> Iterator[Show]:
         TimeElapsedColumn(),
         TimeLeft(),
     )
-    with Progress(*columns, console=console, transient=not console.is_terminal) as bar:
+    with Progress(*columns, console=console) as bar:
         task = bar.add_task(title, total=1.0)
         yield never_back(lambda text, share: bar.update(task, description=text, completed=share))
+
+
+def log_lines(title: str, clock: Callable[[], float] = time.monotonic) -> Show:
+    """A line on stderr for every stage, and one a minute within it: what is done, for how long so far, how long still.
+
+    A stage is named by what stands before a text's first colon, else by its first word.
+    """
+    begun = clock()
+    last, said_at = "", begun
+
+    def show(text: str, share: float) -> None:
+        nonlocal last, said_at
+        now = clock()
+        stage = text.partition(": ")[0] if ": " in text else text.partition(" ")[0]
+        if stage == last and now - said_at < _LINE_EVERY_S:
+            return
+        last, said_at = stage, now
+        left = time_left(now - begun, share)
+        times = f"{timedelta(seconds=round(now - begun))} so far{f', {left}' if left else ''}"
+        print(f"{title}: {text} ({share:.0%}, {times})", file=sys.stderr, flush=True)
+
+    return show
 
 
 def never_back(progress: Show) -> Show:

@@ -82,6 +82,8 @@ class Comparison:
             parts += [f"mean |Δ speed| = {1e3 * self.mean_speed_error:.3g} mm/s"]
         return f"{self.label}: {', '.join(parts)}."
 
+    __repr__ = __str__
+
 
 def _row(row: ConditionError, key: str) -> dict:
     return {key: row.condition, "label": row.label, "runs": row.runs, "mae": row.mean_absolute_error}

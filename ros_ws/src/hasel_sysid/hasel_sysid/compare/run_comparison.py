@@ -77,3 +77,5 @@ class RunComparison:
             f"{self.name}: mean |Δ sin θ| = {self.mean_absolute_error:.5f} "
             f"({self.mean_absolute_error_raw:.5f} with the offset), fit {self.fit_percent:.1f} %."
         )
+
+    __repr__ = __str__

@@ -6,12 +6,14 @@ import os
 import re
 import subprocess
 import sys
+from importlib.metadata import version
 from pathlib import Path
 
 import hasel_sysid as h
 import hasel_sysid.api
 import pytest
 from hasel_sim.errors import ModelError
+from hasel_sysid.errors import SysidError
 
 PACKAGE = Path(__file__).parents[2]
 ROOT = PACKAGE.parents[2]
@@ -97,3 +99,38 @@ def test_an_unknown_effect_is_answered_by_the_nearest():
     """One sentence."""
     with pytest.raises(ModelError, match="quadratic_drag"):
         h.model("swimmer", "quadratic_drg")
+
+
+RUN = ROOT / "data" / "unseen_rig" / "quadratic_drag" / "fit_5500V_2.0Hz.csv"
+
+
+def test_names_and_paths_will_do():
+    """A model's name and a recording's path stand for what they name; anything else is refused in a sentence."""
+    found = h.simulate("swimmer", str(RUN))
+    assert str(found) == str(h.simulate(h.model(), h.load(RUN)))
+    assert str(h.simulate(found, h.load(RUN)[0])) == str(found)
+    with pytest.raises(SysidError, match=r"found a int where a model is expected: give h\.model"):
+        h.simulate(3, RUN)
+    with pytest.raises(SysidError, match=r"found a float where recordings are expected: give h\.load"):
+        h.fit("swimmer", 0.1)
+
+
+def test_everything_prints_in_short_sentences():
+    """A model says what drives it and its free values; no object dumps its arrays."""
+    model = h.model("swimmer", "quadratic_drag")
+    assert str(model).startswith(
+        "swimmer: driven by voltage_upper_v and voltage_lower_v, with the effects quadratic_drag."
+    )
+    assert "quadratic_drag.coefficient = " in str(model)
+    assert re.fullmatch(r"<Model swimmer \+ quadratic_drag, \d+ parameters>", repr(model))
+    runs = h.load(RUN)
+    found = h.simulate(model, runs)
+    for each in (runs, runs[0], runs[0].recording, found, found.comparison, found.comparison.runs[0]):
+        assert repr(each) == str(each)
+        assert len(str(each)) < 2000
+        assert "array(" not in repr(each)
+
+
+def test_it_has_the_version_of_the_package():
+    """As `--version` says."""
+    assert h.__version__ == version("hasel_sysid")

@@ -30,3 +30,29 @@ def test_the_bar_never_goes_back():
     for share in (0.06, 0.04, 0.5, -1.0, 2.0):
         show("step", share)
     assert seen == [0.06, 0.06, 0.5, 0.5, 1.0]
+
+
+def test_a_log_has_a_line_for_every_stage(capsys):
+    """With the time so far and what is left; within a stage one a minute."""
+    clock = iter([0.0, 10.0, 11.0, 30.0, 40.0, 95.0])
+    show = progress.log_lines("improve", lambda: next(clock))
+    for text, share in (
+        ("start: simulated run_1", 0.01),
+        ("start: simulated run_2", 0.02),
+        ("baseline: horizon 1 of 8", 0.1),
+        ("baseline: horizon 2 of 8", 0.2),
+        ("baseline: horizon 3 of 8", 0.5),
+    ):
+        show(text, share)
+    assert capsys.readouterr().err.splitlines() == [
+        "improve: start: simulated run_1 (1%, 0:00:10 so far)",
+        "improve: baseline: horizon 1 of 8 (10%, 0:00:30 so far, about 0:04:30 left)",
+        "improve: baseline: horizon 3 of 8 (50%, 0:01:35 so far, about 0:01:35 left)",
+    ]
+
+
+def test_what_is_no_terminal_gets_lines(capsys):
+    """A log of a cluster or a pipe is not left without a word."""
+    with progress.progress_bar("fit") as show:
+        show("low-fidelity model", 0.2)
+    assert capsys.readouterr().err.startswith("fit: low-fidelity model (20%, 0:00:00 so far")
