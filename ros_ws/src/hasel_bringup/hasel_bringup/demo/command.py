@@ -13,6 +13,7 @@ from hasel_sysid.command_line import bench_muscle, fit, improve, measured_fish
 from hasel_sysid.command_line.running import MISLEADING
 from hasel_sysid.errors import SysidError
 from hasel_sysid.measured_fish.reading import filmed_runs
+from hasel_sysid.report.provenance import called_as
 from rich.console import Console
 from rich.markup import escape
 
@@ -136,11 +137,11 @@ def _call(command, arguments: Sequence[str]) -> None:
 
     Raises BringupError when it fails.
     """
-    code = command.main(arguments)
+    name = command.__name__.rpartition(".")[2]
+    with called_as("hasel_sysid", name, *arguments):
+        code = command.main(arguments)
     if code not in (0, MISLEADING):
-        raise BringupError(
-            f"{command.__name__.rpartition('.')[2]} failed with exit code {code}; see its message above"
-        )
+        raise BringupError(f"{name} failed with exit code {code}; see its message above")
 
 
 def run(options: argparse.Namespace) -> int:

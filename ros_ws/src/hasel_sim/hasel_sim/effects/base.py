@@ -39,7 +39,8 @@ class EffectParameter:
 
     null: value without effect; lower, upper: plausible range; typical: a size at which one would notice it;
     scan: values to try for a parameter that has no null of its own (a relaxation time while its modulus is zero), empty
-    for one that has; difference: step of the central differences (0: a millionth of `typical`).
+    for one that has; difference: step of the central differences (0: a millionth of `typical`); usual: lowest and
+    highest value that the source gives of such bodies, None where it gives none.
     """
 
     name: str
@@ -52,6 +53,7 @@ class EffectParameter:
     source: str = ""
     scan: tuple[float, ...] = ()
     difference: float = 0.0
+    usual: tuple[float, float] | None = None
 
     @property
     def step(self) -> float:

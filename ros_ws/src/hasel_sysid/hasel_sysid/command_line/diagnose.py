@@ -17,6 +17,7 @@ from hasel_sysid.estimation import fit_baseline
 from hasel_sysid.improvement import diagnose
 from hasel_sysid.problem import Problem
 from hasel_sysid.report.from_diagnosis import diagnosis_content
+from hasel_sysid.report.pictures import vector_figures
 from hasel_sysid.report.write import write_report
 from hasel_sysid.result import diagnosis_json
 from hasel_sysid.time_limit import TimeLimit
@@ -51,7 +52,10 @@ def _diagnose(options: argparse.Namespace) -> int:
     summarise(diagnosis_lines(found, comparison), everything, options.all, others)
     if options.json:
         write_json({**comparison.to_json(), **diagnosis_json(found)}, options.json)
-    print(f"Wrote {write_report(diagnosis_content(found, comparison), options.output)}.")
+    content = diagnosis_content(found, comparison)
+    report = write_report(content, options.output)
+    vector_figures(content, options.output)
+    print(f"Wrote {report}, and its figures as SVG.")
     return code_after(comparison.set_up)
 
 

@@ -20,6 +20,7 @@ from hasel_sysid.data_gate import Finding
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import FittedModel, identify
 from hasel_sysid.report.from_results import fit_content
+from hasel_sysid.report.pictures import vector_figures
 from hasel_sysid.report.write import write_report
 
 MODEL_FILE = "fitted_model.yaml"
@@ -67,8 +68,10 @@ def _finish(
     print(result)
     if options.json:
         write_json({**comparison.to_json(), **_fit_json(result)}, options.json)
-    report = write_report(fit_content(result, comparison), options.output)
-    print(f"Wrote {path} and {report}.")
+    content = fit_content(result, comparison)
+    report = write_report(content, options.output)
+    vector_figures(content, options.output)
+    print(f"Wrote {path} and {report}, and its figures as SVG.")
 
 
 def _fit_json(result: FittedModel) -> dict:

@@ -25,7 +25,7 @@ from hasel_sysid.improvement import improve
 from hasel_sysid.ledger import Ledger
 from hasel_sysid.problem import Problem
 from hasel_sysid.report.from_improvement import improvement_content
-from hasel_sysid.report.pictures import stages_picture, waterfall_picture
+from hasel_sysid.report.pictures import stages_picture, vector_figures, waterfall_picture
 from hasel_sysid.report.write import write_report
 from hasel_sysid.result import Improvement, Stage, Status, table_of_models
 from hasel_sysid.set_up import DECIDED
@@ -132,6 +132,7 @@ def _finish(
     save_model(found.model, folder / MODEL_FILE)
     content = improvement_content(found, stages, start, suggestions)
     report = write_report(content, folder)
+    vector_figures(content, folder)
     waterfall_picture(content.stages, content.noise_floor, folder / "waterfall.png")
     stages_picture(content.stages, content.noise_floor, folder / "error_by_stage.png")
     if options.json:
@@ -142,7 +143,7 @@ def _finish(
             "next_runs": [suggestion.to_json() for suggestion in suggestions],
         }
         write_json({**found.to_json(), **details}, options.json)
-    print(f"Wrote {folder / MODEL_FILE} and {report}.")
+    print(f"Wrote {folder / MODEL_FILE} and {report}, and its figures as SVG.")
 
 
 if __name__ == "__main__":

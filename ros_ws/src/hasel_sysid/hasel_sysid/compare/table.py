@@ -7,6 +7,10 @@ from rich.table import Table
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.where_it_fails.by_condition import ConditionError
 
+_CAPTION = (
+    "with offset: the same with it left in; fit %: 100 is a perfect model, 0 no better than the run's mean"
+)
+
 
 def run_table(comparisons: Sequence[Comparison]) -> Table:
     """One row per run; error, offset and fit of one model, or the errors of several side by side."""
@@ -14,6 +18,8 @@ def run_table(comparisons: Sequence[Comparison]) -> Table:
     for name in ("run", "drive", "Hz"):
         table.add_column(name, justify="left" if name == "run" else "right")
     single = len(comparisons) == 1
+    if single:
+        table.caption, table.caption_justify = _CAPTION, "left"
     names = ["error", "with offset", "fit %"] if single else [c.label for c in comparisons]
     for name in names:
         table.add_column(name, justify="right")

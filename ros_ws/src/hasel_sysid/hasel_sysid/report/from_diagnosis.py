@@ -9,7 +9,7 @@ from hasel_sim.errors import ModelError
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.report.content import ParameterRow, RankedRow, ReportContent
 from hasel_sysid.report.from_results import comparison_content
-from hasel_sysid.report.parameter_words import of_effect
+from hasel_sysid.report.parameter_words import beyond, of_effect
 from hasel_sysid.result import Diagnosis, Finding, Verdict
 
 
@@ -29,6 +29,7 @@ def _row(finding: Finding) -> RankedRow:
             value,
             error,
             finding.units[name],
+            remark=beyond(declared[own], value) if own in declared else "",
             plausible=of_effect(declared[own]) if own in declared else "",
         )
         for name, (value, error) in finding.expected.items()

@@ -12,6 +12,7 @@ from hasel_sysid.report.content import KeyNumber, NextRun, RankedRow, ReportCont
 from hasel_sysid.report.from_diagnosis import ranked_rows, what_remains
 from hasel_sysid.report.from_results import comparison_content, parameter_rows
 from hasel_sysid.report.numbers import error_text, percent
+from hasel_sysid.report.parameter_words import remark
 from hasel_sysid.result import Improvement, Status, Verdict, WrongConstant
 from hasel_sysid.suggest import Suggestion
 
@@ -69,7 +70,14 @@ def _final(row: RankedRow, model: Model) -> RankedRow:
     return replace(
         row,
         expected=tuple(
-            replace(each, value=known.value, standard_error=known.standard_error) if known else each
+            replace(
+                each,
+                value=known.value,
+                standard_error=known.standard_error,
+                remark=remark(known.name, model),
+            )
+            if known
+            else each
             for each, known in values
         ),
     )

@@ -11,7 +11,7 @@ from hasel_sysid.compare.run_comparison import RunComparison
 from hasel_sysid.report.content import KeyNumber, ParameterRow, ReportContent, RunOverlay
 from hasel_sysid.report.figures.overlay import driven_stretches
 from hasel_sysid.report.numbers import count_text, error_text
-from hasel_sysid.report.parameter_words import meaning, plausible
+from hasel_sysid.report.parameter_words import meaning, plausible, remark
 from hasel_sysid.report.shape import Shapes, simulated_shapes
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def parameter_rows(
             p.value,
             p.standard_error,
             p.unit,
-            (remarks or {}).get(p.name, ""),
+            (remarks or {}).get(p.name) or remark(p.name, model),
             meaning(p.name, model),
             plausible(p.name, model),
             earlier.get(p.name),

@@ -45,6 +45,22 @@ def of_effect(parameter: EffectParameter) -> str:
     return f"{parameter.lower:g} to {parameter.upper:g}{source}"
 
 
+def beyond(parameter: EffectParameter, value: float) -> str:
+    """A remark on a found value outside what is plausible, or outside what its source calls usual; else empty."""
+    plausible_range = (parameter.lower, parameter.upper)
+    for (low, high), what in ((plausible_range, "plausible"), (parameter.usual or plausible_range, "usual")):
+        if not low <= value <= high:
+            return f"{'below' if value < low else 'above'} the {low:g} to {high:g} that are {what}"
+    return ""
+
+
+def remark(name: str, model: Model) -> str:
+    """The same of a model's parameter; empty for one that is of no effect, or does nothing."""
+    declared = _declared(name, model)
+    value = model.parameters[name].value
+    return "" if declared is None or value == declared[1].null else beyond(declared[1], value)
+
+
 def _declared(name: str, model: Model) -> tuple[Effect, EffectParameter] | None:
     identity, _, own = name.rpartition(".")
     for effect in model.effects:

@@ -1,4 +1,4 @@
-"""The error by stage as PNG pictures, for a README or slides."""
+"""The error by stage and the runs as pictures, vector or PNG, for a paper, a README or slides."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,11 +11,23 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
-from hasel_sysid.report.content import RunOverlay, Stage
+from hasel_sysid.report.content import ReportContent, RunOverlay, Stage
 from hasel_sysid.report.figures.style import DROP, FITTED, MEASURED, MODELS, NOISE, RISE, UNSEEN
 from hasel_sysid.report.numbers import change_text, error_text
 
 _DOTS_PER_INCH = 150
+_BESIDE = 4
+plt.rcParams["svg.fonttype"] = "none"  # text stays text: it can be found, and set in the paper's own font
+
+
+def vector_figures(content: ReportContent, folder: Path) -> list[Path]:
+    """Write the figures of a report as SVG into its folder `figures`; returns what was written."""
+    folder = folder / "figures"
+    written = [overlay_picture(content.runs, folder / "runs.svg")] if content.runs else []
+    if content.stages:
+        written.append(waterfall_picture(content.stages, content.noise_floor, folder / "waterfall.svg"))
+        written.append(stages_picture(content.stages, content.noise_floor, folder / "error_by_stage.svg"))
+    return written
 
 
 def waterfall_picture(stages: Sequence[Stage], noise_floor: float | None, path: Path) -> Path:
@@ -59,16 +71,22 @@ def stages_picture(stages: Sequence[Stage], noise_floor: float | None, path: Pat
 
 
 def overlay_picture(runs: Sequence[RunOverlay], path: Path) -> Path:
-    """Draw measured against simulated angle of some runs, side by side."""
-    figure, axes = plt.subplots(1, len(runs), figsize=(3.6 * len(runs), 2.8), sharey=True, squeeze=False)
-    for axis, run in zip(axes[0], runs, strict=True):
+    """Draw measured against simulated angle of some runs, up to four side by side."""
+    beside = min(_BESIDE, len(runs))
+    rows = -(-len(runs) // beside)
+    size = (3.6 * beside, 0.4 + 2.4 * rows)
+    figure, axes = plt.subplots(rows, beside, figsize=size, sharey=True, squeeze=False)
+    for axis in axes.flat[len(runs) :]:
+        axis.set_visible(False)
+    for axis, run in zip(axes.flat, runs, strict=False):
         axis.plot(run.time, run.measured, ".", color=MEASURED, markersize=2.5, label="measured")
         for number, (label, simulated) in enumerate(run.simulated.items()):
             axis.plot(run.time, simulated, color=MODELS[number % len(MODELS)], linewidth=1.3, label=label)
         axis.set_title(run.name + (" (unseen)" if run.unseen else ""), fontsize=10)
         axis.set_xlabel("time [s]")
         _bare(axis)
-    axes[0][0].set_ylabel("sin θ")
+    for axis in axes[:, 0]:
+        axis.set_ylabel("sin θ")
     figure.legend(*axes[0][0].get_legend_handles_labels(), frameon=False, ncols=4, loc="outside lower center")
     return _save(figure, path)
 

@@ -59,3 +59,17 @@ def test_an_effect_of_the_users_own_brings_its_physics(tmp_path):
     assert own.expected[0].plausible == "0 to 0.5"
     assert absent.expected == ()
     assert absent.error_removed != absent.error_removed
+
+
+def test_a_value_beyond_what_its_source_gives_is_remarked_on():
+    """Below what is usual, beyond what is plausible; nothing of one that does nothing."""
+    model = load_model("swimmer").with_effects("quadratic_drag")
+    for value, said in (
+        (0.248, "below the 1 to 8 that are usual"),
+        (12.0, "above the 0 to 10 that are plausible"),
+        (3.0, ""),
+        (0.0, ""),
+    ):
+        changed = model.with_values({"quadratic_drag.coefficient": value})
+        (row,) = [r for r in parameter_rows(changed) if r.name == "quadratic_drag.coefficient"]
+        assert row.remark == said

@@ -2,8 +2,8 @@
 
 import matplotlib.image
 import numpy as np
-from hasel_sysid.report.content import RunOverlay, Stage
-from hasel_sysid.report.pictures import overlay_picture, stages_picture, waterfall_picture
+from hasel_sysid.report.content import ReportContent, RunOverlay, Stage
+from hasel_sysid.report.pictures import overlay_picture, stages_picture, vector_figures, waterfall_picture
 
 STAGES = (Stage("start", 0.08, 0.09), Stage("fit", 0.03, 0.05), Stage("+ quadratic_drag", 0.003, 0.004))
 
@@ -33,3 +33,13 @@ def test_overlay_shows_the_model(tmp_path):
     time = np.linspace(0, 1, 100)
     run = RunOverlay("run", time, np.sin(9 * time), {"model": np.sin(9 * time)})
     assert 0xD1495B in _colours(overlay_picture([run], tmp_path / "o.png"))
+
+
+def test_vector_figures_lie_beside_the_report(tmp_path):
+    """Every run, and the error by stage, as SVG whose text is text."""
+    time = np.linspace(0, 1, 100)
+    runs = [RunOverlay(f"run_{number}", time, time, {"model": time}) for number in range(5)]
+    written = vector_figures(ReportContent("title", runs=runs, stages=STAGES, noise_floor=0.002), tmp_path)
+    assert [path.name for path in written] == ["runs.svg", "waterfall.svg", "error_by_stage.svg"]
+    for number in range(5):
+        assert f">run_{number}</text>" in written[0].read_text()

@@ -16,7 +16,15 @@ class ChargeRetention(DriveEffect):
     equation = "dq/dt = (V - q) / tau_q, V_eff = V - beta q"
     parameters = (
         EffectParameter(
-            "fraction", "beta", "1", 0.0, 0.0, 0.5, 0.15, "drift of Peano-HASEL strokes: 0.02-0.4 (estimate)"
+            "fraction",
+            "beta",
+            "1",
+            0.0,
+            0.0,
+            0.5,
+            0.15,
+            "drift of Peano-HASEL strokes: 0.02-0.4 (estimate)",
+            usual=(0.02, 0.4),
         ),
         EffectParameter(
             "time",

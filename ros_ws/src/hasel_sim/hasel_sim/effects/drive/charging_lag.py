@@ -27,6 +27,7 @@ class ChargingLag(DriveEffect):
             0.05,
             "R C: 1-20 MOhm in series with 0.4-1.8 nF per muscle gives 0.3-60 ms",
             difference=5e-7,
+            usual=(0.0003, 0.06),
         ),
         EffectParameter(
             "discharge_time",

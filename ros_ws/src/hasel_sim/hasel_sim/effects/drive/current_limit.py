@@ -24,6 +24,7 @@ class CurrentLimit(DriveEffect):
             1e-4,
             2e-5,
             "C / I_max: 0.3-3 nF at 0.11-0.5 mA gives 6e-7 to 3e-5 s/V (hvps-x data sheet)",
+            usual=(6e-07, 3e-05),
         ),
     )
     signature = (

@@ -24,6 +24,7 @@ class DriveCreep(DriveEffect):
             0.5,
             0.1,
             "5-25 % between 1 s and minutes in platinum-cured silicones (estimate)",
+            usual=(0.05, 0.25),
         ),
         EffectParameter(
             "time",

@@ -26,6 +26,7 @@ class HydraulicLag(DriveEffect):
             0.9,
             0.02,
             "12 mu (l/h)^2 / Maxwell pressure: 0.4-10 ms (estimate)",
+            usual=(0.0004, 0.01),
         ),
         EffectParameter(
             "release_time",
@@ -36,6 +37,7 @@ class HydraulicLag(DriveEffect):
             0.9,
             0.1,
             "12 mu (l/h)^2 / elastic pressure: 36-900 ms (estimate)",
+            usual=(0.036, 0.9),
         ),
     )
     signature = (

@@ -15,7 +15,15 @@ class TransportDelay(DriveEffect):
     equation = "V(t) <- V(t - t_d)"
     parameters = (
         EffectParameter(
-            "delay", "t_d", "s", 0.0, 0.0, 0.1, 0.02, "software timer, serial line, optocoupler: 1-30 ms"
+            "delay",
+            "t_d",
+            "s",
+            0.0,
+            0.0,
+            0.1,
+            0.02,
+            "software timer, serial line, optocoupler: 1-30 ms",
+            usual=(0.001, 0.03),
         ),
     )
     signature = (

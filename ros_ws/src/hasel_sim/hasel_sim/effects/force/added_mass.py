@@ -25,6 +25,7 @@ class AddedMass(ForceEffect):
             40.0,
             0.5,
             "C_m rho pi H^2 / 4 of a plate, C_m = 1-1.5, halved over its two sides: 10-30 in oil",
+            usual=(10.0, 30.0),
         ),
     )
     signature = "Every resonance drops by one factor; the phase falls behind most near resonance."

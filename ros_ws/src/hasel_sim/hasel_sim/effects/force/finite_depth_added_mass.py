@@ -34,6 +34,7 @@ class FiniteDepthAddedMass(ForceEffect):
             2.0,
             1.0,
             "1 of an elliptic plate without viscosity (Lamb 1932), 1.2-1.5 with the oscillating layer at 0.5-2.5 Hz",
+            usual=(1.0, 1.5),
         ),
     )
     signature = "Every resonance drops by one factor; the phase falls behind most near resonance."

@@ -31,6 +31,7 @@ class NormalDrag(ForceEffect):
             1.5,
             "1.1 of a smooth cylinder (Taylor 1952), 2 of a plate, 2-8 of an oscillating plate (Keulegan and Carpenter "
             "1958)",
+            usual=(1.1, 8.0),
         ),
         EffectParameter(
             "boundary_layer",

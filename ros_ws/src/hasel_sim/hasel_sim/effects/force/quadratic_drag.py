@@ -29,6 +29,7 @@ class QuadraticDrag(ForceEffect):
             10.0,
             0.3,
             "2-8 on both sides of an oscillating plate (Keulegan and Carpenter 1958), 1-3 of a cylinder",
+            usual=(1.0, 8.0),
         ),
     )
     signature = (

@@ -31,6 +31,7 @@ class SurfaceFriction(ForceEffect):
             1.0,
             0.05,
             "oiled or PTFE 0.1 to tacky elastomer 1",
+            usual=(0.1, 1.0),
         ),
     )
     signature = (

@@ -27,6 +27,7 @@ class ViscousDrag(ForceEffect):
             200.0,
             8.0,
             "4 pi / (ln(4 L / H) + 1/2) = 4-6 in slow flow; 30-140 with the layer that oscillates at 0.5-7 Hz",
+            usual=(4.0, 140.0),
         ),
         EffectParameter(
             "along",

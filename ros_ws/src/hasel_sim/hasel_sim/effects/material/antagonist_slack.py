@@ -27,6 +27,7 @@ class AntagonistSlack(MaterialEffect):
             1e6,
             1e5,
             "0.3-3 kN/m of a 0.1 m long film over its 2.5 cm^2: 0.1-1.2 MPa",
+            usual=(100000.0, 1200000.0),
         ),
         EffectParameter(
             "slack_strain",

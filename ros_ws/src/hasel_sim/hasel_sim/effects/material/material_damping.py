@@ -23,6 +23,7 @@ class MaterialDamping(MaterialEffect):
             0.2,
             0.02,
             "eta / E: 0.1-3 kPa s over 65 kPa gives 2-46 ms (estimate from loss tangents of 0.02-0.5)",
+            usual=(0.002, 0.046),
         ),
     )
     signature = "Ringing after each switch dies faster; damping ratio omega tau / 2 grows with frequency."

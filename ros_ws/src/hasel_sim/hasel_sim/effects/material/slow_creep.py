@@ -21,6 +21,7 @@ class SlowCreep(MaterialEffect):
             1.0,
             0.15,
             "5-20 % per decade of time in silicones (estimate)",
+            usual=(0.05, 0.2),
         ),
         EffectParameter(
             "relaxation_time",

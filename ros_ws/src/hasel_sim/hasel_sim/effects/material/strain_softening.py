@@ -26,6 +26,7 @@ class StrainSoftening(MaterialEffect):
             0.7,
             0.3,
             "10-50 % between 1 and 50 % of strain in filled silicones; at most as soft as soft_modulus may be",
+            usual=(0.1, 0.5),
         ),
         EffectParameter(
             "reference_strain",

@@ -35,6 +35,7 @@ class StructuralDamping(MaterialEffect):
             0.5,
             0.1,
             "polypropylene 0.09 (PMC7407174), filled elastomers 0.05-0.3",
+            usual=(0.05, 0.3),
         ),
     )
     signature = "Logarithmic decrement pi eta at every frequency; lag after switches that no single time constant fits."

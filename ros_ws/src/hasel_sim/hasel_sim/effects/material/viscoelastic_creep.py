@@ -13,7 +13,15 @@ class ViscoelasticCreep(MaterialEffect):
     equation = "S = C : E + q, dq/dt = g C : dE/dt - q / tau"
     parameters = (
         EffectParameter(
-            "modulus_ratio", "g", "1", 0.0, 0.0, 1.0, 0.25, "0.1-0.5 of the long-term modulus (estimate)"
+            "modulus_ratio",
+            "g",
+            "1",
+            0.0,
+            0.0,
+            1.0,
+            0.25,
+            "0.1-0.5 of the long-term modulus (estimate)",
+            usual=(0.1, 0.5),
         ),
         EffectParameter(
             "relaxation_time",

@@ -40,7 +40,8 @@ async function draw() {
   script.textContent = await unpacked("plotly");
   document.head.append(script);
   const figures = JSON.parse(await unpacked("figures"));
-  const settings = {displaylogo: false, displayModeBar: false, responsive: true};
+  const settings = {displaylogo: false, displayModeBar: "hover", responsive: true, modeBarButtons: [["toImage"]],
+    toImageButtonOptions: {format: "svg", filename: "figure"}};
   for (const place of places) {
     const figure = figures[place.dataset.figure];
     await Plotly.newPlot(place, recolour(figure.data), figure.layout, settings);
@@ -53,12 +54,25 @@ async function draw() {
   }));
   document.documentElement.dataset.drawn = "yes";
 }
+const printing = document.documentElement.classList;
 function resize(within) {
-  if (window.Plotly) within.querySelectorAll("div.js-plotly-plot").forEach(each => Plotly.Plots.resize(each));
+  if (!window.Plotly) return;
+  within.querySelectorAll("div.js-plotly-plot").forEach(each => {
+    if (!printing.contains("printing") || !each.closest(".runs")) Plotly.Plots.resize(each);
+  });
 }
 document.querySelectorAll("details").forEach(each => each.addEventListener("toggle", () => resize(each)));
+// For the printer the page is as wide as the paper, four runs beside each other, each as it was drawn but smaller.
 addEventListener("beforeprint", () => {
-  document.querySelectorAll("details").forEach(each => { each.open = true; });
+  const runs = [...document.querySelectorAll(".runs .figure")], widths = runs.map(each => each.offsetWidth);
+  printing.add("printing");
+  document.querySelectorAll("details").forEach(each => { each.open = !each.classList.contains("folded"); });
+  resize(document);
+  runs.forEach((each, number) => { each.style.zoom = each.parentElement.offsetWidth / widths[number]; });
+});
+addEventListener("afterprint", () => {
+  printing.remove("printing");
+  document.querySelectorAll(".runs .figure").forEach(each => { each.style.zoom = ""; });
   resize(document);
 });
 draw().catch(error => {
