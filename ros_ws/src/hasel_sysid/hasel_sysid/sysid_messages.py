@@ -11,9 +11,9 @@ from hasel_sim.simulator_messages import to_time
 from std_msgs.msg import Header
 
 from hasel_sysid import result as diagnosis_result
+from hasel_sysid.diagnosis import Finding, Verdict
 from hasel_sysid.estimation import FittedModel
 from hasel_sysid.live import running_error
-from hasel_sysid.result import Finding, Verdict
 
 
 def error_message(stamp_ns: int, error: running_error.RunningError, frame_id: str) -> RunningError:

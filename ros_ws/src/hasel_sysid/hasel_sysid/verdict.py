@@ -7,13 +7,14 @@ import numpy as np
 from hasel_sim.effects.base import EffectParameter
 
 from hasel_sysid.candidates import Candidate
+from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict
 from hasel_sysid.estimation.covariance import with_numerical_error
 from hasel_sysid.estimation.fit import FittedModel
 from hasel_sysid.estimation.starts import Screened
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.policy import POLICY
 from hasel_sysid.projection import orthonormal
-from hasel_sysid.result import Diagnosis, Finding, Status, Verdict
+from hasel_sysid.result import Status
 from hasel_sysid.saturated_model import regressors, unexplained_by
 from hasel_sysid.selection.likelihood import NOTHING, Likelihood, Names, Whitened
 from hasel_sysid.selection.search import Searched

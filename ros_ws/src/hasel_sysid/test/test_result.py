@@ -6,8 +6,9 @@ import math
 import numpy as np
 import pytest
 from hasel_sim.model import load_model
+from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict, diagnosis_json
 from hasel_sysid.noise.model import NoiseModel
-from hasel_sysid.result import Diagnosis, Finding, Verdict, diagnosis_json, open_values
+from hasel_sysid.result import open_values
 from hasel_sysid.testing.made_up_runs import made_up_fit
 
 RANGE = (0.0, 0.3)

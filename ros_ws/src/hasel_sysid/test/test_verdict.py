@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from hasel_sysid.diagnosis import Verdict
 from hasel_sysid.estimation import fit_baseline
 from hasel_sysid.improvement import diagnose
 from hasel_sysid.noise.model import NoiseModel
-from hasel_sysid.result import Status, Verdict
+from hasel_sysid.result import Status
 from hasel_sysid.testing.made_up_world import VOLTAGES, MadeUpWorld
 from hasel_sysid.verdict import near_noise, share_left, status_with
 

@@ -8,9 +8,10 @@ from matplotlib.figure import Figure
 
 from hasel_sysid.api.picture import Picture
 from hasel_sysid.compare import Comparison
+from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.report.figures.style import DROP, FITTED, MEASURED, MODELS, NOISE, UNSEEN
-from hasel_sysid.result import Diagnosis, Stage
+from hasel_sysid.result import Stage
 
 _COLUMNS, _MOST_EFFECTS = 3, 8
 

@@ -8,9 +8,10 @@ from hasel_sim.model import Model
 from hasel_sysid.api.drawing import draw_comparisons, draw_ranking, draw_recordings, draw_stages
 from hasel_sysid.api.picture import Picture
 from hasel_sysid.compare import Comparison
+from hasel_sysid.diagnosis import Diagnosis, Verdict
 from hasel_sysid.estimation import FittedModel
 from hasel_sysid.experiment import Experiment
-from hasel_sysid.result import Diagnosis, Improvement, Verdict
+from hasel_sysid.result import Improvement
 
 _MOST_SAID = 8
 

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from hasel_sim.model import Parameter
 
 from hasel_sysid.compare import Comparison
+from hasel_sysid.diagnosis import Diagnosis, Verdict
 from hasel_sysid.report.from_improvement import what_is_missing
 from hasel_sysid.report.numbers import error_text, interval_text
-from hasel_sysid.result import Diagnosis, Improvement, Verdict
+from hasel_sysid.result import Improvement
 from hasel_sysid.suggest import Suggestion
 
 _ON_BOUND = 1e-6

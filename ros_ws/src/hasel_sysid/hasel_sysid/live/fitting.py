@@ -8,13 +8,14 @@ from hasel_sim.model import Model
 from hasel_sim.parallel import executor
 
 from hasel_sysid.dataset import for_model, prepared, simulable, usable
+from hasel_sysid.diagnosis import Diagnosis, Verdict
 from hasel_sysid.estimation import FittedModel, fit_baseline, identify
 from hasel_sysid.estimation.fit import Progress
 from hasel_sysid.experiment import GENTLEST
 from hasel_sysid.improvement import diagnose
 from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Problem
-from hasel_sysid.result import Diagnosis, Status, Verdict
+from hasel_sysid.result import Status
 from hasel_sysid.verdict import status_with
 
 DEFAULT_METHOD = "least_squares"

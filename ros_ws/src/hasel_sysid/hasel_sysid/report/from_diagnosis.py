@@ -7,10 +7,10 @@ from hasel_sim.effects.registry import catalogue, find_effects
 from hasel_sim.errors import ModelError
 
 from hasel_sysid.compare.comparison import Comparison
+from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict
 from hasel_sysid.report.content import ParameterRow, RankedRow, ReportContent
 from hasel_sysid.report.from_results import comparison_content
 from hasel_sysid.report.parameter_words import beyond, of_effect
-from hasel_sysid.result import Diagnosis, Finding, Verdict
 
 
 def ranked_rows(diagnosis: Diagnosis) -> tuple[RankedRow, ...]:

@@ -7,13 +7,14 @@ from hasel_sim.model import Model
 from hasel_sim.model.value_text import value_with_error
 
 from hasel_sysid.compare.comparison import Comparison
+from hasel_sysid.diagnosis import Verdict
 from hasel_sysid.improvement import listed
 from hasel_sysid.report.content import KeyNumber, NextRun, RankedRow, ReportContent, Stage
 from hasel_sysid.report.from_diagnosis import ranked_rows, what_remains
 from hasel_sysid.report.from_results import comparison_content, parameter_rows
 from hasel_sysid.report.numbers import error_text, percent
 from hasel_sysid.report.parameter_words import remark
-from hasel_sysid.result import Improvement, Status, Verdict, WrongConstant
+from hasel_sysid.result import Improvement, Status, WrongConstant
 from hasel_sysid.suggest import Suggestion
 
 _SHOWN_SUGGESTIONS = 3

@@ -5,10 +5,10 @@ from collections.abc import Callable, Sequence
 from hasel_sim.errors import HaselSimError
 from hasel_sim.model import Model
 
+from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation.least_squares import minimise
 from hasel_sysid.problem import Problem
-from hasel_sysid.result import Diagnosis
 
 _BRIEF = 8
 """Evaluations for a fit of what the diagnosis did not think worth one."""

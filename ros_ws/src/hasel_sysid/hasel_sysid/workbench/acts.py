@@ -9,10 +9,10 @@ from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
 from hasel_sysid.dataset import prepared
+from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import FittedModel, identify
 from hasel_sysid.improvement import diagnose
-from hasel_sysid.result import Diagnosis
 from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest
 from hasel_sysid.workbench.cards import source_of
 from hasel_sysid.workbench.evaluate import Progress, WatchedProblem, evaluated

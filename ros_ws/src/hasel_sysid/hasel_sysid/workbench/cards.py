@@ -7,8 +7,8 @@ from hasel_sim.model import Model
 from hasel_sim.model.value_text import value_with_error
 
 from hasel_sysid.candidates import candidate_effects
+from hasel_sysid.diagnosis import Diagnosis, Finding
 from hasel_sysid.report.parameter_words import of_effect
-from hasel_sysid.result import Diagnosis, Finding
 
 
 @dataclass(frozen=True)

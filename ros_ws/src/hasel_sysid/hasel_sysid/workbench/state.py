@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, replace
 
+from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment
-from hasel_sysid.result import Diagnosis
 from hasel_sysid.suggest import Suggestion
 from hasel_sysid.workbench.step import Step
 

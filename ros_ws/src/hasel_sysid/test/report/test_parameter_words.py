@@ -2,9 +2,9 @@
 
 import numpy as np
 from hasel_sim.model import load_model
+from hasel_sysid.diagnosis import Finding, Verdict
 from hasel_sysid.report.from_diagnosis import ranked_rows
 from hasel_sysid.report.from_results import parameter_rows
-from hasel_sysid.result import Finding, Verdict
 
 
 def test_every_parameter_has_a_meaning_and_effects_have_their_range_with_its_source():

@@ -3,9 +3,9 @@
 import pytest
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model, load_model
+from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict
 from hasel_sysid.errors import SysidError
 from hasel_sysid.noise.model import NoiseModel
-from hasel_sysid.result import Diagnosis, Finding, Verdict
 from hasel_sysid.suggest import in_doubt, rivals
 from hasel_sysid.testing.made_up_runs import made_up_fit
 
