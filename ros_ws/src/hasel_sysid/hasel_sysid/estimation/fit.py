@@ -289,15 +289,15 @@ class _Coarse(Problem):
 
 def _that_runs(problem: Problem, model: Model) -> Model:
     """The model, its amplitudes halved until the motion is gentle enough to be simulated."""
-    share = 1.0
+    gentle, share = model, 1.0
     while True:
-        gentle = model.with_amplitudes_times(share)
         (seen,) = problem.evaluate_each([gentle], [()])
         if not isinstance(seen, SimulationError):
             return gentle
         if share <= GENTLEST or not any(map(model.is_amplitude, model.values)):
             raise seen
         share *= 0.5
+        gentle = model.with_amplitudes_times(share)
 
 
 def _standard_starts(problem: Problem, model: Model, effect: Effect) -> list[Model]:
