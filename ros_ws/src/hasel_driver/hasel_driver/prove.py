@@ -18,11 +18,12 @@ from pathlib import Path
 from hasel_recording.command_entry import command
 
 from hasel_driver.bench_options import firmware_files
-from hasel_driver.errors import RefusedError
+from hasel_driver.errors import DriverError, RefusedError
 from hasel_driver.testing.bench import Bench
 from hasel_driver.testing.kinds import KINDS, UNSEEN, Kind, Trial, try_kind
 from hasel_driver.testing.punctuality import Punctuality
 from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Rig
+from hasel_driver.testing.walk import Walk
 
 ATTEMPTS = 5
 DISCOVERY_S = 3.5  # within which a driver that runs already is known
@@ -66,7 +67,7 @@ class Trials:
             rig = Rig(self._command, self._punctuality.note)
             try:
                 trial = judge(rig)
-            except AssertionError as failure:
+            except (AssertionError, DriverError) as failure:
                 trial = Trial(wrong=[str(failure)])
             finally:
                 rig.close()
@@ -87,6 +88,22 @@ def _try_hardware(kind: Kind, rig: Rig) -> Trial:
         return try_kind(bench, kind)
     finally:
         bench.close()
+
+
+def walk(command: list[str], duration_s: float, seed: int) -> list[str]:
+    """A random walk for so long; what was wrong, with all that was done before."""
+    late_s: list[float] = []
+    rig = Rig(command, late_s.append)
+    bench = Bench(rig)
+    try:
+        walk = Walk(bench, seed)
+        walk.run(duration_s)
+    finally:
+        bench.close()
+        rig.close()
+    late = f", the supply late by up to {max(late_s):.2f} s" if late_s else ""
+    print(f"seed {seed}: {len(walk.log)} acts in {duration_s:g} s, {len(walk.wrong)} wrong{late}", flush=True)
+    return [*walk.log, *walk.wrong] if walk.wrong else []
 
 
 def prove_neighbours(trials: Trials) -> Iterator[Row]:
@@ -117,11 +134,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--firmware", type=Path, help="folder with the simulated firmware, from `make simulator`"
     )
+    parser.add_argument(
+        "--walk", type=float, metavar="SECONDS", help="instead: a random walk over all of it for so long"
+    )
+    parser.add_argument("--seed", type=int, default=1, help="of the walk (default: 1)")
     options = parser.parse_args(arguments)
     command, kinds = VIRTUAL_SUPPLY, [*KINDS, *UNSEEN]
     if options.firmware is not None:
         command = list(map(str, firmware_files(options.firmware)))
         kinds = [kind for kind in kinds if not kind.virtual_only]
+    if options.walk:
+        wrong = walk(command, options.walk, options.seed)
+        print("\n".join(wrong), end="\n" if wrong else "")
+        return int(bool(wrong))
     print(f"| kind | found within, of {options.rounds} | wrong |\n|---|---|---|")
     failed, trials = False, Trials(command, options.rounds)
     try:

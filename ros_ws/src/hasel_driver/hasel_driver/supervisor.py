@@ -273,7 +273,7 @@ class Supervisor:
         deadline_s = self._clock() + FIRST_READING_S
         while self._clock() < deadline_s:
             try:
-                readings = self._supply.service(self._clock(), heartbeat=True)
+                readings = self._supply.service(self._clock(), heartbeat=False)
             except SupplyFaultError as problem:
                 raise PortError(f"{name} failed when it was opened: {problem}.") from problem
             if readings:

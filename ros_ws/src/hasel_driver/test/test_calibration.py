@@ -115,6 +115,17 @@ def test_a_stop_is_heard_while_the_probe_is_read(rig, monkeypatch):
         calibrate.measure(rig.port, "upper", (3000.0, 4000.0, 5000.0), probe, lambda _: True, listen=listen)
 
 
+@pytest.mark.parametrize(
+    "words", [["--voltages", "nan,1,2"], ["--voltages", "1,x"], ["--maximum-voltage", "inf"]]
+)
+def test_no_number_is_one_sentence(words, capsys):
+    """Before a port is opened."""
+    with pytest.raises(SystemExit) as ended:
+        calibrate.main(["--port", "/dev/no-such-port", "--channel", "upper", *words])
+    assert ended.value.code == 2
+    assert "--voltages" in capsys.readouterr().err.splitlines()[-1]
+
+
 def test_the_stops_of_ros_are_heard():
     """By topic and by service; the service's answer proves nothing, and says so."""
     pytest.importorskip("rclpy", reason="ROS 2 is not there")

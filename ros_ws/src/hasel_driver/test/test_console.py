@@ -46,6 +46,23 @@ def test_a_script_arms_ramps_and_disarms(start_driver, virtual_rig, ros):
     assert ros.await_mode(Mode.STANDBY).maximum_voltage == 2500.0
 
 
+def test_another_namespace_is_reached(virtual_rig, ros, tmp_path):
+    """The console of a second rig arms that one."""
+    driver = [sys.executable, "-m", "hasel_driver.driver_node", "--ros-args", "-r", "__ns:=/rig2"]
+    for word in (f"port:={virtual_rig.port}", "discovery_time:=0.0", f"state_folder:={tmp_path}"):
+        driver += ["-p", word]
+    console = [*CONSOLE, "--namespace", "/rig2"]
+    with subprocess.Popen([*driver, "-p", f"history_file:={tmp_path}/history.jsonl"]) as process:
+        try:
+            ros.wait(lambda: ros.node.count_publishers("/rig2/state") == 1, 20.0)
+            done = subprocess.run(
+                console, input="arm\narm\narm\nquit\n", capture_output=True, text=True, timeout=60
+            )
+        finally:
+            process.terminate()
+    assert "Armed, 0 V." in done.stdout
+
+
 def test_any_key_stops(start_driver, virtual_rig, ros, grounded_in_time):
     """A key pressed while the voltage is on grounds it, and it stays off."""
     start_driver(virtual_rig.port)

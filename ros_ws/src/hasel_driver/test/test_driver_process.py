@@ -308,6 +308,17 @@ def test_a_list_of_no_topics_is_none(start_driver, virtual_rig, ros):
     driver.arm()
 
 
+@pytest.mark.parametrize("after_s", [0.1, 0.5, 1.0, 1.5])
+def test_ended_while_it_starts(start_driver, ros, after_s):
+    """A service manager's stop at any moment of the start: it ends, and without a stack trace."""
+    driver = start_driver("/dev/no-such-port")
+    time.sleep(after_s)
+    driver.process.terminate()
+    driver.process.wait(5.0)
+    driver.close()
+    assert "Traceback" not in "".join(driver.log)
+
+
 def test_a_parameter_file_that_is_not_there_is_one_sentence():
     """Before anything is opened."""
     command = [

@@ -1,10 +1,12 @@
 import numpy as np
+from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticStatus
 from hasel_driver.faults import FaultCode
 from hasel_driver.ground import Ground
-from hasel_driver.messages import to_supply_state
+from hasel_driver.messages import to_diagnostics, to_supply_state
 from hasel_driver.mode import Mode
 from hasel_driver.presets import PRESETS
-from hasel_driver.status import Status
+from hasel_driver.status import UNKNOWN, Status
 from hasel_driver.waveform import MUSCLES, POLARITIES, SHAPES
 from hasel_interfaces.action import RunExperiment
 from hasel_interfaces.msg import SupplyState
@@ -37,3 +39,14 @@ def test_state_names_muscles_and_frame():
     assert message.muscle == ["upper", "lower"]
     assert list(message.commanded_voltage) == [1.0, -2.0]
     assert np.size(message.current) == len(message.muscle)
+
+
+def test_a_supply_that_is_silent_at_rest_is_a_warning():
+    """In the diagnostics, with the time; the state claims nothing of its output."""
+    status = Status(0.0, Mode.STANDBY, None, None, UNKNOWN, UNKNOWN, UNKNOWN, silent_s=1.2)
+    (entry,) = to_diagnostics("driver", status, Time(), {}).status
+    assert (entry.level, entry.message) == (
+        DiagnosticStatus.WARN,
+        "STANDBY, output unknown, no report for 1.2 s",
+    )
+    assert (to_supply_state(status).grounded, to_supply_state(status).ground) == (False, Ground.NOT)
