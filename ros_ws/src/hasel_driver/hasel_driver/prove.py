@@ -102,7 +102,10 @@ def walk(command: list[str], duration_s: float, seed: int) -> list[str]:
         bench.close()
         rig.close()
     late = f", the supply late by up to {max(late_s):.2f} s" if late_s else ""
-    print(f"seed {seed}: {len(walk.log)} acts in {duration_s:g} s, {len(walk.wrong)} wrong{late}", flush=True)
+    live = walk.live / walk.looks
+    print(
+        f"seed {seed}: {len(walk.log)} acts in {duration_s:g} s, {live:.0%} of it live, {len(walk.wrong)} wrong{late}"
+    )
     return [*walk.log, *walk.wrong] if walk.wrong else []
 
 

@@ -13,6 +13,7 @@ from hasel_driver.testing.kinds import WITHIN_S
 
 MOST_V = 6000.0
 LONGEST_S = 0.8  # of one act
+PROOF_S = 0.3  # of arming
 PERIOD_S = 0.01
 NO_GROUND = {"weld", "unground"}  # with which nothing can ground the output
 WORDS = (
@@ -24,7 +25,7 @@ WORDS = (
 
 
 class Walk:
-    """`wrong` collects sentences; `log` the acts, with their times since the begin [s]."""
+    """`wrong` collects sentences; `log` the acts, with their times [s]; `live` of `looks` saw voltage."""
 
     def __init__(self, bench: Bench, seed: int) -> None:
         self._bench, self._random = bench, random.Random(seed)
@@ -34,6 +35,7 @@ class Walk:
         self._stopped_s: float | None = None  # when it was last asked for, or a fault was found
         self.log: list[str] = []
         self.wrong: list[str] = []
+        self.looks = self.live = 0
 
     def run(self, duration_s: float) -> None:
         """Act at random for so long, then mend everything."""
@@ -46,14 +48,18 @@ class Walk:
             "command 0": lambda: supervisor.command((0.0, 0.0)),
         }
         while time.monotonic() - self._began_s < duration_s:
-            if self._random.random() < 0.3:
-                self._inject(self._random.choice(("recover", *WORDS)))
-            elif self._random.random() < 0.4:
-                self._drive()
+            chance = self._random.random()
+            if chance < 0.15:
+                self._inject("recover")
+            elif chance < 0.4:
+                self._inject(self._random.choice(WORDS))
+            elif chance < 0.6:
+                self._do(*self._random.choice(list(acts.items())))
             else:
-                self._do(
-                    *self._random.choice([*acts.items(), ("arm", acts["arm"]), ("clear", acts["clear"])])
-                )
+                for name in ("clear", "arm", "command 0"):  # each refused where it is not due
+                    self._do(name, acts[name])
+                    self._look(PROOF_S if name == "arm" else 0.0)
+                self._drive()
             self._look(self._random.uniform(0.0, LONGEST_S / 2))
         self._inject("recover")
 
@@ -95,6 +101,8 @@ class Walk:
             before_v = max(map(abs, bench.rig.ask("output")[:2]))
             status = bench.status()
             after_v = max(map(abs, bench.rig.ask("output")[:2]))
+            self.looks += 1
+            self.live += after_v > DISCHARGED_V
             if status.ground is Ground.PROVEN and min(before_v, after_v) > DISCHARGED_V:
                 self._accuse(f"{status}, with {after_v:.0f} V")
             if bench.supervisor.fault is None and bench.supervisor.armed:
