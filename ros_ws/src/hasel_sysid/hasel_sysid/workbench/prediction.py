@@ -9,6 +9,8 @@ from hasel_sysid.problem import Evaluation
 from hasel_sysid.workbench.evaluate import evaluation_of
 from hasel_sysid.workbench.step import Step
 
+_MISLEADS = 0.2
+
 
 @dataclass(frozen=True)
 class Prediction:
@@ -31,6 +33,12 @@ def predicted(step: Step, number: int, values: Mapping[str, float]) -> Predictio
     sin_theta = simulation.sin_theta + simulation.slopes @ _vector(evaluation, change)
     unseen = None if step.unseen is None else _error(step.unseen, change)
     return Prediction(sin_theta, _error(step.seen, change), unseen)
+
+
+def beyond_first_order(foretold: np.ndarray, true: np.ndarray, shown: np.ndarray) -> bool:
+    """Whether a change is so large that derivatives mislead: what they miss of a run [n] is a fifth of the change."""
+    missed, change = (float(np.sqrt(np.mean(each**2))) for each in (true - foretold, true - shown))
+    return missed > _MISLEADS * change
 
 
 def _vector(evaluation: Evaluation, change: Mapping[str, float]) -> np.ndarray:

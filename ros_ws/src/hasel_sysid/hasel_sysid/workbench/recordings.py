@@ -6,6 +6,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from hasel_recording import Recording, RecordingError, RecordingWarning, read_recording
+from hasel_recording.csv_columns import understand
+from hasel_recording.csv_text import TEXT_SUFFIXES, read_text
 from hasel_recording.reading import distinct_names
 from hasel_sim.model import Model
 
@@ -21,22 +23,57 @@ DEFAULT_MODEL = "swimmer"
 @dataclass(frozen=True)
 class Reading:
     """How recordings are read. mapping: columns, as of --map; drives: the file of the drive of each recording, by the
-    recording's path, for those that have one.
+    recording's path, for those that have one; own: columns of single files, by their paths, instead of `mapping`.
     """
 
     mapping: Mapping[str, str] = field(default_factory=dict)
     drives: Mapping[str, Path] = field(default_factory=dict)
+    own: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+
+    def of(self, path: str | Path) -> Mapping[str, str]:
+        """The columns of one file."""
+        return self.own.get(str(path), self.mapping)
 
 
-def read(paths: Sequence[str | Path], reading: Reading) -> tuple[list[Recording], list[Banner]]:
-    """What can be read, and a sentence for each that cannot."""
-    found, banners = [], []
+@dataclass(frozen=True)
+class Unread:
+    """A file of rows that could not be read, and the names of its columns; unseen: what it is to be loaded as."""
+
+    path: Path
+    names: tuple[str, ...]
+    unseen: bool = False
+
+
+def columns_of(path: str | Path) -> tuple[str, ...]:
+    """Names of the columns of a file of rows where they are not understood; none of any other file."""
+    path = Path(path)
+    if path.suffix.lower() not in TEXT_SUFFIXES:
+        return ()
+    try:
+        names = read_text(path).names
+    except (RecordingError, OSError):
+        return ()
+    try:
+        understand(names, {}, str(path))
+    except RecordingError:
+        return tuple(names)
+    return ()
+
+
+def read(
+    paths: Sequence[str | Path], reading: Reading, unseen: bool = False
+) -> tuple[list[Recording], list[Banner], list[Unread]]:
+    """What can be read, a sentence for each that cannot, and those of them that have columns to choose from."""
+    found, banners, unread = [], [], []
     for path in paths:
         try:
-            found.append(read_recording(path, reading.mapping or None, reading.drives.get(str(path))))
+            found.append(read_recording(path, reading.of(path) or None, reading.drives.get(str(path))))
         except RecordingError as error:
             banners.append(Banner("error", str(error)))
-    return found, banners
+            names = columns_of(path)
+            if names:
+                unread.append(Unread(Path(path), names, unseen))
+    return found, banners, unread
 
 
 def chosen_name(asked: str | None, recordings: Sequence[Recording]) -> str:

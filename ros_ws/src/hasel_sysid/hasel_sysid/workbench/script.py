@@ -1,6 +1,7 @@
 """The session as a Python script that does it all again."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from itertools import groupby
 from pathlib import Path
 
 from hasel_sysid.errors import SysidError
@@ -51,10 +52,16 @@ def script(state: State, reading: Reading) -> str:
 
 
 def _loaded(experiments: Sequence[Experiment], reading: Reading) -> str:
+    """Recordings that follow one another and whose columns are called alike are read together."""
+    alike = groupby(experiments, key=lambda each: dict(reading.of(each.recording.path or "")))
+    return " + ".join(_read(list(each), columns, reading) for columns, each in alike)
+
+
+def _read(experiments: Sequence[Experiment], columns: Mapping[str, str], reading: Reading) -> str:
     paths = [_path(each) for each in experiments]
     parts = [*(f"        {str(path)!r}," for path in paths)]
-    if reading.mapping:
-        parts.append(f"        columns={dict(reading.mapping)!r},")
+    if columns:
+        parts.append(f"        columns={columns!r},")
     drives = [reading.drives.get(str(each.recording.path)) for each in experiments]
     if any(drives):
         parts.append(f"        drives={[None if d is None else str(Path(d).resolve()) for d in drives]!r},")

@@ -1,12 +1,16 @@
 """All that a session of the workbench knows; never changed, only replaced as a whole."""
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.suggest import Suggestion
 from hasel_sysid.workbench.step import Step
+
+if TYPE_CHECKING:
+    from hasel_sysid.workbench.recordings import Unread
 
 
 @dataclass(frozen=True)
@@ -21,7 +25,7 @@ class Banner:
 class State:
     """experiments, unseen: the runs; banners: what is wrong with recordings; steps: the history; at: the current one
     (those after it were taken back); trial: what is being tried and not yet kept; diagnosis: of the step
-    numbered `diagnosed`; suggestions: runs to make next, the best first.
+    numbered `diagnosed`; suggestions: runs to make next, the best first; unread: files whose columns are to be named.
     """
 
     experiments: tuple[Experiment, ...] = ()
@@ -33,6 +37,7 @@ class State:
     diagnosis: Diagnosis | None = None
     diagnosed: int = 0
     suggestions: tuple[Suggestion, ...] = ()
+    unread: tuple["Unread", ...] = ()
 
     @property
     def every(self) -> tuple[Experiment, ...]:

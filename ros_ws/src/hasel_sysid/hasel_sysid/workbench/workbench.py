@@ -14,6 +14,7 @@ from hasel_sim.simulate import simulate
 
 from hasel_sysid.compare.compare import with_amplitudes
 from hasel_sysid.errors import SysidError
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.workbench import acts
 from hasel_sysid.workbench.cards import Card, cards
 from hasel_sysid.workbench.evaluate import Progress, evaluated, silent
@@ -53,11 +54,43 @@ class Workbench:
 
         unseen: never fitted. Raises SysidError where there is nothing to fit yet.
         """
-        found, said = read(paths, self.reading)
+        found, said, unread = read(paths, self.reading, unseen)
         with self._change() as state:
-            self._commit(replace(state, banners=(*state.banners, *said)))
+            others = tuple(each for each in state.unread if each.path not in map(Path, paths))
+            self._commit(replace(state, banners=(*state.banners, *said), unread=(*others, *unread)))
             if found:
                 self._take(found, unseen, progress)
+
+    def read_as(self, path: Path, columns: Mapping[str, str], progress: Progress = silent) -> None:
+        """Read a file that could not be read, now that its columns are named, as of --map."""
+        (unread,) = [each for each in self.state.unread if each.path == path]
+        self.reading = replace(self.reading, own={**self.reading.own, str(path): dict(columns)})
+        self.load([path], unread.unseen, progress)
+
+    def pass_over(self, path: Path) -> None:
+        """Do without a file that could not be read."""
+        with self._change() as state:
+            self._commit(replace(state, unread=tuple(each for each in state.unread if each.path != path)))
+
+    def remove(self, run: str, progress: Progress = silent) -> None:
+        """Do without a run; every step is judged anew. Raises SysidError for the last one that is fitted."""
+        with self._change() as state:
+            number = state.number_of(run)
+            others = [each for each in state.every if each.name != run]
+            fitted = len(state.experiments) - (number < len(state.experiments))
+            self._regroup(state, others[:fitted], others[fitted:], progress)
+
+    def set_unseen(self, run: str, unseen: bool, progress: Progress = silent) -> None:
+        """Never fit a run any more, or fit it from now on; every step is judged anew.
+
+        Raises SysidError where no run to fit would be left.
+        """
+        with self._change() as state:
+            chosen = state.every[state.number_of(run)]
+            fitted = [each for each in state.experiments if each is not chosen]
+            others = [each for each in state.unseen if each is not chosen]
+            (others if unseen else fitted).append(chosen)
+            self._regroup(state, fitted, others, progress)
 
     def take(
         self, recordings: Sequence[Recording], unseen: bool = False, progress: Progress = silent
@@ -146,9 +179,13 @@ class Workbench:
         """A file with the model that is shown, for the running simulator; before any run, the one to begin with."""
         path = self.folder / "shown.yaml"
         self.folder.mkdir(parents=True, exist_ok=True)
-        state = self.state
-        save_model(state.shown.model if state.steps else load_model(chosen_name(self._asked, ())), path)
+        save_model(self.model(), path)
         return path
+
+    def model(self) -> Model:
+        """The model that is shown; before any run, the one to begin with."""
+        state = self.state
+        return state.shown.model if state.steps else load_model(chosen_name(self._asked, ()))
 
     def dismiss(self) -> None:
         """Forget the banners that were read."""
@@ -190,6 +227,14 @@ class Workbench:
             self._commit(state)
             return
         self._commit(self._judged_anew(state, model, progress))
+
+    def _regroup(
+        self, state: State, fitted: Sequence[Experiment], unseen: Sequence[Experiment], progress: Progress
+    ) -> None:
+        if not fitted:
+            raise SysidError("no run to fit would be left; expected one at least: load another one first")
+        state = replace(state, experiments=tuple(fitted), unseen=tuple(unseen))
+        self._commit(self._judged_anew(state, state.current.model, progress))
 
     def _judged_anew(self, state: State, model: Model, progress: Progress) -> State:
         """All steps against the runs there are now; what was said of fewer is forgotten."""

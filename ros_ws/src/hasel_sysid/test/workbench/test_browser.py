@@ -245,6 +245,107 @@ def test_the_four_steps(page, server, browser, tmp_path):
     assert page.errors == other.errors == []
 
 
+@pytest.mark.parametrize("width", [400, 700, 1400])
+def test_the_layout_holds(page, width, tmp_path):
+    """Nothing is wider than the page, no card lies over another, also where runs are being loaded."""
+    page.resize(width, 900)
+    page.run("[...document.querySelectorAll('.q-expansion-item .q-item')][0].click()")
+    page.until(
+        "[...document.querySelectorAll('.q-uploader')].every(u => u.getBoundingClientRect().height > 40) &&"
+        " !document.querySelector('.q-expansion-item__content').style.height",
+        _PATIENCE_S,
+    )
+    over = (
+        "(() => { const cards = [...document.querySelectorAll('.wb-card')].filter(c => c.offsetParent)"
+        ".map(c => c.getBoundingClientRect()); return cards.flatMap((a, i) => cards.slice(i + 1).filter(b =>"
+        " a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1)).length; })()"
+    )
+    inside = (
+        "[...document.querySelectorAll('.wb-card *')].filter(e => e.offsetParent && e.offsetWidth &&"
+        " e.getBoundingClientRect().right > e.closest('.wb-card').getBoundingClientRect().right + 1).length"
+    )
+    page.picture(tmp_path / f"{width}.png", True)
+    try:
+        assert page.run("document.documentElement.scrollWidth") <= width
+        assert page.run(over) == 0
+        assert page.run(inside) == 0
+        if width == 400:  # the slider and the curve that it moves are seen together
+            top = "document.querySelector('{}').getBoundingClientRect().top"
+            away = page.run(f"{top.format('input[data-name]')} - {top.format('#wb-curve')}")
+            assert 0 < away < 700
+    finally:
+        page.run("[...document.querySelectorAll('.q-expansion-item .q-item')][0].click()")
+        page.resize(1400, 900)
+
+
+def test_a_value_dragged_far_is_said_to_be_beyond_first_order(page):
+    """The true curve of the run comes, and the foretold errors are struck through until the value is let go."""
+    idle(page)
+    before = page.run(_ERROR)
+    drag = (
+        "(() => {{ const s = document.querySelector('input[data-name=slope]'); s.value = {};"
+        " s.dispatchEvent(new Event('{}', {{bubbles: true}})); }})()"
+    )
+    assert page.run("document.getElementById('wb-beyond').hidden")
+    page.run(drag.format(0, "input"))
+    page.until("!document.getElementById('wb-beyond').hidden && bench.curve.foretold.true", _PATIENCE_S)
+    assert page.run("document.getElementById('wb-error').dataset.how") == "beyond"
+    page.run(drag.format(0, "change"))
+    page.until(
+        f"document.getElementById('wb-beyond').hidden && !document.getElementById('wb-error').dataset.how &&"
+        f" {_ERROR} !== {before}",
+        _PATIENCE_S,
+    )
+    idle(page)
+    page.click("Take back")
+    page.until(f"{_ERROR} === {before}", _PATIENCE_S)
+
+
+def test_what_is_under_way_disables_the_buttons(page):
+    """Nothing can be begun twice."""
+    idle(page)
+    page.click("Diagnose")
+    fit = "[...document.querySelectorAll('button')].find(b => b.innerText === 'Fit').disabled"
+    page.until(fit, _PATIENCE_S)
+    page.click("cancel")
+    page.until(f"!{fit}", _PATIENCE_S)
+
+
+def test_a_run_is_made_unseen_and_fitted_again(page):
+    """By the buttons of its row."""
+    idle(page)
+    act = "document.querySelector('tr[data-row=\"fit_4500V_3.5Hz\"] button[data-act={}]')"
+    page.run(f"{act.format('unseen')}.click()")
+    page.until(act.format("fit"), _PATIENCE_S)
+    idle(page)
+    page.run(f"{act.format('fit')}.click()")
+    page.until(act.format("unseen"), _PATIENCE_S)
+    idle(page)
+
+
+def test_columns_are_named_in_the_page(page, tmp_path, unseen_rig):
+    """A file of other names is read once its columns are chosen."""
+    idle(page)
+    path = tmp_path / "lab.csv"
+    text = (unseen_rig / "quadratic_drag" / "fit_4500V_3.5Hz.csv").read_text()
+    path.write_text(text.replace("sin_theta", "bend"))
+    page.choose_files(".wb-upload-unseen input[type=file]", [path])
+    page.until("document.body.innerText.includes('Which column is which in lab.csv?')", _PATIENCE_S)
+    angle = "[...document.querySelectorAll('.wb-column-of')].find(e => e.innerText.includes('angle'))"
+    page.run(f"{angle}.querySelector('.q-field__native').click()")
+    option = "[...document.querySelectorAll('.q-menu .q-item')].find(e => e.innerText === 'bend')"
+    page.until(option, _PATIENCE_S)
+    page.run(f"{option}.click()")
+    page.until(f"{angle}.innerText.includes('bend')", _PATIENCE_S)
+    page.click("Read it so")
+    row = "document.querySelector('tr[data-row=\"lab\"]')"
+    page.until(f"{row} && !document.body.innerText.includes('Which column is which')", _PATIENCE_S)
+    idle(page)
+    page.run(f"{row}.querySelector('button[data-act=remove]').click()")
+    page.until(f"!{row}", _PATIENCE_S)
+    idle(page)
+
+
 def test_a_dragged_value_is_followed(page):
     """At once by the derivatives, then by the true simulation; let go, the session has it, and gives it back."""
     idle(page)
@@ -286,6 +387,9 @@ def test_export_gives_links(page, server, browser):
     """To the report, the script and the model, which this machine serves."""
     page.click("Export")
     page.until("document.querySelector('a[href*=\"report.html\"]')", _PATIENCE_S)
+    shown = page.run("[...document.querySelectorAll('ul.wb-files a')].map(a => a.innerText)")
+    assert shown[:3] == ["report.html", "session.py", "model.yaml"]
+    assert {"waterfall.svg", "fit_5500V_2.0Hz.svg", "error_by_step.png"} <= set(shown)
     assert page.run("fetch('/export/session.py').then(a => a.text())").startswith(
         '"""What was done in the workbench'
     )

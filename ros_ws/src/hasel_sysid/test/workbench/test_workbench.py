@@ -9,6 +9,8 @@ import pytest
 from hasel_recording import read_recording
 from hasel_sim.model import load_model
 from hasel_sysid.errors import SysidError
+from hasel_sysid.workbench.prediction import beyond_first_order
+from hasel_sysid.workbench.script import script
 from hasel_sysid.workbench.waterfall import waterfall
 
 
@@ -230,3 +232,63 @@ def test_an_empty_session_asks_for_runs(new_session):
     """Nothing can be fitted yet."""
     with pytest.raises(SysidError, match=r"drop \.csv or \.mcap files"):
         new_session().fit()
+
+
+def _columns_panel():
+    panel = pytest.importorskip("hasel_sysid.workbench.page.columns_panel", reason="NiceGUI is not installed")
+    return panel.named, panel.roles
+
+
+def test_columns_are_named_for_a_file_that_could_not_be_read(loaded, short_runs, tmp_path):
+    """Other names than those that are known: the file waits until its columns are named; the script reads it so."""
+    named, roles = _columns_panel()
+    path = tmp_path / "lab.csv"
+    text = short_runs[0][0].read_text().replace("time_s", "t").replace("sin_theta", "bend")
+    path.write_text(text)
+    loaded.load([path], unseen=True)
+    (unread,) = loaded.state.unread
+    assert unread.path == path
+    assert {"t", "bend"} <= set(unread.names)
+    assert [role for role, _ in roles(loaded.model())] == [
+        "time",
+        "angle",
+        "voltage of upper",
+        "voltage of lower",
+    ]
+    columns = named({"time": ("t", "s"), "angle": ("bend", "its sine"), "voltage of upper": ("–", "v")})
+    loaded.read_as(path, columns)
+    assert loaded.state.unread == ()
+    assert [each.name for each in loaded.state.unseen] == ["val_5200V_2.5Hz", "lab"]
+    said = script(loaded.state, loaded.reading)
+    assert said.count("h.load(") == 3
+    assert "columns={'time_s': 't', 'sin_theta': 'bend'}" in said
+    broken = tmp_path / "broken.csv"
+    broken.write_text(text.replace("bend", "sin_theta").replace("t,", "time_s,", 1) + "x,y\n")
+    loaded.load([broken])
+    assert loaded.state.unread == ()  # its columns are known: what is wrong is a row
+
+
+def test_a_run_is_removed_or_made_unseen(loaded):
+    """Every step is judged anew by what is left; one run to fit must stay."""
+    first, second = (each.name for each in loaded.state.experiments)
+    before = loaded.state.current.error
+    loaded.set_unseen(first, True)
+    assert [each.name for each in loaded.state.experiments] == [second]
+    assert [run.unseen for run in loaded.state.current.comparison.runs] == [False, True, True]
+    assert loaded.state.current.error != before
+    with pytest.raises(SysidError, match="no run to fit would be left"):
+        loaded.remove(second)
+    loaded.set_unseen(first, False)
+    loaded.remove(second)
+    assert [each.name for each in loaded.state.every] == [first, "val_5200V_2.5Hz"]
+
+
+def test_beyond_first_order_is_told(loaded):
+    """A small change is foretold well enough; one of the whole range is not."""
+    run = loaded.state.every[0].name
+    value = loaded.state.shown.model.values["slope"]
+    shown = loaded.state.shown.simulations[0].sin_theta
+    for factor, told in ((1.02, False), (0.1, True)):
+        values = {"slope": factor * value}
+        true = loaded.true(run, values, False).result().sin_theta
+        assert beyond_first_order(loaded.predict(run, values).sin_theta, true, shown) is told

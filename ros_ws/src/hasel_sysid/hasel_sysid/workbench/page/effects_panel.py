@@ -1,5 +1,6 @@
 """Effects, ranked, each with its card; what is tried, and its values under sliders."""
 
+from html import escape
 from typing import Any
 
 from nicegui import ui
@@ -9,17 +10,23 @@ from hasel_sysid.workbench.cards import Card
 from hasel_sysid.workbench.page.html import card_text, sliders_list
 from hasel_sysid.workbench.sliders import sliders
 
+_BEYOND = (
+    '<p id="wb-beyond" role="status" hidden>Beyond first order: the errors foretold above mislead here. The curve is '
+    "the true simulation of this run; let go to simulate all runs.</p>"
+)
+
 
 class EffectsPanel:
     """Drawn again when the session changes."""
 
     def __init__(self, page: Any) -> None:
         self._page = page
-        with ui.element("section").classes("wb-card wb-of-runs").props('aria-label="values"'):
+        with ui.element("section").classes("wb-card wb-of-runs wb-order-2").props('aria-label="values"'):
             ui.html("<h2>Values</h2>", sanitize=False)
             ui.html("<p>Drag: the curve follows at once, the true simulation behind it.</p>", sanitize=False)
+            ui.html(_BEYOND, sanitize=False)
             self._values()
-        with ui.element("section").classes("wb-card wb-of-runs").props('aria-label="effects"'):
+        with ui.element("section").classes("wb-card wb-of-runs wb-order-3").props('aria-label="effects"'):
             ui.html("<h2>Effects</h2>", sanitize=False)
             self._effects()
 
@@ -73,6 +80,7 @@ class EffectsPanel:
                 )
                 button.props(f'dense no-caps outline size=sm aria-label="{word} {card.effect}"')
                 button.set_enabled(session.state.trial is None)
+            ui.html(f"<p>{escape(card.physics)}</p>", sanitize=False)
             ui.html(
                 f"<details><summary>{card.place}: equation, values, sources</summary>{card_text(card)}</details>",
                 sanitize=False,

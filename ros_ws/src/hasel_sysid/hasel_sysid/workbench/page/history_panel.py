@@ -1,7 +1,9 @@
 """The error falling step by step, the ledger, the next run, and export."""
 
 from html import escape
+from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 from nicegui import ui
 
@@ -19,11 +21,17 @@ class HistoryPanel:
         self._page = page
         self._start: ui.button | None = None
         with (
-            ui.element("section").classes("wb-card wb-of-runs").props('aria-label="the error, step by step"')
+            ui.element("section")
+            .classes("wb-card wb-of-runs wb-order-4")
+            .props('aria-label="the error, step by step"')
         ):
             ui.html("<h2>The error, step by step</h2>", sanitize=False)
             self._steps()
-        with ui.element("section").classes("wb-card wb-of-runs").props('aria-label="next run and export"'):
+        with (
+            ui.element("section")
+            .classes("wb-card wb-of-runs wb-order-4")
+            .props('aria-label="next run and export"')
+        ):
             ui.html("<h2>Next run, export</h2>", sanitize=False)
             self._next()
 
@@ -73,10 +81,12 @@ class HistoryPanel:
         self._start = None
         for suggestion in state.suggestions[:1]:
             self._suggestion(suggestion)
-        for file in ("report.html", "session.py", "model.yaml", "waterfall.svg"):
-            path = session.folder / "export" / file
-            if path.exists():
-                ui.link(file, f"/export/{file}", new_tab=True)
+        files = exported(session.folder / "export")
+        if files:
+            with ui.element("ul").classes("wb-files"):
+                for file in files:
+                    with ui.element("li"):
+                        ui.link(file, f"/export/{quote(file)}", new_tab=True)
 
     def _suggestion(self, suggestion: Suggestion) -> None:
         page, line = self._page, goal_line(suggestion.manoeuvre)
@@ -99,3 +109,11 @@ class HistoryPanel:
             session.version += 1  # the links to the files
 
         self._page.do("export", work, f"Written to {session.folder / 'export'}.")
+
+
+def exported(folder: Path) -> list[str]:
+    """Every file of an export, the report first and pictures last."""
+    files = [path for path in folder.rglob("*") if path.is_file()] if folder.is_dir() else []
+    order = {suffix: number for number, suffix in enumerate((".html", ".py", ".yaml", ".svg", ".png"))}
+    names = sorted(files, key=lambda path: (order.get(path.suffix, len(order)), path.name))
+    return [path.relative_to(folder).as_posix() for path in names]

@@ -20,11 +20,22 @@ def runs_table(runs: Sequence[RunComparison]) -> str:
         f'<tr data-row="{escape(run.name)}"><td><button class="run" data-run="{escape(run.name)}">{escape(run.name)}'
         f"</button>{' <span class=chip>unseen</span>' if run.unseen else ''}</td>"
         f"<td>{escape(_drive(run))}</td>"
-        f'<td class="number">{error_text(run.mean_absolute_error)}</td></tr>'
+        f'<td class="number">{error_text(run.mean_absolute_error)}</td><td class="acts">{_acts(run)}</td></tr>'
         for run in runs
     )
-    head = '<tr><th>run</th><th>drive</th><th class=number title="mean |Δ sin θ|">error</th></tr>'
+    head = '<tr><th>run</th><th>drive</th><th class=number title="mean |Δ sin θ|">error</th><th></th></tr>'
     return f'<table class="runs"><thead>{head}</thead><tbody>{rows}</tbody></table>'
+
+
+def _acts(run: RunComparison) -> str:
+    """Two buttons: fit it or never fit it, and do without it."""
+    name = escape(run.name)
+    act, word = ("fit", "fit") if run.unseen else ("unseen", "unseen")
+    said = f"fit {name} from now on" if run.unseen else f"never fit {name}"
+    return (
+        f'<button data-act="{act}" data-of="{name}" title="{said}" aria-label="{said}">{word}</button>'
+        f'<button data-act="remove" data-of="{name}" title="remove {name}" aria-label="remove {name}">✕</button>'
+    )
 
 
 def _drive(run: RunComparison) -> str:
@@ -106,7 +117,7 @@ def card_text(card: Card) -> str:
     ]
     said = f"<p class=said>{escape(card.said)}</p>" if card.said else ""
     listed = "".join(f"<dt>{name}</dt><dd>{text}</dd>" for name, text in rows if text)
-    return f"<p>{escape(card.physics)}</p>{said}<dl>{listed}</dl>"
+    return f"{said}<dl>{listed}</dl>"
 
 
 def parameter_table(before, after) -> str:

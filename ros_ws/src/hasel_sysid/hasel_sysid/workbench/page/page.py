@@ -12,6 +12,7 @@ from hasel_sysid.report.numbers import error_text
 from hasel_sysid.workbench.evaluate import Progress
 from hasel_sysid.workbench.jobs import Jobs
 from hasel_sysid.workbench.live.rig import Rig
+from hasel_sysid.workbench.page.columns_panel import ColumnsPanel
 from hasel_sysid.workbench.page.effects_panel import EffectsPanel
 from hasel_sysid.workbench.page.history_panel import HistoryPanel
 from hasel_sysid.workbench.page.live_panel import LivePanel
@@ -48,6 +49,7 @@ class Page:
         with ui.element("main").classes("wb-grid"):
             with ui.element("div").classes("wb-column"):
                 self.banners()
+                columns = ColumnsPanel(self)
                 runs = RunsPanel(self)
             with ui.element("div").classes("wb-column middle"):
                 live = LivePanel(self)
@@ -55,9 +57,10 @@ class Page:
                 history = HistoryPanel(self)
             with ui.element("div").classes("wb-column"):
                 effects = EffectsPanel(self)
-        self._panels = (tools, runs, history, effects)
+        self._panels = (tools, columns, runs, history, effects)
         self._live, self._tools, self._history = live, tools, history
         ui.on("wb-values", self._let_go)
+        ui.on("wb-act", self._act)
         ui.timer(_LOOK_S, self._look)
 
     def do(self, title: str, work: Callable[[Progress], object], done: str = "") -> None:
@@ -141,6 +144,14 @@ class Page:
         self._live.look()
         self._history.look()
         self.stop.set_enabled(self.rig.link is not None)  # also while the rig is silent
+
+    def _act(self, event: GenericEventArguments) -> None:
+        """What a run's own buttons ask for."""
+        run, act, session = event.args["run"], event.args["act"], self.session
+        if act == "remove":
+            self.do(f"remove {run}", lambda progress: session.remove(run, progress))
+        else:
+            self.do(f"{act} {run}", lambda progress: session.set_unseen(run, act == "unseen", progress))
 
     def _let_go(self, event: GenericEventArguments) -> None:
         self._values |= {name: float(value) for name, value in event.args.items()}

@@ -17,6 +17,7 @@ from hasel_sysid.workbench.film import film
 from hasel_sysid.workbench.live.rig import Rig
 from hasel_sysid.workbench.live.stream import KINDS
 from hasel_sysid.workbench.packet import packet
+from hasel_sysid.workbench.prediction import beyond_first_order
 from hasel_sysid.workbench.state import State
 from hasel_sysid.workbench.workbench import Workbench
 
@@ -64,9 +65,15 @@ def add_routes(session: Workbench, rig: Rig) -> None:
         try:
             state = session.state
             found = await asyncio.wrap_future(session.true(run, values))
+            foretold = session.predict(run, values).sin_theta
         except (HaselSimError, SysidError) as error:
             return PlainTextResponse(str(error), 409)
-        return _bytes(packet({"film": len(found.sin_theta)}, found.sin_theta) + _film(state, run, found))
+        before = state.shown.simulations[state.number_of(run)].sin_theta
+        header = {
+            "film": len(found.sin_theta),
+            "beyond": beyond_first_order(foretold, found.sin_theta, before),
+        }
+        return _bytes(packet(header, found.sin_theta) + _film(state, run, found))
 
     @app.post("/data/live")
     async def heard(request: Request) -> Response:

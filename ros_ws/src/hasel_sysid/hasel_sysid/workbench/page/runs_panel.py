@@ -32,7 +32,11 @@ class RunsPanel:
                     upload.props(f'flat bordered accept=".mcap,.csv,.db3" aria-label="{label}"')
                     upload.classes(f"wb-upload-{'unseen' if unseen else 'fitted'}")
             loading.set_value(not page.session.state.every)
-        with ui.element("section").classes("wb-card wb-of-runs").props('aria-label="where the model fails"'):
+        with (
+            ui.element("section")
+            .classes("wb-card wb-of-runs wb-order-4")
+            .props('aria-label="where the model fails"')
+        ):
             ui.html("<h2>Where it fails</h2>", sanitize=False)
             self._where()
 

@@ -30,5 +30,5 @@ arrow keys move the time"></canvas>
 
 def view_panel() -> None:
     """Two cards; everything in them follows the run that this page has chosen."""
-    ui.html(_BODY, sanitize=False).classes("wb-card wb-of-runs")
-    ui.html(_CURVE, sanitize=False).classes("wb-card wb-of-runs")
+    ui.html(_BODY, sanitize=False).classes("wb-card wb-of-runs wb-order-1")
+    ui.html(_CURVE, sanitize=False).classes("wb-card wb-of-runs wb-order-1")

@@ -117,6 +117,8 @@ const bench = {
   button(text) { const each = document.getElementById("wb-play"); if (each) each.textContent = text; },
   say(text) { const each = document.getElementById("wb-said"); if (each) each.textContent = text; },
   clicked(event) {
+    const act = event.target.closest("[data-act]");
+    if (act) { emitEvent("wb-act", {act: act.dataset.act, run: act.dataset.of}); return; }
     const target = event.target.closest("[data-run],[data-do]");
     if (!target) return;
     if (target.dataset.do === "play") this.toggle();

@@ -22,9 +22,9 @@ const tuning = {
     try {
       const {header, numbers} = unpack(await fetched(`/data/predict/${encodeURIComponent(bench.run)}`, this.values));
       if (began > (this.lastTruth || 0)) {
-        bench.curve.foretold = {series: numbers, true: false};
+        if (!this.beyond) bench.curve.foretold = {series: numbers, true: false};
         bench.draw();
-        this.errors(header, "foretold");
+        this.errors(header, this.beyond ? "beyond" : "foretold");
         requestAnimationFrame(() => bench.times.predict.push(performance.now() - began));
       }
     } catch (error) { bench.say(error.message); }
@@ -42,6 +42,7 @@ const tuning = {
         bench.curve.foretold = {series, true: true};
         bench.body.show(unpack(buffer.slice(4 + length + 4 * first.header.film)));
         this.lastTruth = began;
+        this.mark(first.header.beyond);
         bench.draw();
         requestAnimationFrame(() => bench.times.truth.push(performance.now() - began));
         this.truths++;
@@ -58,9 +59,17 @@ const tuning = {
       place.dataset.how = how;
     }
   },
+  // Where derivatives mislead, the true curve stays and the foretold errors are struck through.
+  mark(beyond) {
+    this.beyond = beyond;
+    document.querySelectorAll(".wb-numbers b[data-how]").forEach(each => { each.dataset.how = beyond ? "beyond" : "foretold"; });
+    const place = document.getElementById("wb-beyond");
+    if (place) place.hidden = !beyond;
+  },
   // The value is let go: the session takes it, and simulates all runs with it.
   drop() {
     emitEvent("wb-values", this.values);
     this.values = {};
+    this.mark(false);
   },
 };
