@@ -5,7 +5,7 @@ the file of the drive only.
 """
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 from hasel_recording.csv_columns import MARKER_UNITS, SIN_THETA, THETA_UNITS, TIME_UNITS
 from hasel_recording.drive_channel import SI_UNITS, UNITS, is_drive_column
@@ -51,36 +51,47 @@ def meant_names(
     own = {meant.removeprefix(DRIVE_ONLY): c for meant, c in mapping.items() if meant.startswith(DRIVE_ONLY)}
     shared = {meant: c for meant, c in mapping.items() if not meant.startswith(DRIVE_ONLY)}
     for meant, column in (shared | own if of_drive else shared).items():
-        if re.fullmatch(r"#\d+", column) and column not in columns and 0 < int(column[1:]) <= len(columns):
-            column = columns[int(column[1:]) - 1]
-        if column not in columns:
-            if not all_here and meant not in own:
-                continue
-            near = nearest(column, columns)
-            hint = f"did you mean {near!r}?" if near else f"choose among {', '.join(columns)}."
-            raise RecordingError(f"{source} has no column {column!r} for --map {meant}={column}: {hint}")
-        names[column] = _full_name(meant, column)
+        if _found(column, columns) is None and not all_here and meant not in own:
+            continue
+        found = own_column(meant, column, columns, source)
+        names[found] = _full_name(meant, found)
     return names
+
+
+def own_column(meant: str, column: str, columns: Sequence[str], source: str) -> str:
+    """The file's column of this name or number (#2); raises RecordingError where there is none."""
+    found = _found(column, columns)
+    if found is None:
+        near = nearest(column, columns)
+        hint = f"did you mean {near!r}?" if near else f"choose among {', '.join(columns)}."
+        raise RecordingError(f"{source} has no column {column!r} for --map {meant}={column}: {hint}")
+    return found
+
+
+def _found(column: str, columns: Sequence[str]) -> str | None:
+    if re.fullmatch(r"#\d+", column) and column not in columns and 0 < int(column[1:]) <= len(columns):
+        return columns[int(column[1:]) - 1]
+    return column if column in columns else None
 
 
 def _full_name(meant: str, column: str) -> str:
     if meant == SIN_THETA:
-        unit = _unit(column, THETA_UNITS)
+        unit = unit_at_the_end(column, THETA_UNITS)
         return f"theta_{unit}" if unit else SIN_THETA
     if meant == "theta":
-        return f"theta_{_unit(column, THETA_UNITS) or 'rad'}"
+        return f"theta_{unit_at_the_end(column, THETA_UNITS) or 'rad'}"
     if meant == "time":
-        return f"time_{_unit(column, TIME_UNITS) or 's'}"
+        return f"time_{unit_at_the_end(column, TIME_UNITS) or 's'}"
     if re.fullmatch(r".+_[xy]", meant):
-        return f"{meant}_{_unit(column, MARKER_UNITS) or 'm'}"
+        return f"{meant}_{unit_at_the_end(column, MARKER_UNITS) or 'm'}"
     if is_drive_column(meant):
         quantity = meant.lower().split("_")[0]
         if meant.lower().rsplit("_", 1)[-1] not in UNITS[quantity]:
-            return f"{meant}_{_unit(column, UNITS[quantity]) or SI_UNITS[quantity].lower()}"
+            return f"{meant}_{unit_at_the_end(column, UNITS[quantity]) or SI_UNITS[quantity].lower()}"
     return meant
 
 
-def _unit(column: str, units: Iterable[str]) -> str | None:
+def unit_at_the_end(column: str, units: Iterable[str]) -> str | None:
     """The unit that a lab's own name ends in, of those that are known here."""
     words = re.findall(r"[a-z]+", column.lower().replace("°", "_deg").replace("µ", "u"))
     return words[-1] if len(words) > 1 and words[-1] in units else None

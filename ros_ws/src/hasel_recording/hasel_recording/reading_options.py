@@ -22,13 +22,10 @@ class RecordingsParser(argparse.ArgumentParser):
 
 def add_reading_options(parser: argparse.ArgumentParser) -> None:
     """Add --map and --drive."""
-    parser.add_argument(
-        "--map",
-        metavar="NAME=COLUMN,…",
-        action=_Mapping,
-        default={},
-        help="names and units of your own CSV columns, such as time=t,sin_theta=angle_deg,voltage_upper=U1_kV; #2 is "
-        "the second column, drive.time the time in the drive's own file; may be given several times",
+    add_map_option(
+        parser,
+        "such as time=t,sin_theta=angle_deg,voltage_upper=U1_kV; #2 is the second column, drive.time the time in the "
+        "drive's own file",
     )
     parser.add_argument(
         "--drive",
@@ -37,6 +34,17 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
         type=Path,
         default=[],
         help="the drive as a file of its own: one for each recording in their order, or one for all",
+    )
+
+
+def add_map_option(parser: argparse.ArgumentParser, example: str) -> None:
+    """Add --map."""
+    parser.add_argument(
+        "--map",
+        metavar="NAME=COLUMN,…",
+        action=_Mapping,
+        default={},
+        help=f"names and units of your own CSV columns, {example}; may be given several times",
     )
 
 

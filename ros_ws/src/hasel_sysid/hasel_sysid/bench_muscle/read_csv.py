@@ -1,8 +1,10 @@
 """Read a bench's CSV file: time_s, voltage_v, contraction_mm, load_n, current_ma; each column says its unit."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+from hasel_recording.column_map import own_column, unit_at_the_end
 from hasel_recording.csv_columns import TIME_UNITS, Column
 from hasel_recording.csv_numbers import CsvNumbers
 from hasel_recording.csv_text import CsvText, read_text
@@ -24,19 +26,20 @@ HELD = "held"
 """Header line that says what the bench keeps: load (a hanging weight, unless said otherwise) or contraction."""
 
 
-def read_bench_csv(path: Path) -> BenchRecording:
+def read_bench_csv(path: Path, mapping: Mapping[str, str] | None = None) -> BenchRecording:
     """Read one recording; a load that never changes may stand in the header, as `#load_n: 0.59`.
 
+    mapping: {name that is known here: the file's own column}, as of hasel_recording.column_map.parse_map.
     Raises RecordingError that names the column or line of what is wrong.
     """
     text = read_text(path)
-    columns = _columns(text)
+    columns = _columns(text, _meant(text, mapping or {}))
     numbers = CsvNumbers(text)
     for name in ("time", "voltage", "contraction"):
         if name not in columns:
             raise RecordingError(
                 f"{path} has no column {name}_<unit>, only {', '.join(text.names)}; expected {_example(name)}: rename "
-                "a column or add it."
+                f"a column, or say which it is with --map {name}=COLUMN."
             )
     held = text.metadata.get(HELD, "load")
     if held not in ("load", "contraction"):
@@ -59,10 +62,26 @@ def read_bench_csv(path: Path) -> BenchRecording:
     )
 
 
-def _columns(text: CsvText) -> dict[str, Column]:
+def _meant(text: CsvText, mapping: Mapping[str, str]) -> dict[str, str]:
+    """{the file's column: what it is read as, unit included}; a unit that is not given is that of the column's name."""
+    found = {}
+    for name, given in mapping.items():
+        column = own_column(name, given, text.names, str(text.path))
+        quantity = name if name in QUANTITIES else _parsed(name)[0]
+        if quantity not in QUANTITIES:
+            near = nearest(quantity, QUANTITIES)
+            hint = f"did you mean {near!r}?" if near else f"expected one of {', '.join(QUANTITIES)}."
+            raise RecordingError(f"--map gives {name}={column}, but nothing is called {name!r} here: {hint}")
+        units = QUANTITIES[quantity]
+        unit = _parsed(name)[1] if name != quantity else unit_at_the_end(column, units) or next(iter(units))
+        found[column] = f"{quantity}_{unit}"
+    return found
+
+
+def _columns(text: CsvText, meant: Mapping[str, str]) -> dict[str, Column]:
     found: dict[str, Column] = {}
     for name in text.names:
-        quantity, unit = _parsed(name)
+        quantity, unit = _parsed(meant.get(name, name))
         near = nearest(quantity, QUANTITIES)
         if quantity not in QUANTITIES:
             if near:

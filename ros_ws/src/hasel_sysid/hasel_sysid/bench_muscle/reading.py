@@ -2,7 +2,7 @@
 
 import contextlib
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from hasel_recording.errors import RecordingError, RecordingWarning
@@ -15,29 +15,31 @@ from hasel_sysid.bench_muscle.recording import BenchRecording
 from hasel_sysid.bench_muscle.settled import SettledRun, settled
 from hasel_sysid.errors import SysidError
 
-_READERS = {".csv": read_bench_csv, ".mat": read_bench_mat}
+_SUFFIXES = (".csv", ".mat")
 _DEFAULT = "peano_hasel"
 
 
-def read_bench(path: Path) -> BenchRecording:
-    """One recording, .csv or .mat. Raises RecordingError."""
+def read_bench(path: Path, mapping: Mapping[str, str] | None = None) -> BenchRecording:
+    """One recording, .csv or .mat; mapping: columns of a .csv, as of --map. Raises RecordingError."""
     if not path.is_file():
         raise RecordingError(f"there is no recording {path}: check the name.")
-    if path.suffix.lower() not in _READERS:
+    if path.suffix.lower() not in _SUFFIXES:
         raise RecordingError(f"{path}: a bench recording is a .csv or .mat file, not '{path.suffix}'.")
-    return _READERS[path.suffix.lower()](path)
+    return read_bench_mat(path) if path.suffix.lower() == ".mat" else read_bench_csv(path, mapping)
 
 
-def readable(paths: Sequence[Path]) -> list[BenchRecording]:
+def readable(paths: Sequence[Path], mapping: Mapping[str, str] | None = None) -> list[BenchRecording]:
     """Those of the recordings that can be read."""
     found = []
     for path in paths:
         with contextlib.suppress(RecordingError):
-            found.append(read_bench(path))
+            found.append(read_bench(path, mapping))
     return found
 
 
-def settled_runs(paths: Sequence[Path], settling: float) -> list[SettledRun]:
+def settled_runs(
+    paths: Sequence[Path], settling: float, mapping: Mapping[str, str] | None = None
+) -> list[SettledRun]:
     """The settled frames of all recordings; one that cannot be used is told of and left out.
 
     Raises SysidError where none is left.
@@ -45,7 +47,7 @@ def settled_runs(paths: Sequence[Path], settling: float) -> list[SettledRun]:
     found = []
     for path in paths:
         try:
-            found.append(settled(read_bench(path), settling))
+            found.append(settled(read_bench(path, mapping), settling))
         except (RecordingError, SysidError) as error:
             if len(paths) == 1:
                 raise

@@ -52,7 +52,7 @@ def _bench(options: argparse.Namespace) -> None:
         found = improve_muscle(fitted, muscle, unseen, options.effects or None, progress)
     fails = where_it_fails(fitted, found.stages[1].muscle)
     rival = rival_table(fitted, unseen, found.muscle) if unseen is not None else None
-    swings = swinging(readable(options.recordings), found.muscle, options.unseen_voltages)
+    swings = swinging(readable(options.recordings, options.map), found.muscle, options.unseen_voltages)
     named = [("formula", found.stages[0]), ("fitted", found.stages[1])]
     named += [("with effects", found.stages[-1])] if found.missing else []
     muscles = [(name, stage.muscle) for name, stage in named]
@@ -76,7 +76,7 @@ def _say(lines: Sequence[str], console: Console) -> None:
 
 def _problems(options: argparse.Namespace) -> tuple[BenchProblem, BenchProblem | None]:
     """What is fitted, and what is not seen: whole recordings, or single voltages of those that are fitted."""
-    every = bench_problem(settled_runs(options.recordings, options.settling))
+    every = bench_problem(settled_runs(options.recordings, options.settling, options.map))
     apart = list(options.unseen_voltages)
     missing = [volts for volts in apart if volts not in every.voltages]
     if missing:
@@ -91,7 +91,7 @@ def _problems(options: argparse.Namespace) -> tuple[BenchProblem, BenchProblem |
     fitted = every.only_levels(apart, keep=False)
     runs = [*every.only_levels(apart).runs] if apart else []
     if options.validate:
-        runs += settled_runs(options.validate, options.settling)
+        runs += settled_runs(options.validate, options.settling, options.map)
     return fitted, bench_problem(runs, {**bench_problem(runs).scales, **fitted.scales}) if runs else None
 
 

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from hasel_recording.reading_options import RecordingsParser
+from hasel_recording.reading_options import RecordingsParser, add_map_option
 
 
 def measured_fish_parser() -> argparse.ArgumentParser:
@@ -50,6 +50,7 @@ def bench_muscle_parser() -> argparse.ArgumentParser:
         default=[],
         help="recordings that are never fitted",
     )
+    add_map_option(options, "such as time=t,voltage=U_kV,contraction=x_mm,load=F; #2 is the second column")
     add(
         "--unseen-voltages",
         metavar="V,V",

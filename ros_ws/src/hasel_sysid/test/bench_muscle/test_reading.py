@@ -36,6 +36,24 @@ def test_units_are_those_of_the_columns(csv):
     assert read.held == "load"
 
 
+def test_a_map_names_the_columns(csv):
+    """By name or number; a unit that is not given is that of the column's own name, else the SI unit."""
+    path = csv("t [ms],U_kV,x,m,I\n500,0,0,100,1\n600,1.5,0.002,100,2\n")
+    mapping = {"time": "t [ms]", "voltage": "U_kV", "contraction": "x", "load_g": "#4", "current_ua": "I"}
+    read = read_bench(path, mapping)
+    assert_allclose(read.time, [0.0, 0.1])
+    assert_allclose(read.voltage, [0.0, 1500.0])
+    assert_allclose(read.contraction, [0.0, 2e-3])
+    assert_allclose(read.load, 0.980665)
+    assert_allclose(read.current, [1e-6, 2e-6])
+    with pytest.raises(
+        RecordingError, match="nothing is called 'contracton' here: did you mean 'contraction'"
+    ):
+        read_bench(path, {**mapping, "contracton": "x"})
+    with pytest.raises(RecordingError, match=r"no column 'y' for --map contraction=y: choose among t \[ms\]"):
+        read_bench(path, {**mapping, "contraction": "y"})
+
+
 def test_a_held_contraction_is_said_in_the_header(csv):
     """Then the load is the answer."""
     read = read_bench_csv(
