@@ -10,7 +10,7 @@ from hasel_driver.rivals import NOT_TOLD
 from hasel_driver.urgent_inputs import UrgentInputs
 
 DISCOVERY_S = 1.0  # for which a new publisher may be known and not yet connected
-NAMING_S = 0.3  # within which another driver's name and host are learnt
+NAMING_S = 0.15  # within which another driver's name and host are learnt
 
 
 @dataclass

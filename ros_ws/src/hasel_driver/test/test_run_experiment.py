@@ -198,8 +198,10 @@ def test_no_recording_is_overwritten(driver, ros, run):
 def test_runs_without_a_rest_are_complete(driver, run):
     """A drive that begins before the first state is counted all the same."""
     driver.arm()
-    for index in range(6):
-        _, _, end = run(rest_time=0.0, periods=2, frequency=5.0, output=f"without_rest_{index}.mcap")
+    for _ in range(6):
+        _, _, end = run(
+            rest_time=0.0, periods=2, frequency=5.0, output=f"without_rest_{time.monotonic_ns()}.mcap"
+        )
         status, result = end()
         assert (status, result.success) == (SUCCEEDED, True), result.message
 
