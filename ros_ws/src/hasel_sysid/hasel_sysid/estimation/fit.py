@@ -28,7 +28,7 @@ from hasel_sysid.estimation.least_squares import (
     scales,
     values_and_bounds,
 )
-from hasel_sysid.estimation.starts import screen, starts
+from hasel_sysid.estimation.starts import MOST_FOLLOWED, screen, starts
 from hasel_sysid.experiment import GENTLEST
 from hasel_sysid.noise.model import estimate_noise
 from hasel_sysid.problem import Evaluation, LowFidelityProblem, Problem
@@ -39,8 +39,6 @@ Progress = Callable[[str, float], None]
 TOLERANCE = 1e-3
 """Relative change of the sum of squares at which a fit ends."""
 _MOST_MAPPED = 3
-_FOLLOWED = 3
-"""Starts of an effect that a fit follows, the most promising of all that were screened."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -312,5 +310,5 @@ def _standard_starts(problem: Problem, model: Model, effect: Effect) -> list[Mod
     promising = sorted(screen(problem, bare[0], starts(candidate)), key=lambda one: one.predicted)
     return [
         model.with_values({**bare[0].model.values, **{n: v for n, v in one.values().items() if n in free}})
-        for one in promising[:_FOLLOWED]
+        for one in promising[:MOST_FOLLOWED]
     ]

@@ -12,6 +12,8 @@ from hasel_sysid.candidates import Candidate
 from hasel_sysid.problem import Evaluation, Problem
 from hasel_sysid.projection import orthonormal
 
+MOST_FOLLOWED = 12
+"""Starts that are gone on from at most, the most promising of all that were screened."""
 _MOST = 2.0
 """Multiples of a start up to which its change is taken to be in proportion."""
 _FACTOR = np.sqrt(10.0)

@@ -11,16 +11,14 @@ from hasel_sim.errors import SimulationError
 from hasel_sysid.candidates import Candidate
 from hasel_sysid.estimation.fit import TOLERANCE
 from hasel_sysid.estimation.least_squares import MOST_STEPS, OPTIMISM, GaussNewton
-from hasel_sysid.estimation.starts import Screened, Start, from_typical, screen, starts
+from hasel_sysid.estimation.starts import MOST_FOLLOWED, Screened, Start, from_typical, screen, starts
 from hasel_sysid.problem import Evaluation, LowFidelityProblem
 from hasel_sysid.selection.likelihood import Likelihood
 
 _RUNS = 4
 """Runs on which other than typical sizes are screened: those of which most is left."""
-_ENTRIES = 12
-"""Starts that take part at most, the most promising of all that were screened."""
 _OF_EACH = 3
-"""Of them, starts of one candidate at most."""
+"""Starts of one candidate at most that take part."""
 
 
 def screen_typical(
@@ -61,7 +59,7 @@ def race(
         same = sum(other.start.candidate.name == one.start.candidate.name for other in able)
         if 1.0 - share >= needed and same < _OF_EACH:
             able.append(one)
-    return _run(problem, able[:_ENTRIES], likelihood, reach)
+    return _run(problem, able[:MOST_FOLLOWED], likelihood, reach)
 
 
 def _other_sizes(problem: LowFidelityProblem, typical: Sequence[Screened]) -> list[tuple[float, Screened]]:
