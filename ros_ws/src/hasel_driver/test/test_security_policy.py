@@ -41,7 +41,10 @@ def test_every_topic_and_service_of_the_node_is_in_the_policy(start_driver, virt
     """What is not in the policy would not work with keys."""
     start_driver(virtual_rig.port)
     ros.await_mode(Mode.STANDBY)
-    for node in ("hasel_driver", "hasel_driver_inputs"):
+    nodes = ("hasel_driver", "hasel_driver_inputs")
+    expected = {(node, "/hasel") for node in nodes}
+    ros.wait(lambda: expected <= set(ros.node.get_node_names_and_namespaces()), DISCOVERY_S)
+    for node in nodes:
         published = {name for name, _ in ros.node.get_publisher_names_and_types_by_node(node, "/hasel")}
         heard = {name for name, _ in ros.node.get_subscriber_names_and_types_by_node(node, "/hasel")}
         served = {name for name, _ in ros.node.get_service_names_and_types_by_node(node, "/hasel")}
