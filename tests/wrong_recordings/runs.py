@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 from hasel_recording import HASEL_PAIR, DriveChannel, Recording
 from hasel_sim.model import load_model
+from hasel_sim.parallel import SerialExecutor
 from hasel_sysid.data_gate import check_against_model, check_recording, refusal
-from hasel_sysid.dataset import prepared, usable
+from hasel_sysid.dataset import prepared, simulable, usable
 from hasel_sysid.drive_match import check_levels, matched
 from hasel_sysid.experiment import experiment_of
 from scipy.signal import lsim
@@ -172,6 +173,9 @@ def _models() -> Iterator[Callable]:
     yield lambda: check_levels(fitted, [GOOD])
     yield lambda: check_levels(swimmer, [_with(drive_signal=10 * BOX)])
     yield lambda: prepared(beam, [experiment_of(GOOD)])
+    crushed = {"initial_state": "static_equilibrium", "initial_load_factor": "5000"}
+    let_go = experiment_of(_with(drive_signal=None, metadata=crushed))
+    yield lambda: simulable(beam, [let_go], SerialExecutor())
     yield _with(drive_signal=BOX[:, :1], channels=(CHAMBER,)).check_hasel_pair
     ripple = BOX + 20.0 * np.random.default_rng(1).normal(size=BOX.shape)
     yield lambda: list(_with(drive_signal=ripple).ripple)

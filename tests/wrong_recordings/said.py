@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from hasel_recording import RecordingError, RecordingWarning
+from hasel_sim.errors import SimulationError
 from hasel_sysid.errors import SysidError
 from hasel_tracker.errors import TrackerError
 
@@ -22,7 +23,7 @@ def sentences(inputs: Iterable[Callable], folder: Path) -> set[str]:
             warnings.simplefilter("always", RecordingWarning)
             try:
                 result = call()
-            except (RecordingError, TrackerError, SysidError) as error:
+            except (RecordingError, TrackerError, SysidError, SimulationError) as error:
                 found.add(str(error))
             else:
                 if isinstance(result, list):
