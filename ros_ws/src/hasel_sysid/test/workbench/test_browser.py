@@ -278,8 +278,19 @@ def test_the_layout_holds(page, width, tmp_path):
         page.resize(1400, 900)
 
 
-def test_a_value_dragged_far_is_said_to_be_beyond_first_order(page):
+@pytest.fixture
+def fresh_page(tmp_path, unseen_rig, browser) -> Iterator[BrowserPage]:
+    """A page of its own workbench, with a model that nobody fitted yet."""
+    one = Server(tmp_path / "fresh", unseen_rig / "quadratic_drag" / "fit_5500V_2.0Hz.csv")
+    page = browser.open(one.address)
+    page.until("window.bench && bench.shown > 0", _PATIENCE_S)
+    yield page
+    one.close()
+
+
+def test_a_value_dragged_far_is_said_to_be_beyond_first_order(fresh_page):
     """The true curve of the run comes, and the foretold errors are struck through until the value is let go."""
+    page = fresh_page
     idle(page)
     before = page.run(_ERROR)
     drag = (
