@@ -82,7 +82,7 @@ class DriverServices:
         """To FAULT, from everywhere."""
         thread = self._require_thread()
         thread.call(lambda: thread.supervisor.fail(Fault(FaultCode.EMERGENCY_STOP, "by service")))
-        return self._prove_grounded(thread, "Stopped")
+        return self._prove_grounded(thread, "Stopped", PROOF_TIMEOUT_S)
 
     def clear_fault(self) -> str:
         """FAULT to STANDBY."""
@@ -100,7 +100,8 @@ class DriverServices:
             return "Nobody held the emergency stop."
         return f"Released what {', '.join(names)} held; now clear the fault."
 
-    def _prove_grounded(self, thread: SupplyThread, done: str) -> str:
+    def _prove_grounded(self, thread: SupplyThread, done: str, for_proof_s: float = 0.0) -> str:
+        """The answer once the output is commanded to ground, or so much later, if the proof does not come before."""
         supervisor = thread.supervisor
 
         def off() -> bool:
@@ -108,6 +109,8 @@ class DriverServices:
             return status.quiet is True and not status.mode.may_be_live
 
         if _result(thread.expect(off, PROOF_TIMEOUT_S)):
+            if for_proof_s:
+                _result(thread.expect(lambda: supervisor.status().output == "grounded", for_proof_s))
             return self._for_all(f"{done}. {OUTPUT_WORDS[supervisor.status().output]}")
         if not supervisor.capabilities.proves_grounded and supervisor.connected:
             return self._for_all(
