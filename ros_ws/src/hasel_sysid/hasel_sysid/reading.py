@@ -8,7 +8,7 @@ from hasel_sim.model import Model
 
 from hasel_sysid.estimation.fit import FittedModel, Progress, fit_baseline
 from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
-from hasel_sysid.noise.bounds import bounded_noise
+from hasel_sysid.noise.bounds import known_noise
 from hasel_sysid.noise.model import allowed_noise
 from hasel_sysid.policy import Policy
 from hasel_sysid.problem import Problem
@@ -83,7 +83,7 @@ def _readings(problem: Problem, about: Sequence[Model], fit: FittedModel) -> lis
 
 
 def _describes(problem: Problem, fit: FittedModel) -> bool:
-    noise = problem.measured_noise or bounded_noise([fit.evaluation])
+    noise = known_noise(problem, [fit.evaluation])
     return goodness_of_fit(fit.evaluation, allowed_noise(noise, problem.discrepancy)).adequate
 
 

@@ -8,7 +8,7 @@ from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import load_model
 from hasel_sysid.dataset import prepared
 from hasel_sysid.estimation import FittedModel, fit_baseline
-from hasel_sysid.noise.bounds import bounded_noise
+from hasel_sysid.noise.bounds import known_noise
 from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.likelihood import Likelihood
@@ -85,7 +85,7 @@ def fit_case(effect: str, share: float, seed: int, pool: Executor) -> FitOutcome
 def _logarithms(problem: Problem, fits: list[FittedModel]) -> list[float]:
     """Of the likelihood of fits under one covariance."""
     evaluations = [fit.evaluation for fit in fits]
-    noise = problem.measured_noise or bounded_noise(evaluations)
+    noise = known_noise(problem, evaluations)
     likelihood = Likelihood(noise, evaluations[0].runs, problem.discrepancy)
     return [likelihood.of(one.residual, one.jacobian).logarithm for one in evaluations]
 

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from hasel_sysid.noise.model import FEWEST, LONGEST_CORRELATION, NoiseModel, estimate_noise
-from hasel_sysid.problem import Evaluation
+from hasel_sysid.problem import Evaluation, Problem
 from hasel_sysid.projection import orthonormal
 from hasel_sysid.saturated_model import regressors, unexplained_by
 from hasel_sysid.where_it_fails.drive_cycle import drive_cycle
@@ -16,6 +16,11 @@ _ABOVE = 2.0
 """How many times the body's fastest frequency the band begins: what a wrong model moves wrongly lies below."""
 _OF_THE_RATE = 0.99
 """Share of the power of the angular rate that lies below the body's fastest frequency."""
+
+
+def known_noise(problem: Problem, fits: Sequence[Evaluation]) -> NoiseModel:
+    """The noise where recordings show it alone, else its bound by these fits."""
+    return problem.measured_noise or bounded_noise(fits)
 
 
 def bounded_noise(fits: Sequence[Evaluation]) -> NoiseModel:

@@ -23,7 +23,7 @@ from hasel_sysid.estimation.fit import FittedModel, Progress, fit, fitted_model,
 from hasel_sysid.estimation.growing_horizon import in_phase
 from hasel_sysid.estimation.starts import Screened
 from hasel_sysid.model_checking.nothing_missing import ScoreTest, score_test
-from hasel_sysid.noise.bounds import bounded_noise
+from hasel_sysid.noise.bounds import known_noise
 from hasel_sysid.policy import Policy
 from hasel_sysid.problem import Evaluation, LowFidelityProblem, Problem
 from hasel_sysid.projection import orthonormal
@@ -134,7 +134,7 @@ class Search:
 
     def _judge(self) -> None:
         """All fitted models by one covariance: the noise as it is known now, the discretisation of the likeliest."""
-        noise = self.problem.measured_noise or bounded_noise([f.fit.evaluation for f in self.fits.values()])
+        noise = known_noise(self.problem, [f.fit.evaluation for f in self.fits.values()])
         known = self.baseline.evaluation
         measured = known.measured()
         about = self._likeliest() if self.models else NOTHING

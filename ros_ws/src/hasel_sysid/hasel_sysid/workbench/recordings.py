@@ -15,7 +15,7 @@ from hasel_sysid.data_gate import check_recording
 from hasel_sysid.dataset import for_model, usable
 from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment
-from hasel_sysid.workbench.state import Banner
+from hasel_sysid.workbench.state import Banner, Unread
 
 DEFAULT_MODEL = "swimmer"
 
@@ -33,15 +33,6 @@ class Reading:
     def of(self, path: str | Path) -> Mapping[str, str]:
         """The columns of one file."""
         return self.own.get(str(path), self.mapping)
-
-
-@dataclass(frozen=True)
-class Unread:
-    """A file of rows that could not be read, and the names of its columns; unseen: what it is to be loaded as."""
-
-    path: Path
-    names: tuple[str, ...]
-    unseen: bool = False
 
 
 def columns_of(path: str | Path) -> tuple[str, ...]:

@@ -1,16 +1,13 @@
 """All that a session of the workbench knows; never changed, only replaced as a whole."""
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.suggest import Suggestion
 from hasel_sysid.workbench.step import Step
-
-if TYPE_CHECKING:
-    from hasel_sysid.workbench.recordings import Unread
 
 
 @dataclass(frozen=True)
@@ -19,6 +16,15 @@ class Banner:
 
     severity: str
     text: str
+
+
+@dataclass(frozen=True)
+class Unread:
+    """A file of rows that could not be read, and the names of its columns; unseen: what it is to be loaded as."""
+
+    path: Path
+    names: tuple[str, ...]
+    unseen: bool = False
 
 
 @dataclass(frozen=True)
@@ -37,7 +43,7 @@ class State:
     diagnosis: Diagnosis | None = None
     diagnosed: int = 0
     suggestions: tuple[Suggestion, ...] = ()
-    unread: tuple["Unread", ...] = ()
+    unread: tuple[Unread, ...] = ()
 
     @property
     def every(self) -> tuple[Experiment, ...]:

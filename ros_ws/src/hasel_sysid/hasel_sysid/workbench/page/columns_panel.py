@@ -8,7 +8,7 @@ from hasel_recording.drive_channel import UNITS
 from hasel_sim.model import Model
 from nicegui import ui
 
-from hasel_sysid.workbench.recordings import Unread
+from hasel_sysid.workbench.state import Unread
 
 _SINE, _NONE = "its sine", "–"
 
