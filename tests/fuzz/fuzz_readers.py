@@ -15,11 +15,11 @@ import av
 import numpy as np
 import pandas
 import pytest
+from hasel_common.declared_parameters import _fitting
+from hasel_common.node_parameter import NodeParameter
 from hasel_recording import Recording, RecordingError, read_recording, write_recording
 from hasel_recording.column_map import parse_map
-from hasel_recording.declared_parameters import _fitting
 from hasel_recording.mcap_file import read_file
-from hasel_recording.node_parameter import NodeParameter
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.sources.video_source import VideoSource
 from hypothesis import HealthCheck, given, settings

@@ -5,9 +5,9 @@ from collections.abc import Callable
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
+from hasel_common.endpoints import Role
+from hasel_common.spinning import node_alone
 from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
-from hasel_recording.endpoints import Role
-from hasel_recording.spinning import node_alone
 from rclpy.executors import SingleThreadedExecutor
 from std_srvs.srv import Trigger
 

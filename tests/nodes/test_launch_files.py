@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 from ament_index_python.packages import get_package_share_directory
+from hasel_common.endpoints import Role
 from hasel_interfaces.msg import BendingAngle
-from hasel_recording.endpoints import Role
 
 pytest.importorskip("launch_ros", reason="launch and launch_ros come with ROS 2 from apt, not as wheels")
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from hasel_bringup.demo.processes import Processes
+from hasel_common.endpoints import Role
 from hasel_interfaces.msg import Actuation, BendingAngle, SupplyState
-from hasel_recording.endpoints import Role
 from rcl_interfaces.srv import GetParameters
 from std_srvs.srv import Trigger
 

@@ -13,20 +13,16 @@ from catkin_pkg.package import parse_package
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = sorted(path.parent for path in (ROOT / "ros_ws" / "src").glob("*/package.xml"))
+BELOW = {"hasel_interfaces", "hasel_common", "hasel_recording"}
+SIDE_BY_SIDE = {"hasel_driver", "hasel_tracker", "hasel_sim"}
 MAY_IMPORT = {
-    "hasel_recording": {"hasel_interfaces"},
-    "hasel_driver": {"hasel_interfaces", "hasel_recording"},
-    "hasel_tracker": {"hasel_interfaces", "hasel_recording"},
-    "hasel_sim": {"hasel_interfaces", "hasel_recording"},
-    "hasel_sysid": {"hasel_interfaces", "hasel_recording", "hasel_driver", "hasel_tracker", "hasel_sim"},
-    "hasel_bringup": {
-        "hasel_interfaces",
-        "hasel_recording",
-        "hasel_driver",
-        "hasel_tracker",
-        "hasel_sim",
-        "hasel_sysid",
-    },
+    "hasel_common": {"hasel_interfaces"},
+    "hasel_recording": {"hasel_interfaces", "hasel_common"},
+    "hasel_driver": BELOW,
+    "hasel_tracker": BELOW,
+    "hasel_sim": BELOW,
+    "hasel_sysid": BELOW | SIDE_BY_SIDE,
+    "hasel_bringup": BELOW | SIDE_BY_SIDE | {"hasel_sysid"},
 }
 ROSDEP_KEYS = {
     "cv2": "python3-opencv",
@@ -142,7 +138,7 @@ def normalised(requirement: str) -> str:
 
 @each_package
 def test_imports_go_downwards(package):
-    """interfaces < recording < driver, tracker, sim < sysid < bringup < benchmark; the middle ones are strangers."""
+    """interfaces < common < recording < driver, tracker, sim < sysid < bringup < benchmark."""
     allowed = MAY_IMPORT.get(package.name, {path.name for path in PACKAGES}) | {package.name}
     upward = {
         f"{file.relative_to(ROOT)} imports {name}"

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-from hasel_recording.topics import TOPIC_TYPES
+from hasel_common.topics import TOPIC_TYPES
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.simulator_node import PARAMETERS as SIMULATOR
 from hasel_sysid.sysid_node import PARAMETERS as SYSID

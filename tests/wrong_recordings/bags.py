@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
+from hasel_common.topics import DRIVE, MEASURED, STATE
 from hasel_recording import McapRecorder, Recording, read_recording, write_recording
 from hasel_recording.bending_angle_message import bending_angle_message
-from hasel_recording.topics import DRIVE, MEASURED, STATE
 from mcap.records import Chunk
 from mcap.stream_reader import StreamReader
 from mcap.writer import Writer

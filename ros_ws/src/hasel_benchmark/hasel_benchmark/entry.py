@@ -3,8 +3,8 @@
 import sys
 from importlib import import_module
 
-from hasel_recording.command_entry import command
-from hasel_recording.node_usage import user_arguments
+from hasel_common.command_entry import command
+from hasel_common.node_usage import user_arguments
 
 
 @command

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ament_index_python.packages import PackageNotFoundError, get_package_prefix
-from hasel_recording.command_entry import command
+from hasel_common.command_entry import command
 
 from hasel_bringup import start_up
 from hasel_bringup.errors import BringupError

@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 
-from hasel_recording.command_entry import command
+from hasel_common.command_entry import command
 
 from hasel_driver import protocol
 from hasel_driver.board_handshake import BoardHandshake

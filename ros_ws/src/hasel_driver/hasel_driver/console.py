@@ -8,8 +8,8 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 
+from hasel_common.node_usage import user_arguments
 from hasel_interfaces.msg import SupplyState
-from hasel_recording.node_usage import user_arguments
 from rclpy._rclpy_pybind11 import RCLError
 
 from hasel_driver.console_link import ConsoleLink

@@ -8,10 +8,10 @@ from contextlib import contextmanager
 from typing import Any
 
 import rclpy
+from hasel_common.endpoints import Role, frame_of, publisher, subscription
+from hasel_common.spinning import BackgroundSpin
+from hasel_common.topics import COMMAND, NAMESPACE, STATE
 from hasel_interfaces.msg import Actuation, SupplyState
-from hasel_recording.endpoints import Role, frame_of, publisher, subscription
-from hasel_recording.spinning import BackgroundSpin
-from hasel_recording.topics import COMMAND, NAMESPACE, STATE
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from rclpy.publisher import Publisher

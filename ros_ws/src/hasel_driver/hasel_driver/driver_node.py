@@ -9,10 +9,10 @@ import time
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
+from hasel_common.endpoints import Role, frame_of, publisher
+from hasel_common.spinning import quiet_at_shutdown, spin
+from hasel_common.topics import DIAGNOSTICS, NAMESPACE, STATE
 from hasel_interfaces.msg import SupplyState
-from hasel_recording.endpoints import Role, frame_of, publisher
-from hasel_recording.spinning import quiet_at_shutdown, spin
-from hasel_recording.topics import DIAGNOSTICS, NAMESPACE, STATE
 from rclpy._rclpy_pybind11 import RCLError, RCLInvalidROSArgsError
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.duration import Duration

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from hasel_common.topics import STATE, TOPIC_TYPES
 from hasel_recording.errors import RecordingError
 from hasel_recording.mcap_file import McapFile, read_file
 from hasel_recording.mcap_recorder import McapRecorder
-from hasel_recording.topics import STATE, TOPIC_TYPES
 
 from hasel_driver.experiment import ExperimentPlan
 from hasel_driver.waveform import MUSCLES, Waveform
@@ -30,7 +30,7 @@ class ExperimentRecording:
     plan: ExperimentPlan
     required_topics: tuple[str, ...] = ()
     state_topic: str = STATE
-    made_by: Mapping[str, str] = field(default_factory=dict)  # as of hasel_recording.provenance
+    made_by: Mapping[str, str] = field(default_factory=dict)  # as of hasel_common.provenance
     problem: str | None = None  # why nothing more can be written
     _closed: bool = False
     _recorder: McapRecorder = field(init=False)

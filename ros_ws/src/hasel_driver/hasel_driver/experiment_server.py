@@ -7,13 +7,13 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
+from hasel_common.endpoints import Role
+from hasel_common.provenance import provenance
+from hasel_common.spinning import quiet_at_shutdown
+from hasel_common.topics import STATE, TOPIC_TYPES, known_as, relative
 from hasel_interfaces.action import RunExperiment
 from hasel_interfaces.msg import SupplyState
-from hasel_recording.endpoints import Role
 from hasel_recording.errors import RecordingError
-from hasel_recording.provenance import provenance
-from hasel_recording.spinning import quiet_at_shutdown
-from hasel_recording.topics import STATE, TOPIC_TYPES, known_as, relative
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node

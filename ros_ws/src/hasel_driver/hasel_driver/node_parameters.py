@@ -1,10 +1,10 @@
 """Declares the table of parameters in a node, and guards it."""
 
-import difflib
 from collections.abc import Callable
 from typing import Any
 
-from hasel_recording.declared_parameters import descriptor
+from hasel_common.declared_parameters import descriptor
+from hasel_common.names import nearest
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.node import Node
 
@@ -65,6 +65,6 @@ def _check_overrides(node: Node) -> None:
         if name in TABLE:
             TABLE[name].check(given.value)
         elif name not in OF_ROS and not name.startswith("qos_overrides."):
-            nearest = difflib.get_close_matches(name, TABLE, n=1, cutoff=0.4)
-            hint = f": did you mean {nearest[0]!r}?" if nearest else f", only {', '.join(TABLE)}."
+            near = nearest(name, TABLE, similarity=0.4)
+            hint = f": did you mean {near!r}?" if near else f", only {', '.join(TABLE)}."
             raise LimitError(f"There is no parameter {name!r}{hint}")

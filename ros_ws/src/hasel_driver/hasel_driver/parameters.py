@@ -1,9 +1,9 @@
 """The node's parameters: names, defaults, units, ranges; declared in the node and listed in the README."""
 
-import difflib
 from typing import Any
 
-from hasel_recording.node_parameter import NodeParameter
+from hasel_common.names import nearest
+from hasel_common.node_parameter import NodeParameter
 
 from hasel_driver.errors import LimitError
 
@@ -26,8 +26,8 @@ class Parameter(NodeParameter):
                 f"{self.name} is {value} {self.unit}, {self.low:g} to {self.high:g} was expected."
             )
         if self.choices and value not in self.choices:
-            nearest = difflib.get_close_matches(str(value).lower(), self.choices, n=1, cutoff=0.4)
-            hint = f" Did you mean {nearest[0]}?" if nearest else ""
+            near = nearest(str(value).lower(), self.choices, similarity=0.4)
+            hint = f" Did you mean {near}?" if near else ""
             raise LimitError(
                 f"{self.name} is {value!r}, one of {', '.join(self.choices)} was expected.{hint}"
             )

@@ -15,7 +15,7 @@ from functools import partial
 from itertools import chain
 from pathlib import Path
 
-from hasel_recording.command_entry import command
+from hasel_common.command_entry import command
 
 from hasel_driver.bench_options import firmware_files
 from hasel_driver.errors import DriverError, RefusedError

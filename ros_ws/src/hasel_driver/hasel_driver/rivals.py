@@ -11,9 +11,9 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
+from hasel_common.endpoints import Role
+from hasel_common.topics import STATE, relative
 from hasel_interfaces.msg import SupplyState
-from hasel_recording.endpoints import Role
-from hasel_recording.topics import STATE, relative
 from rclpy._rclpy_pybind11 import NodeNameNonExistentError
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node

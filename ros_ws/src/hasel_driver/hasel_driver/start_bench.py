@@ -2,7 +2,7 @@
 
 import sys
 
-from hasel_recording.command_entry import command
+from hasel_common.command_entry import command
 
 from hasel_driver.bench_options import options_from
 

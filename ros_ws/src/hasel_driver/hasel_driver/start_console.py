@@ -2,8 +2,8 @@
 
 import sys
 
-from hasel_recording.command_entry import command
-from hasel_recording.node_usage import user_arguments
+from hasel_common.command_entry import command
+from hasel_common.node_usage import user_arguments
 
 from hasel_driver.console_options import parser
 

@@ -3,8 +3,8 @@
 import signal
 import sys
 
-from hasel_recording.command_entry import command
-from hasel_recording.node_usage import answer_help
+from hasel_common.command_entry import command
+from hasel_common.node_usage import answer_help
 
 from hasel_driver.parameters import PARAMETERS
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from hasel_recording.topics import EMERGENCY_STOP, TOPIC_TYPES, relative
+from hasel_common.topics import EMERGENCY_STOP, TOPIC_TYPES, relative
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy

@@ -8,7 +8,7 @@ import math
 import sys
 from dataclasses import dataclass
 
-from hasel_recording.command_entry import command
+from hasel_common.command_entry import command
 
 TOUCHABLE_CHARGE_C = 45e-6
 LOWEST_VOLTAGE_V, HIGHEST_VOLTAGE_V = 450.0, 15_000.0

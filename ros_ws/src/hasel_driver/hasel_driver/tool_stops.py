@@ -13,8 +13,8 @@ def stops_of_ros(stop: Callable[[str], None]) -> Iterator[None]:
         print("ROS 2 is not there: only the keyboard and the interlock stop.", file=sys.stderr)
         yield
         return
-    from hasel_recording.spinning import BackgroundSpin, node_alone
-    from hasel_recording.topics import EMERGENCY_STOP, NAMESPACE
+    from hasel_common.spinning import BackgroundSpin, node_alone
+    from hasel_common.topics import EMERGENCY_STOP, NAMESPACE
     from std_srvs.srv import Trigger
 
     from hasel_driver.middleware import prepare

@@ -5,10 +5,10 @@ from collections.abc import Callable
 from functools import partial
 
 import rclpy
+from hasel_common.endpoints import Role
+from hasel_common.spinning import BackgroundSpin
+from hasel_common.topics import COMMAND, relative
 from hasel_interfaces.msg import Actuation
-from hasel_recording.endpoints import Role
-from hasel_recording.spinning import BackgroundSpin
-from hasel_recording.topics import COMMAND, relative
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node

@@ -5,7 +5,7 @@ import sys
 import time
 from pathlib import Path
 
-from hasel_recording.command_entry import command
+from hasel_common.command_entry import command
 
 from hasel_driver.pseudo_terminal import PseudoTerminal
 from hasel_driver.virtual_muscle import Contact, VirtualMuscle

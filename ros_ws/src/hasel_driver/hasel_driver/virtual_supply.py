@@ -15,8 +15,8 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from hasel_recording.command_entry import command
-from hasel_recording.node_usage import user_arguments
+from hasel_common.command_entry import command
+from hasel_common.node_usage import user_arguments
 
 from hasel_driver.errors import PortError
 from hasel_driver.pseudo_terminal import PseudoTerminal

@@ -4,8 +4,8 @@ import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
 
+from hasel_common.spinning import node_alone
 from hasel_driver.node_parameters import declare
-from hasel_recording.spinning import node_alone
 from rclpy.parameter import Parameter
 
 

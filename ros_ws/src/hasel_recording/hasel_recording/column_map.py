@@ -7,9 +7,11 @@ the file of the drive only.
 import re
 from collections.abc import Iterable, Mapping, Sequence
 
+from hasel_common.names import nearest
+
 from hasel_recording.csv_columns import MARKER_UNITS, SIN_THETA, THETA_UNITS, TIME_UNITS
 from hasel_recording.drive_channel import SI_UNITS, UNITS, is_drive_column
-from hasel_recording.errors import RecordingError, nearest
+from hasel_recording.errors import RecordingError
 
 DRIVE_ONLY = "drive."
 

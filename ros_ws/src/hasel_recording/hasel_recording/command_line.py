@@ -6,7 +6,8 @@ import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from hasel_recording.command_entry import command
+from hasel_common.command_entry import command
+
 from hasel_recording.convert import convert
 from hasel_recording.errors import RecordingError, RecordingWarning
 from hasel_recording.reading import drive_of_each, read_recording

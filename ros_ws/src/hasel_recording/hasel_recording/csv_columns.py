@@ -4,8 +4,10 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from hasel_common.names import nearest
+
 from hasel_recording.drive_channel import DriveChannel, is_drive_column, parse_column
-from hasel_recording.errors import RecordingError, nearest
+from hasel_recording.errors import RecordingError
 from hasel_recording.recording import MARKER_NAMES
 
 SIN_THETA = "sin_theta"

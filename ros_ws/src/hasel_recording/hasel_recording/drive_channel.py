@@ -2,7 +2,9 @@
 
 from dataclasses import dataclass
 
-from hasel_recording.errors import RecordingError, nearest
+from hasel_common.names import nearest
+
+from hasel_recording.errors import RecordingError
 
 PA_PER_PSI = 6894.757293168361
 RAD_PER_DEG = 0.017453292519943295

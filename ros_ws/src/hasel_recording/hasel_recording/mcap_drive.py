@@ -6,12 +6,12 @@ from itertools import compress
 from typing import Any
 
 import numpy as np
+from hasel_common.topics import DRIVE, STATE, TOPIC_TYPES
 
 from hasel_recording.drive_channel import HASEL_PAIR, DriveChannel, parse_column
 from hasel_recording.errors import RecordingError
 from hasel_recording.mcap_file import McapFile
 from hasel_recording.message_fields import nanoseconds
-from hasel_recording.topics import DRIVE, STATE, TOPIC_TYPES
 from hasel_recording.zero_order_hold import row_in_force
 
 

@@ -9,13 +9,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from hasel_common.names import nearest
+from hasel_common.topics import TOPIC_TYPES, known_as
 from mcap.exceptions import McapError
 from mcap.records import Channel, Message, Metadata, Schema
 from mcap_ros2.decoder import DecoderFactory
 
-from hasel_recording.errors import RecordingError, RecordingWarning, nearest
+from hasel_recording.errors import RecordingError, RecordingWarning
 from hasel_recording.mcap_records import MAGIC, Damage, whole_records
-from hasel_recording.topics import TOPIC_TYPES, known_as
 
 UNREADABLE = (McapError, ValueError, LookupError, struct.error, MemoryError, OverflowError, TypeError)
 """What decoding a message, or its definition, raises where bytes make no sense."""
@@ -34,7 +35,7 @@ class McapFile:
     def decoded(self, topic: str, type_name: str) -> list[Any]:
         """Return the topic's messages in recorded order, none when there are none.
 
-        A topic of hasel_recording.topics is found in whatever namespace it was recorded. Raises RecordingError when
+        A topic of hasel_common.topics is found in whatever namespace it was recorded. Raises RecordingError when
         the messages are not of this type, or two rigs have such a topic.
         """
         topic = self.name_of(topic)

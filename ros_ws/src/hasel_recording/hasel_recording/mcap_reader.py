@@ -5,15 +5,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from hasel_common.names import nearest
+from hasel_common.topics import MARKERS, MEASURED, SIMULATED, STATE, TOPIC_TYPES
 
 from hasel_recording.bag import read_bag
-from hasel_recording.errors import RecordingError, RecordingWarning, nearest
+from hasel_recording.errors import RecordingError, RecordingWarning
 from hasel_recording.mcap_drive import StampedDrive, stamped_drive, stamped_messages
 from hasel_recording.mcap_file import McapFile
 from hasel_recording.mcap_recorder import HEADER_RECORD, TIME_RECORD
 from hasel_recording.recording import MARKER_NAMES, Recording
 from hasel_recording.stand_in import as_meant
-from hasel_recording.topics import MARKERS, MEASURED, SIMULATED, STATE, TOPIC_TYPES
 
 
 def read_mcap(path: Path) -> Recording:

@@ -6,17 +6,18 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from hasel_common.names import nearest
+from hasel_common.topics import FRAMES, TOPIC_TYPES
 from mcap.well_known import SchemaEncoding
 from mcap.writer import Writer
 from mcap_ros2._dynamic import (
     serialize_dynamic,
 )  # the package's own writer offers neither flush nor channel metadata
 
-from hasel_recording.errors import RecordingError, nearest
+from hasel_recording.errors import RecordingError
 from hasel_recording.message_definitions import has_header, schema_text
 from hasel_recording.message_fields import plain_fields, stamp, type_of
 from hasel_recording.rosbag2_metadata import TopicCount, bag_metadata, channel_metadata
-from hasel_recording.topics import FRAMES, TOPIC_TYPES
 
 HEADER_RECORD = "hasel_recording"  # metadata record with the header lines
 TIME_RECORD = "hasel_time"  # metadata record with the stamp that is time 0

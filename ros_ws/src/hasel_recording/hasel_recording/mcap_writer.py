@@ -6,11 +6,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from hasel_common.topics import DRIVE, MEASURED, SIMULATED, STATE
+
 from hasel_recording.bending_angle_message import bending_angle_message
 from hasel_recording.drive_channel import HASEL_PAIR
 from hasel_recording.mcap_recorder import McapRecorder
 from hasel_recording.recording import Recording
-from hasel_recording.topics import DRIVE, MEASURED, SIMULATED, STATE
 
 ACTIVE = 2  # SupplyState.ACTIVE
 UNKNOWN_PAIR = [math.nan] * 2

@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from hasel_common.names import nearest
 
-from hasel_recording.errors import RecordingError, nearest
+from hasel_recording.errors import RecordingError
 from hasel_recording.message_definitions import specification
 
 

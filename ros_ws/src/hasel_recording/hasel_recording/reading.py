@@ -5,11 +5,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from hasel_common.names import nearest
+
 from hasel_recording.csv_reader import read_csv
 from hasel_recording.csv_text import TEXT_SUFFIXES
 from hasel_recording.csv_writer import write_csv
 from hasel_recording.drive_file import with_drive
-from hasel_recording.errors import RecordingError, RecordingWarning, nearest
+from hasel_recording.errors import RecordingError, RecordingWarning
 from hasel_recording.mcap_reader import read_mcap
 from hasel_recording.mcap_writer import write_mcap
 from hasel_recording.recording import DRIVE_KEY, Recording

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from hasel_common.topics import MEASURED
 from hasel_recording import McapRecorder, read_recording
 from hasel_recording.bending_angle_message import bending_angle_message
 from hasel_recording.message_definitions import SEPARATOR
 from hasel_recording.message_fields import stamp
-from hasel_recording.topics import MEASURED
 from mcap.writer import Writer
 from mcap_ros2._dynamic import serialize_dynamic
 from rosbags.highlevel import AnyReader

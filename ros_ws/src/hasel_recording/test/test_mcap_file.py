@@ -1,9 +1,9 @@
 import warnings
 
 import pytest
+from hasel_common.topics import MEASURED, STATE
 from hasel_recording import RecordingError, RecordingWarning, read_recording, write_recording
 from hasel_recording.mcap_file import read_file
-from hasel_recording.topics import MEASURED, STATE
 from mcap.records import Chunk
 from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer

@@ -2,9 +2,9 @@ import math
 
 import numpy as np
 import pytest
+from hasel_common.topics import COMMAND, DRIVE, MEASURED, SIMULATED, STATE
 from hasel_recording import McapRecorder, RecordingError, RecordingWarning, read_recording
 from hasel_recording.bending_angle_message import bending_angle_message
-from hasel_recording.topics import COMMAND, DRIVE, MEASURED, SIMULATED, STATE
 from mcap.writer import Writer
 
 EPOCH_NS = 1_790_000_000_000_000_000

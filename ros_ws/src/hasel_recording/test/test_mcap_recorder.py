@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hasel_common.topics import COMMAND, MEASURED, STATE
 from hasel_interfaces.msg import SupplyState
 from hasel_recording import McapRecorder, RecordingError, RecordingWarning, mcap_recorder
 from hasel_recording.mcap_file import read_file
 from hasel_recording.mcap_recorder import HEADER_RECORD
-from hasel_recording.topics import COMMAND, MEASURED, STATE
 from mcap.reader import make_reader
 from rclpy.serialization import deserialize_message, serialize_message
 from rosbags.highlevel import AnyReader

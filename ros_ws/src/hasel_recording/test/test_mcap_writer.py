@@ -2,8 +2,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hasel_common.topics import DRIVE, MEASURED, STATE
 from hasel_recording import DriveChannel, read_recording, write_recording
-from hasel_recording.topics import DRIVE, MEASURED, STATE
 from rosbags.highlevel import AnyReader
 
 ARRAYS = ("time_s", "sin_theta", "voltage", "markers", "drive_time_s", "drive_values")

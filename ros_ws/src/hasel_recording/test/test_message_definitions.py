@@ -1,7 +1,7 @@
 import pytest
+from hasel_common.topics import TOPIC_TYPES
 from hasel_recording import RecordingError
 from hasel_recording.message_definitions import schema_text, type_hash
-from hasel_recording.topics import TOPIC_TYPES
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 

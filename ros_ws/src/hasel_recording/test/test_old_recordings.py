@@ -4,10 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hasel_common.topics import MEASURED, SIMULATED, STATE
 from hasel_recording import read_recording
 from hasel_recording.convert import convert
 from hasel_recording.drive_channel import HASEL_PAIR
-from hasel_recording.topics import MEASURED, SIMULATED, STATE
 from rosbags.highlevel import AnyReader
 
 pytestmark = pytest.mark.filterwarnings("ignore::hasel_recording.RecordingWarning")  # of the first frame

@@ -3,10 +3,10 @@
 import re
 from pathlib import Path
 
+from hasel_common.topics import DRIVE, MEASURED, SIMULATED, STATE, TOPIC_TYPES
 from hasel_recording.csv_columns import MARKER_UNITS, THETA_UNITS, TIME_UNITS
 from hasel_recording.drive_channel import UNITS
 from hasel_recording.header_keys import KNOWN_KEYS
-from hasel_recording.topics import DRIVE, MEASURED, SIMULATED, STATE, TOPIC_TYPES
 
 README = (Path(__file__).parents[1] / "README.md").read_text(encoding="utf-8")
 

@@ -1,9 +1,9 @@
 from pathlib import Path
 
 import yaml
+from hasel_common.topics import COMMAND
 from hasel_recording import McapRecorder
 from hasel_recording.mcap_file import read_file
-from hasel_recording.topics import COMMAND
 from rosbags.rosbag2 import Reader
 
 

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Iterable
 from math import isfinite
 
-from hasel_recording.declared_parameters import descriptor
-from hasel_recording.node_parameter import NodeParameter
+from hasel_common.declared_parameters import descriptor
+from hasel_common.node_parameter import NodeParameter
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.exceptions import InvalidParameterValueException
 from rclpy.node import Node

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable
 
 import rclpy
-from hasel_recording.spinning import quiet_at_shutdown
+from hasel_common.spinning import quiet_at_shutdown
 from rclpy.exceptions import InvalidParameterValueException
 from rclpy.node import Node
 

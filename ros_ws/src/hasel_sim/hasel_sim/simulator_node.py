@@ -6,12 +6,12 @@ from collections import Counter
 
 import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from hasel_common.declared_parameters import declare, words
+from hasel_common.endpoints import STEADY, Role, frame_of, publisher, subscription
+from hasel_common.managed_node import ManagedNode, start_and_spin
+from hasel_common.topics import DIAGNOSTICS, NAMESPACE, SIMULATED, STATE, SWIMMER
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_interfaces.srv import AddEffect, LoadModel, RemoveEffect
-from hasel_recording.declared_parameters import declare, words
-from hasel_recording.endpoints import STEADY, Role, frame_of, publisher, subscription
-from hasel_recording.managed_node import ManagedNode, start_and_spin
-from hasel_recording.topics import DIAGNOSTICS, NAMESPACE, SIMULATED, STATE, SWIMMER
 from rclpy.exceptions import InvalidParameterValueException
 from rclpy.subscription import Subscription
 from threadpoolctl import threadpool_limits

@@ -1,7 +1,6 @@
 """The simulator node's parameters."""
 
-from hasel_recording.autostart import AUTOSTART
-from hasel_recording.node_parameter import NodeParameter
+from hasel_common.node_parameter import AUTOSTART, NodeParameter
 
 PARAMETERS = (
     NodeParameter(*AUTOSTART),

@@ -2,8 +2,8 @@
 
 import sys
 
-from hasel_recording.command_entry import command
-from hasel_recording.node_usage import answer_help
+from hasel_common.command_entry import command
+from hasel_common.node_usage import answer_help
 
 from hasel_sim.simulator_parameters import PARAMETERS
 

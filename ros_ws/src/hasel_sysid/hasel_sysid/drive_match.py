@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from hasel_common.names import nearest
 from hasel_recording import DriveChannel, Recording, RecordingWarning
-from hasel_recording.errors import nearest
 from hasel_sim.model import Model
 
 from hasel_sysid.errors import SysidError

@@ -5,12 +5,12 @@ import threading
 from pathlib import Path
 
 from diagnostic_msgs.msg import DiagnosticArray
+from hasel_common.declared_parameters import declare, words
+from hasel_common.endpoints import STEADY, Role, frame_of, publisher, subscription
+from hasel_common.topics import DIAGNOSIS, DIAGNOSTICS, ERROR, FIT, MEASURED, NAMESPACE, SIMULATED, STATE
 from hasel_interfaces.msg import BendingAngle, Diagnosis, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import RecordingError
-from hasel_recording.declared_parameters import declare, words
-from hasel_recording.endpoints import STEADY, Role, frame_of, publisher, subscription
-from hasel_recording.topics import DIAGNOSIS, DIAGNOSTICS, ERROR, FIT, MEASURED, NAMESPACE, SIMULATED, STATE
 from hasel_sim.errors import HaselSimError
 from hasel_sim.live.live_model import live_model
 from hasel_sim.model import Model, save_model

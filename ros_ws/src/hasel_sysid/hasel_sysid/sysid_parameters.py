@@ -1,6 +1,6 @@
 """The identification node's parameters."""
 
-from hasel_recording.node_parameter import NodeParameter
+from hasel_common.node_parameter import NodeParameter
 
 PARAMETERS = (
     NodeParameter("model", "swimmer", "model that is fitted: its name or file", changeable=True),

@@ -1,7 +1,6 @@
 """The node's parameters: those of the search can change while it runs."""
 
-from hasel_recording.autostart import AUTOSTART
-from hasel_recording.node_parameter import NodeParameter
+from hasel_common.node_parameter import AUTOSTART, NodeParameter
 
 from hasel_tracker.calibration.settings_file import COLOUR_KEYS, SEARCH_KEYS, flat
 from hasel_tracker.choices import BODY_KINDS, DEFAULT_METHOD, METHODS

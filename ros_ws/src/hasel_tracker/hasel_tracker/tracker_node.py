@@ -11,11 +11,11 @@ import cv2
 import numpy as np
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from hasel_common.declared_parameters import declare
+from hasel_common.endpoints import STEADY, Role, frame_of, publisher
+from hasel_common.managed_node import ManagedNode, start_and_spin
+from hasel_common.topics import DIAGNOSTICS, MEASURED, NAMESPACE
 from hasel_interfaces.msg import BendingAngle
-from hasel_recording.declared_parameters import declare
-from hasel_recording.endpoints import STEADY, Role, frame_of, publisher
-from hasel_recording.managed_node import ManagedNode, start_and_spin
-from hasel_recording.topics import DIAGNOSTICS, MEASURED, NAMESPACE
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.executors import ExternalShutdownException
 from rclpy.parameter import Parameter

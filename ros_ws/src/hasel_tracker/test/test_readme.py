@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-from hasel_recording import topics
+from hasel_common import topics
 from hasel_tracker.bench.accuracy import CONDITIONS
 from hasel_tracker.bench.robustness import CASES
 from hasel_tracker.commands import parsers

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from hasel_common.declared_parameters import descriptor
 from hasel_interfaces.msg import BendingAngle
-from hasel_recording.declared_parameters import descriptor
 from hasel_tracker.node_messages import angle_message
 from hasel_tracker.node_parameters import PARAMETERS, SEARCH_NAMES
 from hasel_tracker.sources.video_source import VideoSource

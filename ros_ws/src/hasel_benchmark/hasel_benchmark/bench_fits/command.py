@@ -4,7 +4,7 @@ import argparse
 import json
 from dataclasses import asdict
 
-from hasel_sim.errors import nearest_name
+from hasel_common.names import nearest_name
 from hasel_sim.parallel import executor
 
 from hasel_benchmark.bench_fits.fit_case import SHARES, effects_with_coordinates, fit_case

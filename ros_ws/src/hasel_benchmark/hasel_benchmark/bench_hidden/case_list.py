@@ -5,7 +5,7 @@ from functools import cache
 from itertools import chain
 
 from hasel_bringup.hidden_truth.hidden_values import both_signs
-from hasel_sim.errors import nearest_name
+from hasel_common.names import nearest_name
 from hasel_sim.model import load_model
 from hasel_sysid.candidates import candidate_effects
 

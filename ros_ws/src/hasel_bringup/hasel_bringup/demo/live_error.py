@@ -6,11 +6,11 @@ from pathlib import Path
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
+from hasel_common.endpoints import Role, subscription
+from hasel_common.spinning import node_alone
+from hasel_common.topics import DIAGNOSTICS, ERROR, NAMESPACE, SIMULATED
 from hasel_interfaces.msg import RunningError
 from hasel_interfaces.srv import LoadModel
-from hasel_recording.endpoints import Role, subscription
-from hasel_recording.spinning import node_alone
-from hasel_recording.topics import DIAGNOSTICS, ERROR, NAMESPACE, SIMULATED
 from rclpy.executors import SingleThreadedExecutor
 
 from hasel_bringup.demo.processes import Processes

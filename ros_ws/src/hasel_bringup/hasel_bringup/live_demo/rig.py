@@ -6,11 +6,11 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from typing import Any
 
+from hasel_common.endpoints import Role, subscription
+from hasel_common.spinning import BackgroundSpin, node_alone
+from hasel_common.topics import ERROR, MEASURED, NAMESPACE, SIMULATED, STATE, relative
 from hasel_interfaces.action import RunExperiment
 from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
-from hasel_recording.endpoints import Role, subscription
-from hasel_recording.spinning import BackgroundSpin, node_alone
-from hasel_recording.topics import ERROR, MEASURED, NAMESPACE, SIMULATED, STATE, relative
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState
 from rcl_interfaces.srv import SetParameters

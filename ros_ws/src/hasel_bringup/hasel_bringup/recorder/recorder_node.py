@@ -8,14 +8,14 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+from hasel_common.declared_parameters import declare
+from hasel_common.endpoints import Role, subscription
+from hasel_common.provenance import provenance
+from hasel_common.topics import ERROR, MEASURED, NAMESPACE, SIMULATED, STATE, relative
 from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
 from hasel_recording import RecordingError
-from hasel_recording.declared_parameters import declare
-from hasel_recording.endpoints import Role, subscription
 from hasel_recording.mcap_recorder import McapRecorder
 from hasel_recording.message_fields import nanoseconds
-from hasel_recording.provenance import provenance
-from hasel_recording.topics import ERROR, MEASURED, NAMESPACE, SIMULATED, STATE, relative
 from hasel_sim.node_process import run_node
 from rclpy.node import Node
 from std_srvs.srv import Trigger

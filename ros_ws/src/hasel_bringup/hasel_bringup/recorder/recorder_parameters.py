@@ -1,6 +1,6 @@
 """Parameters of the recorder."""
 
-from hasel_recording.node_parameter import NodeParameter
+from hasel_common.node_parameter import NodeParameter
 
 PARAMETERS = (
     NodeParameter("folder", "recordings", "into which recordings are written", changeable=True),

@@ -5,8 +5,8 @@ import sys
 from collections.abc import Sequence
 
 import rclpy
+from hasel_common.spinning import quiet_at_shutdown
 from hasel_recording import RecordingError, read_recordings
-from hasel_recording.spinning import quiet_at_shutdown
 from rich.progress import Progress
 
 from hasel_bringup.errors import BringupError

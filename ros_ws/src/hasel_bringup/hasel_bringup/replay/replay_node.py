@@ -5,10 +5,10 @@ import time
 from collections.abc import Sequence
 
 from builtin_interfaces.msg import Time
+from hasel_common.endpoints import Role, frame_of, publisher
+from hasel_common.topics import MEASURED, NAMESPACE, STATE
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_recording.drive_channel import HASEL_PAIR
-from hasel_recording.endpoints import Role, frame_of, publisher
-from hasel_recording.topics import MEASURED, NAMESPACE, STATE
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock

@@ -12,10 +12,10 @@ from functools import partial
 
 import cv2
 import numpy as np
+from hasel_common.declared_parameters import declare
+from hasel_common.endpoints import Role, frame_of, publisher, subscription
+from hasel_common.topics import MEASURED, NAMESPACE, STATE
 from hasel_interfaces.msg import BendingAngle, SupplyState
-from hasel_recording.declared_parameters import declare
-from hasel_recording.endpoints import Role, frame_of, publisher, subscription
-from hasel_recording.topics import MEASURED, NAMESPACE, STATE
 from hasel_sim.errors import HaselSimError
 from hasel_sim.node_process import run_node
 from hasel_sim.simulator_messages import to_nanoseconds, to_time

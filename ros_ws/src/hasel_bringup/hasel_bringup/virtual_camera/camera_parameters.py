@@ -1,6 +1,6 @@
 """Parameters of the virtual camera."""
 
-from hasel_recording.node_parameter import NodeParameter
+from hasel_common.node_parameter import NodeParameter
 
 PARAMETERS = (
     NodeParameter(

@@ -1,6 +1,6 @@
 """What can be hidden in the virtual swimmer."""
 
-from hasel_sim.errors import nearest_name
+from hasel_common.names import nearest_name
 
 from hasel_bringup.errors import BringupError
 

@@ -3,10 +3,10 @@
 import time
 
 import numpy as np
+from hasel_common.declared_parameters import declare, words
+from hasel_common.endpoints import Role, frame_of, publisher, subscription
+from hasel_common.topics import MEASURED, NAMESPACE, STATE
 from hasel_interfaces.msg import BendingAngle, SupplyState
-from hasel_recording.declared_parameters import declare, words
-from hasel_recording.endpoints import Role, frame_of, publisher, subscription
-from hasel_recording.topics import MEASURED, NAMESPACE, STATE
 from hasel_sim.live.live_model import live_model
 from hasel_sim.live.repeated_warnings import RepeatedWarnings
 from hasel_sim.simulator_messages import angle_message, rig_voltage, to_nanoseconds

@@ -1,6 +1,6 @@
 """Parameters of the virtual body."""
 
-from hasel_recording.node_parameter import NodeParameter
+from hasel_common.node_parameter import NodeParameter
 
 PARAMETERS = (
     NodeParameter("model", "swimmer", "model of the truth: its name or file"),

@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 
 import pytest
 import yaml
-from hasel_recording.topics import FRAMES, SIMULATED, SWIMMER, TOPIC_TYPES
+from hasel_common.topics import FRAMES, SIMULATED, SWIMMER, TOPIC_TYPES
 
 FOLDER = Path(__file__).resolve().parents[2] / "layouts"
 PREVIEW = "/hasel/hasel_tracker/preview/compressed"

@@ -3,8 +3,8 @@
 import time
 
 import rclpy
+from hasel_common.spinning import node_alone
 from hasel_interfaces.msg import SupplyState
-from hasel_recording.spinning import node_alone
 from rclpy.executors import SingleThreadedExecutor
 
 PATIENCE_S = 10.0

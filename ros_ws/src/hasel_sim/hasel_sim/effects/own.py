@@ -7,10 +7,12 @@ from importlib.util import decode_source
 from pathlib import Path
 from types import ModuleType
 
+from hasel_common.names import nearest_name
+
 from hasel_sim.effects.base import DriveEffect, Effect, ForceEffect, MaterialEffect, ObservationEffect
 from hasel_sim.effects.checks import check_effect
 from hasel_sim.effects.registry import catalogue
-from hasel_sim.errors import ModelError, nearest_name
+from hasel_sim.errors import ModelError
 
 _PLACES = (DriveEffect, ForceEffect, MaterialEffect, ObservationEffect)
 

@@ -7,9 +7,11 @@ import pkgutil
 from functools import cache
 from pathlib import Path
 
+from hasel_common.names import nearest_name
+
 from hasel_sim import effects
 from hasel_sim.effects.base import DriveEffect, Effect, ForceEffect, MaterialEffect, ObservationEffect
-from hasel_sim.errors import ModelError, nearest_name
+from hasel_sim.errors import ModelError
 
 _PLACES = (DriveEffect, ForceEffect, MaterialEffect, ObservationEffect)
 

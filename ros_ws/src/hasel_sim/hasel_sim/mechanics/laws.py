@@ -6,9 +6,9 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from hasel_common.names import nearest_name
 
 from hasel_sim.effects.base import Effect
-from hasel_sim.errors import nearest_name
 
 OF_THE_DRIVE = ("voltage", "contraction", "time")
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
-from hasel_sim.errors import nearest_name
+from hasel_common.names import nearest_name
 
 if TYPE_CHECKING:
     from hasel_sim.model.actuation import Muscle

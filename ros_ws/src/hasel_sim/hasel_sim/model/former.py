@@ -1,6 +1,8 @@
 """Model files of the former two kinds of body, `swimmer` and `rectangle`, read as descriptions of today."""
 
-from hasel_sim.errors import ModelError, nearest_name
+from hasel_common.names import nearest_name
+
+from hasel_sim.errors import ModelError
 
 _LENGTHS = ("body_length_m", "fin_length_m", "spine_thickness_m", "largest_half_height_m")
 _KEYS = {

@@ -2,9 +2,9 @@
 
 from typing import Any
 
+from hasel_common.names import nearest_name
 from pydantic import model_validator
 
-from hasel_sim.errors import nearest_name
 from hasel_sim.model.section import Positive, Section
 
 FLUIDS: dict[str, tuple[float, float]] = {

@@ -6,12 +6,13 @@ from functools import cached_property
 from types import SimpleNamespace
 
 import numpy as np
+from hasel_common.names import nearest_name
 from pydantic import ValidationError
 
 from hasel_sim.drive.amplitudes import AmplitudeTable, amplitude_tables
 from hasel_sim.effects.base import Effect
 from hasel_sim.effects.registry import find_effects
-from hasel_sim.errors import ModelError, nearest_name
+from hasel_sim.errors import ModelError
 from hasel_sim.model.constants import constants, unit_of, with_constants
 from hasel_sim.model.covariance import covariance_of, uncorrelated, with_covariance
 from hasel_sim.model.description import Description, Numerics

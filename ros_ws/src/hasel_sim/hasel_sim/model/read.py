@@ -7,12 +7,13 @@ from dataclasses import replace
 from importlib import resources
 from pathlib import Path
 
+from hasel_common.names import nearest_name
 from pydantic import ValidationError
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from hasel_sim.effects.base import Effect
-from hasel_sim.errors import ModelError, nearest_name
+from hasel_sim.errors import ModelError
 from hasel_sim.model.constants import constants, unit_of
 from hasel_sim.model.description import Description, ParameterEntry
 from hasel_sim.model.former import is_former, translated

@@ -1,8 +1,8 @@
 """Turn a validation error into one sentence: what was found, what was expected, what to do."""
 
+from hasel_common.names import nearest_name
 from pydantic import BaseModel, ValidationError
 
-from hasel_sim.errors import nearest_name
 from hasel_sim.model import actuation, body, description, medium, muscle_law, pouch_section
 
 _SECTIONS: dict[str, type[BaseModel]] = {

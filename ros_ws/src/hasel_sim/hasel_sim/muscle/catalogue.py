@@ -5,7 +5,9 @@ import inspect
 import pkgutil
 from functools import cache
 
-from hasel_sim.errors import ModelError, nearest_name
+from hasel_common.names import nearest_name
+
+from hasel_sim.errors import ModelError
 from hasel_sim.muscle import effects
 from hasel_sim.muscle.effect import MuscleEffect
 

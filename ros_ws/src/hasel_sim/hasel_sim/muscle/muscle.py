@@ -6,8 +6,9 @@ from functools import cached_property
 from types import SimpleNamespace
 
 import numpy as np
+from hasel_common.names import nearest_name
 
-from hasel_sim.errors import ModelError, nearest_name
+from hasel_sim.errors import ModelError
 from hasel_sim.model.covariance import covariance_of, with_covariance
 from hasel_sim.model.parameter import Parameter
 from hasel_sim.muscle.catalogue import find_muscle_effects

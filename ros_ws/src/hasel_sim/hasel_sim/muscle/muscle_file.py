@@ -6,11 +6,12 @@ from importlib import resources
 from io import StringIO
 from pathlib import Path
 
+from hasel_common.names import nearest_name
 from pydantic import Field, ValidationError
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
-from hasel_sim.errors import ModelError, nearest_name
+from hasel_sim.errors import ModelError
 from hasel_sim.model.description import ParameterEntry
 from hasel_sim.model.parameter import Parameter
 from hasel_sim.model.pouch_section import PouchSection

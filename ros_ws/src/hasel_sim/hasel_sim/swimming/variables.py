@@ -5,8 +5,9 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
+from hasel_common.names import nearest_name
 
-from hasel_sim.errors import SimulationError, nearest_name
+from hasel_sim.errors import SimulationError
 from hasel_sim.mesh.outline import half_height
 from hasel_sim.model import Model
 from hasel_sim.model.constants import REST_CONTRACTION, constants, outline_names

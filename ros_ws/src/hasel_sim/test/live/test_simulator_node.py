@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
+from hasel_common.endpoints import Role
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_interfaces.srv import AddEffect, LoadModel, RemoveEffect
-from hasel_recording.endpoints import Role
 from hasel_sim.live.live_simulator import LiveSimulator
 from hasel_sim.simulator_messages import to_nanoseconds, to_time
 from hasel_sim.simulator_node import SimulatorNode

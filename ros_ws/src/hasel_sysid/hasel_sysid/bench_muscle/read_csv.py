@@ -4,12 +4,13 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+from hasel_common.names import nearest
 from hasel_recording.column_map import own_column, unit_at_the_end
 from hasel_recording.csv_columns import TIME_UNITS, Column
 from hasel_recording.csv_numbers import CsvNumbers
 from hasel_recording.csv_text import CsvText, read_text
 from hasel_recording.drive_channel import UNITS
-from hasel_recording.errors import RecordingError, nearest
+from hasel_recording.errors import RecordingError
 
 from hasel_sysid.bench_muscle.recording import BenchRecording
 

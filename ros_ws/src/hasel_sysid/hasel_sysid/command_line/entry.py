@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable
 from importlib import import_module
 
-from hasel_recording.command_entry import command
+from hasel_common.command_entry import command
 
 from hasel_sysid.command_line import parsers, specimen_parsers
 

@@ -4,8 +4,8 @@ import sys
 import warnings
 from collections.abc import Callable
 
+from hasel_common.command_entry import BAD_INPUT, INTERRUPTED, in_a_sentence
 from hasel_recording import RecordingError, RecordingWarning
-from hasel_recording.command_entry import BAD_INPUT, INTERRUPTED, in_a_sentence
 from hasel_sim.errors import HaselSimError
 
 from hasel_sysid.errors import SysidError

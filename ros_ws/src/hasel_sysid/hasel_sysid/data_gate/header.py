@@ -1,7 +1,7 @@
 """Faults of the header lines: values that are not understood, keys that are misspelt."""
 
+from hasel_common.names import nearest
 from hasel_recording import Recording
-from hasel_recording.errors import nearest
 from hasel_recording.header_keys import KNOWN_KEYS
 
 from hasel_sysid.data_gate.finding import Finding, error, warning

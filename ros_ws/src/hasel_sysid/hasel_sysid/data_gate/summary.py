@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from hasel_common.provenance import without_provenance
 from hasel_recording import DriveChannel, Recording
-from hasel_recording.provenance import without_provenance
 
 from hasel_sysid.data_gate.check import check_recording
 from hasel_sysid.data_gate.finding import Finding, Severity

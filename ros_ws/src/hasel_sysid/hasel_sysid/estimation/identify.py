@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from hasel_sim.errors import nearest_name
+from hasel_common.names import nearest_name
 from hasel_sim.model import Model
 
 from hasel_sysid.errors import SysidError

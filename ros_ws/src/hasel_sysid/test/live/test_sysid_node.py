@@ -8,11 +8,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import rclpy
+from hasel_common.endpoints import Role
+from hasel_common.topics import MEASURED, SIMULATED, STATE
 from hasel_interfaces.msg import BendingAngle, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import Recording
-from hasel_recording.endpoints import Role
-from hasel_recording.topics import MEASURED, SIMULATED, STATE
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import load_model, save_model
 from hasel_sim.run import Run

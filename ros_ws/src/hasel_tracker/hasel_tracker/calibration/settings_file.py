@@ -1,11 +1,11 @@
 """Tracker settings as a ROS 2 parameter file, read by the node and by the commands alike."""
 
 from dataclasses import asdict, fields
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
 import yaml
+from hasel_common.names import nearest
 
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.tracking.colour_gate import ColourRange
@@ -57,7 +57,7 @@ def load_settings(path: Path) -> TrackerSettings:
         ) from error
     for key in values:
         if key not in COLOUR_KEYS + SEARCH_KEYS:
-            near = get_close_matches(key, COLOUR_KEYS + SEARCH_KEYS, 1, 0.0)[0]
+            near = nearest(key, COLOUR_KEYS + SEARCH_KEYS, similarity=0.0)
             raise TrackerError(
                 f"The settings {path} have '{key}', which is not known; did you mean '{near}'?"
             )

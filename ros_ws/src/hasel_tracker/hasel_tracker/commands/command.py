@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from hasel_recording.command_entry import in_a_sentence
+from hasel_common.command_entry import in_a_sentence
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 

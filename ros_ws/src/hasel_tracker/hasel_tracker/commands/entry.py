@@ -1,6 +1,6 @@
 """Where the executables begin: options are read before anything heavy is imported, so that --help answers at once."""
 
-from hasel_recording.command_entry import command
+from hasel_common.command_entry import command
 
 from hasel_tracker.commands import parsers
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from hasel_common.topics import DRIVE, MEASURED, STATE
 from hasel_recording import (
     HASEL_PAIR,
     DriveChannel,
@@ -16,7 +17,6 @@ from hasel_recording import (
 )
 from hasel_recording.bending_angle_message import bending_angle_message
 from hasel_recording.mcap_writer import state_message
-from hasel_recording.topics import DRIVE, MEASURED, STATE
 
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.offline.drive import Alignment, Drive, after_the_drive

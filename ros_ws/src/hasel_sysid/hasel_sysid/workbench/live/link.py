@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from hasel_common.endpoints import Role, subscription
+from hasel_common.spinning import BackgroundSpin, node_alone
+from hasel_common.topics import MEASURED, SIMULATED, STATE
 from hasel_interfaces.action import RunExperiment
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_interfaces.srv import LoadModel
-from hasel_recording.endpoints import Role, subscription
-from hasel_recording.spinning import BackgroundSpin, node_alone
-from hasel_recording.topics import MEASURED, SIMULATED, STATE
 from hasel_sim.simulator_messages import rig_voltage, to_nanoseconds
 from rclpy.action import ActionClient
 from std_srvs.srv import Trigger

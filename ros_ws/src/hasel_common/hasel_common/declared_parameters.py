@@ -8,8 +8,8 @@ from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValu
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from hasel_recording.errors import nearest
-from hasel_recording.node_parameter import NodeParameter
+from hasel_common.names import nearest
+from hasel_common.node_parameter import NodeParameter
 
 
 def descriptor(parameter: NodeParameter, checked_elsewhere: bool = False) -> ParameterDescriptor:

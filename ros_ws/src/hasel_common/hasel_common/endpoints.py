@@ -16,7 +16,7 @@ from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPo
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.subscription import Subscription
 
-from hasel_recording.topics import relative
+from hasel_common.topics import relative
 
 STEADY = Clock(clock_type=ClockType.STEADY_TIME)  # goes on while a replay's /clock stands still
 
@@ -44,7 +44,7 @@ class Role(Enum):
 
 
 def publisher(node: Node, kind: type, topic: str, role: Role, **options: Any) -> Publisher:
-    """Publish on a topic of `hasel_recording.topics` in the node's namespace."""
+    """Publish on a topic of `hasel_common.topics` in the node's namespace."""
     return node.create_publisher(
         kind,
         relative(topic),
@@ -57,7 +57,7 @@ def publisher(node: Node, kind: type, topic: str, role: Role, **options: Any) ->
 def subscription(
     node: Node, kind: type, topic: str, heard: Callable[..., Any], role: Role, **options: Any
 ) -> Subscription:
-    """Hear a topic of `hasel_recording.topics` in the node's namespace."""
+    """Hear a topic of `hasel_common.topics` in the node's namespace."""
     return node.create_subscription(
         kind,
         relative(topic),

@@ -1,6 +1,6 @@
 """Who made a recording, in its header lines."""
 
-from hasel_recording.provenance import provenance, without_provenance
+from hasel_common.provenance import provenance, without_provenance
 
 
 def test_what_the_run_is_about_is_told_from_who_recorded_it():

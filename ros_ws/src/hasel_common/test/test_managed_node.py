@@ -7,8 +7,8 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
 
 import rclpy
-from hasel_recording.autostart import AUTOSTART
-from hasel_recording.managed_node import ManagedNode, Return, start_and_spin
+from hasel_common.managed_node import ManagedNode, Return, start_and_spin
+from hasel_common.node_parameter import AUTOSTART
 
 
 class Lamp(ManagedNode):

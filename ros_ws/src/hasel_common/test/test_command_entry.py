@@ -8,19 +8,23 @@ import sys
 from pathlib import Path
 
 import pytest
-from hasel_recording.command_entry import command, of_system
+from hasel_common.command_entry import command, of_system
 
-CSV = "time_s,sin_theta\n0,0.1\n0.01,0.2\n0.02,0.1\n"
-INFO = [
-    sys.executable,
-    "-c",
-    "import sys; from hasel_recording.command_line import info_main; sys.exit(info_main())",
-]
+COUNTS = """
+import sys
+from pathlib import Path
+from hasel_common.command_entry import command
+@command
+def main():
+    print(f"\\u03b8 of {len(Path('run.csv').read_text().splitlines())} frames, home {Path.home().is_dir()}")
+sys.exit(main())
+"""
+PROGRAM = [sys.executable, "-c", COUNTS]
 
 
-def run(folder: Path, *arguments: str, program: list[str] = INFO, **environment: str):
+def run(folder: Path, *arguments: str, program: list[str] = PROGRAM, **environment: str):
     """A command in a folder of its own, with some of its environment changed; '' removes a variable."""
-    (folder / "run.csv").write_text(CSV)
+    (folder / "run.csv").write_text("0.1\n0.2\n0.1\n")
     surroundings = {**os.environ, **environment}
     surroundings = {key: value for key, value in surroundings.items() if value}
     return subprocess.run(
@@ -42,9 +46,9 @@ def run(folder: Path, *arguments: str, program: list[str] = INFO, **environment:
 )
 def test_surroundings_change_nothing(tmp_path, environment):
     """Another locale, no home or a notebook's settings: the command does its work, at worst with a '?'."""
-    done = run(tmp_path, "run.csv", **environment)
+    done = run(tmp_path, **environment)
     assert done.returncode == 0, done.stderr
-    assert b"3 frames" in done.stdout
+    assert b"3 frames, home True" in done.stdout
     assert sorted(path.name for path in tmp_path.iterdir()) == ["run.csv"]
 
 
@@ -53,7 +57,7 @@ def test_a_file_of_the_lab_beside_the_data_is_left_alone(tmp_path):
     (tmp_path / "signal.py").write_text("raise SystemExit('the wrong signal')\n")
     program = (
         "import sys, os\nimport multiprocessing as m\n"
-        "from hasel_recording.command_entry import command\n"
+        "from hasel_common.command_entry import command\n"
         "@command\ndef main():\n"
         "    with m.get_context('forkserver').Pool(1) as pool:\n        print(pool.apply(os.getcwd))\n"
         "if __name__ == '__main__':\n    sys.exit(main())\n"

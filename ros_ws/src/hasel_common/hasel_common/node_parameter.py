@@ -3,6 +3,9 @@
 from dataclasses import dataclass
 from typing import Any
 
+AUTOSTART = "autostart", True, "configure and activate at the start; false: wait for the lifecycle's services"
+"""Of every node with a lifecycle: name, default and meaning."""
+
 
 @dataclass(frozen=True)
 class NodeParameter:

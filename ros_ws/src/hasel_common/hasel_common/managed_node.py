@@ -3,8 +3,8 @@
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 
-from hasel_recording.autostart import AUTOSTART
-from hasel_recording.spinning import spin
+from hasel_common.node_parameter import AUTOSTART
+from hasel_common.spinning import spin
 
 Return = TransitionCallbackReturn
 

@@ -1,0 +1,1 @@
+"""What every package needs around its own work: commands, nodes, parameters, topics and provenance."""
