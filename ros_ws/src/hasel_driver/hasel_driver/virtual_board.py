@@ -5,7 +5,6 @@ from dataclasses import dataclass, field, replace
 
 from hasel_driver import protocol
 from hasel_driver.calibration import Calibration
-from hasel_driver.errors import ProtocolError
 from hasel_driver.faults import FaultCode
 from hasel_driver.ground import Ground
 from hasel_driver.latch import Latch
@@ -14,7 +13,6 @@ from hasel_driver.line_buffer import LineBuffer
 from hasel_driver.mode import Mode
 from hasel_driver.monitor_watch import MonitorWatch
 from hasel_driver.virtual_bridge import VirtualBridge
-from hasel_driver.virtual_commands import SETTINGS, RefusalError, execute
 from hasel_driver.virtual_ground import (
     GROUND_PROOF_MS,
     LEAK_MS,
@@ -33,6 +31,17 @@ DISCREPANCY_MS = 500  # the interlock's channels may differ that long
 WATCHDOG_MS = 250
 MONITOR_V, MONITOR_A = 10_000.0, 1e-3  # ends of the monitors' ranges
 MONITOR_STEPS = 1023
+
+# quantity: (least, most, at boot)
+SETTINGS: dict[str, tuple[int, int, int]] = {
+    "MAXIMUM": (0, 9_800, 0),
+    "SLEW": (1, 2_000, 250),
+    "TRIP": (1, 980, 450),
+    "HEARTBEAT": (100, 2_000, 500),
+    "DEADTIME": (2, 50, 5),
+    "CONTACTS": (0, 1, 0),
+    "TELEMETRY": (10, 1_000, 10),
+}
 
 
 @dataclass
@@ -65,7 +74,7 @@ class Hardware:
 
 
 class VirtualBoard:
-    """Reads command bytes, is advanced by the millisecond, and collects its output in `transmitted`."""
+    """Commanded by `virtual_commands.receive`, advanced by the millisecond; collects its output in `transmitted`."""
 
     def __init__(self, muscles: tuple[VirtualMuscle, VirtualMuscle] | None = None) -> None:
         self.muscles = muscles or (VirtualMuscle(), VirtualMuscle())
@@ -91,12 +100,12 @@ class VirtualBoard:
         self.monitors = (MonitorWatch(), MonitorWatch())
         self._stale_ms = STALE_MS
         self._converted_v: tuple[float, float] = (0.0, 0.0)
-        self._time_ms = self._heartbeat_ms = self._telemetry_ms = self._unfed_ms = self._discrepancy_ms = 0
+        self._time_ms = self.heartbeat_ms = self._telemetry_ms = self._unfed_ms = self._discrepancy_ms = 0
         self._charged_ms = [0, 0]
         self._over_ms = dict.fromkeys((FaultCode.INTERLOCK, FaultCode.OVERCURRENT, FaultCode.OVERVOLTAGE), 0)
-        self._sequence = 0
-        self._lines = LineBuffer()
-        self._send("!BOOT " + " ".join(protocol.IDENTITY) + f" reset={cause}")
+        self.sequence = 0  # of the last command
+        self.lines = LineBuffer()
+        self.send("!BOOT " + " ".join(protocol.IDENTITY) + f" reset={cause}")
         for latch, code in (
             (Latch.UNPROVEN, FaultCode.NOT_GROUNDED),
             (Latch.DISAGREED, FaultCode.DISCREPANCY),
@@ -144,11 +153,6 @@ class VirtualBoard:
         )
         self._converted_v = (-upper if self.hardware.inverted else upper, lower)
 
-    def receive(self, data: bytes) -> None:
-        """Bytes from the host."""
-        for line in self._lines.feed(data):
-            self._obey(line)
-
     def tick(self) -> None:
         """One millisecond of board and muscles."""
         self._unfed_ms += 1
@@ -170,7 +174,7 @@ class VirtualBoard:
 
     def _control(self) -> None:
         self._time_ms += 1
-        self._heartbeat_ms += 1
+        self.heartbeat_ms += 1
         self._stale_ms = self._stale_ms + 1 if self.hardware.unconverted else 0
         if self._stale_ms >= BLIND_MS:
             self.fail(FaultCode.MONITOR)
@@ -231,7 +235,7 @@ class VirtualBoard:
                 self.fail(FaultCode.NOT_GROUNDED)
 
     def _watch(self) -> None:
-        if self._heartbeat_ms > self.settings["HEARTBEAT"]:
+        if self.heartbeat_ms > self.settings["HEARTBEAT"]:
             self.fail(FaultCode.HEARTBEAT)
         # A monitor at the end of its range cannot tell how much there is: that too is more than allowed.
         last = (MONITOR_STEPS - 1) / MONITOR_STEPS
@@ -263,7 +267,7 @@ class VirtualBoard:
         self.waveform_ms += 1
         if time_s >= self.waveform.duration_s:
             self.set_voltage((0, 0))
-            self._send("!WAVEFORM DONE")
+            self.send("!WAVEFORM DONE")
             return 0, 0
         upper, lower = (self._clip(round(value)) for value in self.waveform.voltage(time_s))
         return upper, lower
@@ -299,7 +303,7 @@ class VirtualBoard:
         )
         self.transmitted += protocol.encode_telemetry(report)
 
-    def _send(self, text: str) -> None:
+    def send(self, text: str) -> None:
         self.transmitted += protocol.encode(text)
 
     def release(self, mode: Mode) -> None:
@@ -315,36 +319,9 @@ class VirtualBoard:
             self.latches.add(Latch.UNPROVEN)
         if self.fault is FaultCode.NONE:
             self.fault = code
-            self._send(f"!FAULT {int(code)} {code.name}")
+            self.send(f"!FAULT {int(code)} {code.name}")
 
     def set_voltage(self, voltage: tuple[int, int]) -> None:
         """Ask for a voltage [V], within MAXIMUM; ends a waveform."""
         self.voltage, self.waveform_ms = voltage, None
         self.mode = Mode.ACTIVE if any(voltage) else Mode.ARMED
-
-    def _obey(self, line: bytes) -> None:
-        try:
-            command = protocol.parse_command(line)
-        except ProtocolError:
-            self._refuse_line(line)
-            return
-        if self.mode.may_be_live and command.sequence != (self._sequence + 1) % protocol.SEQUENCE_MODULUS:
-            self.fail(FaultCode.SEQUENCE)
-            self._send(f"<{command.sequence:03d} ERR SEQUENCE " + " ".join(command.words))
-            return
-        self._sequence, self._heartbeat_ms = command.sequence, 0
-        try:
-            answer = "OK " + execute(self, command.words)
-        except RefusalError as refusal:
-            answer = f"ERR {refusal} " + " ".join(command.words)
-        self._send(f"<{command.sequence:03d} {answer}")
-
-    def _refuse_line(self, line: bytes) -> None:
-        try:
-            protocol.decode(line)
-        except ProtocolError:
-            self._send("<--- ERR CHECKSUM")
-        else:
-            self._send("<--- ERR SYNTAX")
-        if self.mode.may_be_live:
-            self.fail(FaultCode.GARBAGE)

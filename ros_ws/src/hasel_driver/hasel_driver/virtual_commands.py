@@ -2,31 +2,16 @@
 
 import re
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from hasel_driver import protocol
 from hasel_driver.calibration import CALIBRATION_RANGES, Calibration
-from hasel_driver.errors import LimitError
+from hasel_driver.errors import LimitError, ProtocolError
 from hasel_driver.faults import FaultCode
 from hasel_driver.latch import Latch
 from hasel_driver.limits import LEAST_PULSE_V
 from hasel_driver.mode import Mode
+from hasel_driver.virtual_board import SETTINGS, VirtualBoard
 from hasel_driver.waveform import Waveform
-
-if TYPE_CHECKING:
-    from hasel_driver.virtual_board import VirtualBoard
-
-# quantity: (least, most, at boot)
-SETTINGS: dict[str, tuple[int, int, int]] = {
-    "MAXIMUM": (0, 9_800, 0),
-    "SLEW": (1, 2_000, 250),
-    "TRIP": (1, 980, 450),
-    "HEARTBEAT": (100, 2_000, 500),
-    "DEADTIME": (2, 50, 5),
-    "CONTACTS": (0, 1, 0),
-    "TELEMETRY": (10, 1_000, 10),
-}
-
 
 CHANNELS = ("upper", "lower")
 
@@ -35,7 +20,42 @@ class RefusalError(Exception):
     """A command that is answered with ERR and this reason."""
 
 
-def execute(board: "VirtualBoard", words: tuple[str, ...]) -> str:
+def receive(board: VirtualBoard, data: bytes) -> None:
+    """Bytes from the host: obey every whole line, and answer it."""
+    for line in board.lines.feed(data):
+        _obey(board, line)
+
+
+def _obey(board: VirtualBoard, line: bytes) -> None:
+    try:
+        command = protocol.parse_command(line)
+    except ProtocolError:
+        _refuse_line(board, line)
+        return
+    if board.mode.may_be_live and command.sequence != (board.sequence + 1) % protocol.SEQUENCE_MODULUS:
+        board.fail(FaultCode.SEQUENCE)
+        board.send(f"<{command.sequence:03d} ERR SEQUENCE " + " ".join(command.words))
+        return
+    board.sequence, board.heartbeat_ms = command.sequence, 0
+    try:
+        answer = "OK " + _execute(board, command.words)
+    except RefusalError as refusal:
+        answer = f"ERR {refusal} " + " ".join(command.words)
+    board.send(f"<{command.sequence:03d} {answer}")
+
+
+def _refuse_line(board: VirtualBoard, line: bytes) -> None:
+    try:
+        protocol.decode(line)
+    except ProtocolError:
+        board.send("<--- ERR CHECKSUM")
+    else:
+        board.send("<--- ERR SYNTAX")
+    if board.mode.may_be_live:
+        board.fail(FaultCode.GARBAGE)
+
+
+def _execute(board: VirtualBoard, words: tuple[str, ...]) -> str:
     """Obey a command; the words of the reply after OK. Raises RefusalError."""
     simple: dict[str, Callable[[], None]] = {
         "PING": lambda: None,
@@ -67,7 +87,7 @@ def execute(board: "VirtualBoard", words: tuple[str, ...]) -> str:
     return f"{words[1]} {_value(board, words[1])}"
 
 
-def _value(board: "VirtualBoard", quantity: str) -> str:
+def _value(board: VirtualBoard, quantity: str) -> str:
     if quantity == "IDENTITY":
         return " ".join(protocol.IDENTITY)
     if quantity == "VOLTAGE":
@@ -81,7 +101,7 @@ def _value(board: "VirtualBoard", quantity: str) -> str:
     raise RefusalError("UNKNOWN")
 
 
-def _set(board: "VirtualBoard", quantity: str, arguments: tuple[str, ...]) -> None:
+def _set(board: VirtualBoard, quantity: str, arguments: tuple[str, ...]) -> None:
     if quantity == "VOLTAGE":
         _require(board.mode.may_be_live and board.proof is None)
         most = board.settings["MAXIMUM"]
@@ -98,7 +118,7 @@ def _set(board: "VirtualBoard", quantity: str, arguments: tuple[str, ...]) -> No
         raise RefusalError("UNKNOWN")
 
 
-def _set_calibration(board: "VirtualBoard", arguments: tuple[str, ...]) -> None:
+def _set_calibration(board: VirtualBoard, arguments: tuple[str, ...]) -> None:
     if len(arguments) != 5 or arguments[0] not in CHANNELS:
         raise RefusalError("SYNTAX")
     values = _integers(arguments[1:], 4)
@@ -110,7 +130,7 @@ def _set_calibration(board: "VirtualBoard", arguments: tuple[str, ...]) -> None:
     board.calibrations_damaged = False
 
 
-def _set_setting(board: "VirtualBoard", quantity: str, arguments: tuple[str, ...]) -> None:
+def _set_setting(board: VirtualBoard, quantity: str, arguments: tuple[str, ...]) -> None:
     if board.mode.may_be_live and quantity not in ("MAXIMUM", "TELEMETRY"):
         raise RefusalError("STATE")
     least, most, _ = SETTINGS[quantity]
@@ -126,7 +146,7 @@ def _set_setting(board: "VirtualBoard", quantity: str, arguments: tuple[str, ...
         board.lower_maximum()
 
 
-def _parse_waveform(board: "VirtualBoard", arguments: tuple[str, ...]) -> Waveform:
+def _parse_waveform(board: VirtualBoard, arguments: tuple[str, ...]) -> Waveform:
     if len(arguments) != 7:
         raise RefusalError("SYNTAX")
     voltage, frequency, periods, duty = _integers(arguments[1:5], 4)
@@ -149,7 +169,7 @@ def _require(allowed: bool) -> None:
         raise RefusalError("STATE")
 
 
-def _require_safe(board: "VirtualBoard") -> None:
+def _require_safe(board: VirtualBoard) -> None:
     if not all(board.interlock_closed):
         raise RefusalError("INTERLOCK")
     if Latch.DISAGREED in board.latches:
@@ -160,28 +180,28 @@ def _require_safe(board: "VirtualBoard") -> None:
         raise RefusalError("UNPROVEN")
 
 
-def _require_pulse(board: "VirtualBoard") -> None:
+def _require_pulse(board: VirtualBoard) -> None:
     if board.settings["MAXIMUM"] < LEAST_PULSE_V:
         raise RefusalError("MAXIMUM")
 
 
-def _arm(board: "VirtualBoard") -> None:
+def _arm(board: VirtualBoard) -> None:
     _require(board.mode is Mode.STANDBY)
     _require_safe(board)
     _require_pulse(board)
     board.begin_proof()
 
 
-def _ground(board: "VirtualBoard") -> None:
+def _ground(board: VirtualBoard) -> None:
     _require(board.mode.may_be_live and board.proof is None)
     board.release(Mode.ARMED)
 
 
-def _disarm(board: "VirtualBoard") -> None:
+def _disarm(board: VirtualBoard) -> None:
     board.release(Mode.STANDBY if board.fault is FaultCode.NONE else Mode.FAULT)
 
 
-def _clear(board: "VirtualBoard") -> None:
+def _clear(board: VirtualBoard) -> None:
     _require(board.mode is Mode.FAULT)
     _require_safe(board)
     if Latch.UNPROVEN in board.latches:
@@ -191,7 +211,7 @@ def _clear(board: "VirtualBoard") -> None:
         board.mode, board.fault = Mode.STANDBY, FaultCode.NONE
 
 
-def _start(board: "VirtualBoard") -> None:
+def _start(board: VirtualBoard) -> None:
     _require(board.mode is Mode.ARMED)
     board.mode, board.waveform_ms = Mode.ACTIVE, 0
 

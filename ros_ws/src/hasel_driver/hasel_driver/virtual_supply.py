@@ -21,6 +21,7 @@ from hasel_common.node_usage import user_arguments
 from hasel_driver.errors import PortError
 from hasel_driver.pseudo_terminal import PseudoTerminal
 from hasel_driver.virtual_board import Hardware, VirtualBoard
+from hasel_driver.virtual_commands import receive
 from hasel_driver.virtual_muscle import Contact, VirtualMuscle
 
 LIVE_V = 50.0  # extra-low-voltage bound used in the tests' question "is the output dead?"
@@ -109,7 +110,7 @@ class VirtualSupply:
             for upper, lower in _SET_VOLTAGE.findall(data):
                 self._tell(f"wire {now_s:.6f} {upper.decode()} {lower.decode()}")
         if not self._faults & {"deaf", "stuck"}:
-            self.board.receive(data)
+            receive(self.board, data)
 
     def _advance(self) -> None:
         due_ms = int((time.monotonic() - self._ticked_s) * 1e3)

@@ -8,7 +8,7 @@ import pytest
 from hasel_driver import protocol
 from hasel_driver.ground import Ground
 from hasel_driver.mode import Mode
-from hasel_driver.virtual_commands import SETTINGS
+from hasel_driver.virtual_board import SETTINGS
 from hasel_driver.waveform import MUSCLES, POLARITIES, SHAPES, Waveform
 
 WORDS = [

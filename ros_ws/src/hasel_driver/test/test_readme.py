@@ -8,7 +8,7 @@ from hasel_driver.checks import CHECKS
 from hasel_driver.faults import EXPLANATIONS, FaultCode
 from hasel_driver.mode import Mode
 from hasel_driver.parameters import PARAMETERS
-from hasel_driver.virtual_commands import SETTINGS
+from hasel_driver.virtual_board import SETTINGS
 
 PACKAGE = Path(__file__).parents[1]
 README = (PACKAGE / "README.md").read_text()

@@ -3,6 +3,7 @@
 from hasel_driver import protocol
 from hasel_driver.mode import Mode
 from hasel_driver.virtual_board import VirtualBoard
+from hasel_driver.virtual_commands import receive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -48,15 +49,15 @@ def test_is_live_only_while_armed_and_heard(steps):
     for kind, value in steps:
         if kind == "command":
             sequence += 1
-            board.receive(protocol.encode_command(sequence % 256, *value.split()))
+            receive(board, protocol.encode_command(sequence % 256, *value.split()))
             armed = armed or value == "ARM"
             silent_ms = 0
         elif kind == "bytes":
-            board.receive(value)
+            receive(board, value)
         elif kind == "line":
-            board.receive(protocol.encode(value))
+            receive(board, protocol.encode(value))
         elif kind == "words":
-            board.receive(protocol.encode(f">{(sequence + 1) % 256:03d} {value}"))
+            receive(board, protocol.encode(f">{(sequence + 1) % 256:03d} {value}"))
             sequence, silent_ms = sequence + 1, 0
             armed = armed or value.startswith("ARM")
         elif kind == "reset":
@@ -82,7 +83,7 @@ def test_a_reset_forgets_everything_but_the_charge():
     """After a reset the board is grounded, disarmed and at its default settings."""
     board = VirtualBoard()
     for sequence, words in enumerate(("SET MAXIMUM 3000", "ARM", "SET VOLTAGE 3000 0")):
-        board.receive(protocol.encode_command(sequence, *words.split()))
+        receive(board, protocol.encode_command(sequence, *words.split()))
         for _ in range(150):
             board.tick()
     assert board.muscles[0].voltage_v > 2990

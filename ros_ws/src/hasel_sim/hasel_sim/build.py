@@ -4,9 +4,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from hasel_sim.compiled_loops import announce_compilation
 from hasel_sim.effects.base import Coefficients, Effect, EffectParameter, ForceEffect, MaterialEffect
 from hasel_sim.effects.guarded import guarded
-from hasel_sim.first_run import announce_compilation
 from hasel_sim.mechanics.branches import Branches
 from hasel_sim.mechanics.force_law import ForceLaw
 from hasel_sim.mechanics.inertia import Mass, add_tip_plate, element_masses

@@ -11,7 +11,7 @@ import numpy as np
 from hasel_sim.adjoint.step_back import StepBack
 from hasel_sim.adjoint.weights import StateWeights, green_pulled_back, history_pulled_back
 from hasel_sim.mechanics.initial import start_of_motion
-from hasel_sim.mechanics.linearisation import StrainedSystem
+from hasel_sim.mechanics.linearisation import StrainedSystem, linearise
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.residual_slopes import NoSlope, ResidualSlope, SolidSlope
 from hasel_sim.mechanics.state import State
@@ -84,7 +84,7 @@ def reverse_start(
         return out
     still = np.zeros_like(position)
     motion = Motion(state.position, still, still)
-    line = system.linearise(motion, drive, Memory(), load_factor)
+    line = linearise(system, motion, drive, Memory(), load_factor)
     multiplier = equilibrium_multiplier(line, system.held_to_zero(position[None])[0])
     return out + _by_parameter(parameters, motion, drive, line, None, 0.0, multiplier, load_factor)
 

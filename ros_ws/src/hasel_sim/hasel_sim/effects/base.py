@@ -94,15 +94,7 @@ class Effect:
     source: ClassVar[str | None] = None
     """`path/to/file.py:ClassName` for a user's own effect."""
     text: ClassVar[str] = ""
-    """The file of a user's own effect, from which other processes rebuild it."""
-
-    def __reduce__(self) -> tuple:
-        if self.source is None:
-            return type(self), ()
-        from hasel_sim.effects.own import rebuild_own_effect
-
-        path, _, kind = self.source.rpartition(":")
-        return rebuild_own_effect, (path, kind, self.text)
+    """The file of a user's own effect."""
 
     def null(self) -> dict[str, float]:
         """Parameter values at which the effect does nothing."""

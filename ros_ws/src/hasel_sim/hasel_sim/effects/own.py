@@ -1,6 +1,7 @@
 """A user's own effect, read from a Python file outside the package and checked before it is used."""
 
 import sys
+from collections.abc import Container
 from functools import lru_cache
 from hashlib import sha256
 from importlib.util import decode_source
@@ -11,24 +12,23 @@ from hasel_common.names import nearest_name
 
 from hasel_sim.effects.base import DriveEffect, Effect, ForceEffect, MaterialEffect, ObservationEffect
 from hasel_sim.effects.checks import check_effect
-from hasel_sim.effects.registry import catalogue
 from hasel_sim.errors import ModelError
 
 _PLACES = (DriveEffect, ForceEffect, MaterialEffect, ObservationEffect)
 
 
-def load_own_effect(path: Path, kind: str) -> Effect:
+def load_own_effect(path: Path, kind: str, taken: Container[str] = ()) -> Effect:
     """The effect of class `kind` in a Python file; its id is the class's name unless it declares another.
 
-    Raises ModelError when the file or class is missing, or when the effect fails a check; the message says what to
-    change.
+    taken: ids that it must not have. Raises ModelError when the file or class is missing, or when the effect fails a
+    check; the message says what to change.
     """
     if not path.is_file():
         raise ModelError(
             f"there is no file '{path}'; expected path/to/file.py:ClassName of an effect of your own: correct the path"
         )
     effect = rebuild_own_effect(str(path.resolve()), kind, _source(path))
-    if effect.id in catalogue() or not effect.id.isidentifier():
+    if effect.id in taken or not effect.id.isidentifier():
         raise ModelError(
             f"effect '{effect.source}' has the id '{effect.id}', which is taken or no plain name; expected one "
             "of its own: leave id out or choose another"
@@ -64,6 +64,7 @@ def rebuild_own_effect(path: str, kind: str, text: str) -> Effect:
             f"class '{kind}' in '{path}' is no effect; expected a subclass of one of {names}: derive it from one"
         )
     found.id, found.source, found.text = vars(found).get("id", kind), f"{path}:{kind}", text
+    found.__reduce__ = lambda effect: (rebuild_own_effect, (path, kind, text))
     return found()
 
 

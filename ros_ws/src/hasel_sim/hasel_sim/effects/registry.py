@@ -11,6 +11,7 @@ from hasel_common.names import nearest_name
 
 from hasel_sim import effects
 from hasel_sim.effects.base import DriveEffect, Effect, ForceEffect, MaterialEffect, ObservationEffect
+from hasel_sim.effects.own import load_own_effect
 from hasel_sim.errors import ModelError
 
 _PLACES = (DriveEffect, ForceEffect, MaterialEffect, ObservationEffect)
@@ -48,7 +49,5 @@ def _built_in(name: str) -> Effect:
 
 
 def _own(name: str) -> Effect:
-    from hasel_sim.effects.own import load_own_effect
-
     path, _, kind = name.rpartition(":")
-    return load_own_effect(Path(path), kind)
+    return load_own_effect(Path(path), kind, taken=catalogue())

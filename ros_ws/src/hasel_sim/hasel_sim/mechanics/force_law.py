@@ -2,17 +2,14 @@
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from hasel_sim.mechanics.law_terms import SiteGroups, add_site_matrix, site_groups
 from hasel_sim.mechanics.motion import DriveState, Motion
 from hasel_sim.mechanics.site_force import NO_MESH, SiteForce
+from hasel_sim.mechanics.strained import Strained
 from hasel_sim.simd import lane_tuple
-
-if TYPE_CHECKING:
-    from hasel_sim.mechanics.linearisation import StrainedSystem
 
 
 class ForceLaw(SiteForce):
@@ -45,13 +42,13 @@ class ForceLaw(SiteForce):
     def add_slope(
         self,
         name: str,
-        line: "StrainedSystem",
+        at: Strained,
         drive: DriveState,
         factor: float | np.ndarray,
         out: np.ndarray,
     ) -> None:
         """Subtract a factor times the derivative by a parameter from out [nodes, 2, lanes]."""
-        change = self.answers((("p", name), 0), line.motion, drive, NO_MESH)
+        change = self.answers((("p", name), 0), at.motion, drive, NO_MESH)
         self.sites.scatter(-factor * change.transpose(1, 0, 2), out)
 
     def keep(self, response: np.ndarray) -> None:

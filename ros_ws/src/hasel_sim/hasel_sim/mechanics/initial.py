@@ -4,7 +4,7 @@ import numpy as np
 
 from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.banded import BandFactors
-from hasel_sim.mechanics.linearisation import Linearisation
+from hasel_sim.mechanics.linearisation import Linearisation, linearise
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.residual_slopes import ResidualSlope, SolidSlope
 from hasel_sim.mechanics.state import State, StateSlopes
@@ -45,7 +45,7 @@ def initial_state(
         _branch_slopes(system, state, parameters, slopes)
 
     memory = system.memory(state)
-    line = system.linearise(motion, drive, memory)
+    line = linearise(system, motion, drive, memory)
     state.acceleration = (
         -line.matrix(0.0, 0.0, 1.0).factorise().solve(system.residual(motion, drive, memory)[None])[0]
     )
@@ -64,7 +64,7 @@ def start_of_motion(
 ) -> tuple[Motion, Linearisation, BandFactors]:
     """The motion with which a run starts, the derivatives there, and the factors of its inertia."""
     motion = Motion(state.position, state.velocity, state.acceleration)
-    line = system.linearise(motion, drive, system.memory(state))
+    line = linearise(system, motion, drive, system.memory(state))
     return motion, line, line.matrix(0.0, 0.0, 1.0).factorise()
 
 
@@ -77,7 +77,7 @@ def _held(system: System, drive: DriveState, shape: np.ndarray) -> tuple[np.ndar
     position = shape[..., None].copy()
     position[: system.held, :, 0] = system.nodes[: system.held]
     still = np.zeros_like(position)
-    return position, system.linearise(Motion(position, still, still), drive, Memory())
+    return position, linearise(system, Motion(position, still, still), drive, Memory())
 
 
 def _residual_slopes(

@@ -1,23 +1,19 @@
 """The derivatives of a mechanical system's residual at one motion."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from hasel_sim.mechanics import assembly
 from hasel_sim.mechanics.banded import BandMatrix
-from hasel_sim.mechanics.motion import DriveState, Motion
+from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.strained import Strained
+from hasel_sim.mechanics.system import System
 from hasel_sim.simd import lane_tuple
-
-if TYPE_CHECKING:
-    from hasel_sim.mechanics.system import System
 
 
 class StrainedSystem(Strained):
     """A `System` at one motion."""
 
-    def __init__(self, system: "System", motion: Motion) -> None:
+    def __init__(self, system: System, motion: Motion) -> None:
         super().__init__(system.solid, motion)
         self.system = system
 
@@ -44,7 +40,7 @@ class Linearisation(StrainedSystem):
 
     def __init__(
         self,
-        system: "System",
+        system: System,
         motion: Motion,
         elastic: np.ndarray,
         viscous: np.ndarray,
@@ -128,3 +124,16 @@ class Linearisation(StrainedSystem):
         for law in self.system.forces:
             law.add_pulled_back(self._load_factor * weights, list(out))
         return self.system.held_to_zero(out)
+
+
+def linearise(
+    system: System, motion: Motion, drive: DriveState, memory: Memory, load_factor: float = 1.0
+) -> Linearisation:
+    """All derivatives of a system's residual by the motion, at this motion; valid until the next call."""
+    at = system.strain(motion)
+    elastic, viscous = system.solid.moduli(at.F, at.rate, drive.contraction, memory.history, memory.step)
+    for law in system.stresses:
+        law.add_moduli(at, drive, elastic, viscous)
+    for law in system.forces:
+        law.linearise(motion, drive)
+    return Linearisation(system, motion, elastic, viscous, load_factor)

@@ -7,7 +7,7 @@ in the shape that these loads and its own inertia bend it into ("inertia relief"
 import numpy as np
 
 from hasel_sim.errors import SimulationError
-from hasel_sim.mechanics.linearisation import Linearisation
+from hasel_sim.mechanics.linearisation import Linearisation, linearise
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.system import System
 
@@ -31,7 +31,7 @@ def equilibrium(
     def linearised(at: np.ndarray) -> tuple[np.ndarray, Linearisation]:
         motion = Motion(at, still, still)
         residual = system.residual(motion, drive, Memory(), load_factor)
-        return residual, system.linearise(motion, drive, Memory(), load_factor)
+        return residual, linearise(system, motion, drive, Memory(), load_factor)
 
     first, line = linearised(position)
     inertia = _inertia_of_unheld_motions(line)

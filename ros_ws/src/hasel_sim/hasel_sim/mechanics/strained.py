@@ -12,19 +12,19 @@ class Strained:
     """A `Solid` at one motion; arrays are [elements, points, 4, lanes]."""
 
     def __init__(self, solid: Solid, motion: Motion) -> None:
-        self._solid, self.motion = solid, motion
+        self.solid, self.motion = solid, motion
 
     @property
     def places(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """What the compiled loops know of the mesh."""
-        return self._solid.places
+        return self.solid.places
 
     @cached_property
     def F(self) -> np.ndarray:
         """Deformation gradient [1]."""
-        return self._solid.gradient(self.motion.position)
+        return self.solid.gradient(self.motion.position)
 
     @cached_property
     def rate(self) -> np.ndarray:
         """Its rate [1/s]."""
-        return self._solid.gradient(self.motion.velocity)
+        return self.solid.gradient(self.motion.velocity)

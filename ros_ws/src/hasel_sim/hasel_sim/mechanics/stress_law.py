@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from copy import copy
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -28,9 +28,6 @@ from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.simd import lane_tuple
 from hasel_sim.tape.law import Law, stress_law
 from hasel_sim.tape.tracing import NotTraceableError
-
-if TYPE_CHECKING:
-    from hasel_sim.mechanics.linearisation import StrainedSystem
 
 _DIFFERENCE = {"deformation": 1e-6, "rate": 1e-4}
 _Points = on_demand(MaterialPoints, ("time",))
@@ -133,15 +130,15 @@ class StressLaw:
     def add_slope(
         self,
         name: str,
-        line: "StrainedSystem",
+        at: Strained,
         drive: DriveState,
         factor: float | np.ndarray,
         out: np.ndarray,
     ) -> None:
         """Add the nodal forces of the derivative by a parameter to out [nodes, 2, lanes]; no load, whatever factor."""
-        P = np.zeros_like(line.F)
-        P[self.elements] = self._by_element(self.answers((("p", name), 0), line.motion, drive, line.places))
-        line.system.solid.add_force(P, out)
+        P = np.zeros_like(at.F)
+        P[self.elements] = self._by_element(self.answers((("p", name), 0), at.motion, drive, at.places))
+        at.solid.add_force(P, out)
 
     def _rows(self, motion: Motion, mesh: Places, copies: Copies = ALONE) -> Callable[[str], np.ndarray]:
         """F and its rate, by name, in copies of the points here, [copies, lanes, n, 4]."""

@@ -8,7 +8,6 @@ import numpy as np
 from hasel_sim.mechanics import strain
 from hasel_sim.mechanics.force_law import ForceLaw
 from hasel_sim.mechanics.inertia import Mass
-from hasel_sim.mechanics.linearisation import Linearisation
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from hasel_sim.mechanics.solid import Solid
 from hasel_sim.mechanics.state import State
@@ -107,18 +106,6 @@ class System:
         out = np.empty((*P.shape[:2], 3, self.lanes))
         strain.second_piola(F, P, out, lane_tuple(self.lanes))
         return out
-
-    def linearise(
-        self, motion: Motion, drive: DriveState, memory: Memory, load_factor: float = 1.0
-    ) -> Linearisation:
-        """All derivatives of the residual by the motion, at this motion; valid until the next call."""
-        at = self.strain(motion)
-        elastic, viscous = self.solid.moduli(at.F, at.rate, drive.contraction, memory.history, memory.step)
-        for law in self.stresses:
-            law.add_moduli(at, drive, elastic, viscous)
-        for law in self.forces:
-            law.linearise(motion, drive)
-        return Linearisation(self, motion, elastic, viscous, load_factor)
 
     def held_to_zero(self, columns: np.ndarray) -> np.ndarray:
         """Set the held nodes of [columns, nodes, 2, lanes] to zero in place, and return it."""

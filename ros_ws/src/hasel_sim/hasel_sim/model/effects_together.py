@@ -1,15 +1,11 @@
 """Which effects can stand side by side on a body."""
 
-from typing import TYPE_CHECKING
-
 from hasel_sim.effects.base import Effect
 from hasel_sim.errors import ModelError
-
-if TYPE_CHECKING:
-    from hasel_sim.model.model import Model
+from hasel_sim.model.description import Description
 
 
-def check_together(effects: tuple[Effect, ...], model: "Model") -> None:
+def check_together(effects: tuple[Effect, ...], body: Description) -> None:
     """Refuse effects that cannot stand side by side, or not on this body, with a ModelError."""
     seen: dict[str, str] = {}
     for effect in effects:
@@ -20,30 +16,30 @@ def check_together(effects: tuple[Effect, ...], model: "Model") -> None:
                     f"effect '{effect.id}' {reason}; expected one of each kind: remove one of the two"
                 )
             seen[word] = effect.id
-        if effect.needs_muscles and not model.has_muscles:
+        if effect.needs_muscles and not body.muscles:
             raise ModelError(
-                f"effect '{effect.id}' acts on the muscles, and model '{model.name}' has none; "
+                f"effect '{effect.id}' acts on the muscles, and model '{body.name}' has none; "
                 "remove it or use a model with muscles"
             )
-        if effect.needs_spine and not model.has_spine:
+        if effect.needs_spine and body.body.spine is None:
             raise ModelError(
-                f"effect '{effect.id}' acts on the spine, and model '{model.name}' has none; "
+                f"effect '{effect.id}' acts on the spine, and model '{body.name}' has none; "
                 "remove it or use a model whose body has a spine"
             )
-        count = len(model.description.muscles)
+        count = len(body.muscles)
         if effect.needs_antagonists and count != 2:
             raise ModelError(
-                f"effect '{effect.id}' compares two muscles, and model '{model.name}' has {count}; remove it or use a "
+                f"effect '{effect.id}' compares two muscles, and model '{body.name}' has {count}; remove it or use a "
                 "model with two"
             )
-        if effect.needs_medium and model.description.medium is None:
+        if effect.needs_medium and body.medium is None:
             raise ModelError(
-                f"effect '{effect.id}' is a force of the fluid around the body, and model '{model.name}' names none; "
+                f"effect '{effect.id}' is a force of the fluid around the body, and model '{body.name}' names none; "
                 "remove it or add a section medium"
             )
-        quantities = sorted({channel.quantity for channel in model.description.channels})
+        quantities = sorted({channel.quantity for channel in body.channels})
         if effect.quantity and effect.quantity not in quantities:
             raise ModelError(
-                f"effect '{effect.id}' acts on a {effect.quantity}, and model '{model.name}' is driven by "
+                f"effect '{effect.id}' acts on a {effect.quantity}, and model '{body.name}' is driven by "
                 f"{', '.join(quantities) or 'nothing'}; remove it or use a model with such a channel"
             )

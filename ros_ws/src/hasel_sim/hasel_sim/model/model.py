@@ -225,7 +225,7 @@ class Model:
     def with_effects(self, *names: str) -> "Model":
         """A copy with further effects at their null values. Raises ModelError for unknown, duplicate or unfit ones."""
         effects = (*self.effects, *find_effects(names))
-        check_together(effects, self)
+        check_together(effects, self.description)
         parameters = dict(self.parameters)
         for effect in effects[len(self.effects) :]:
             for p in effect.parameters:

@@ -7,7 +7,7 @@ import pytest
 from hasel_sim.adjoint.step_back import StepBack
 from hasel_sim.adjoint.trajectory import follow
 from hasel_sim.errors import SimulationError
-from hasel_sim.mechanics.linearisation import StrainedSystem
+from hasel_sim.mechanics.linearisation import StrainedSystem, linearise
 from hasel_sim.model import load_model
 from hasel_sim.prepared_run import PreparedRun
 from hasel_sim.run import Run
@@ -30,7 +30,7 @@ def test_the_way_back_is_that_of_the_matrices_and_ends_where_the_body_is_held(pa
     reached, c = np.random.default_rng(1).normal(size=step.motion.position.shape), step.coefficients
     at = StrainedSystem(system, step.motion)
     multiplier, pulled = StepBack(system).pull(step, at, reached)
-    line = system.linearise(step.motion, step.drive, system.memory(step.before, c.at))
+    line = linearise(system, step.motion, step.drive, system.memory(step.before, c.at))
     matrix = line.matrix(c.position, c.velocity, c.acceleration).factorise()
     solved = -matrix.solve(reached[None], transposed=True)[0]
     assert system.held > 0

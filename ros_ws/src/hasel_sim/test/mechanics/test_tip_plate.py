@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sim.build import Builder
+from hasel_sim.mechanics.linearisation import linearise
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
 from scipy.linalg import eigh
 from scipy.optimize import brentq
@@ -26,8 +27,8 @@ def _frequency(model) -> float:
     builder = Builder(model)
     system, nodes = builder.system(), builder.nodes[..., None]
     still = np.zeros_like(nodes)
-    line = system.linearise(
-        Motion(nodes, still, still), DriveState.single(np.zeros(0), np.zeros(0), 0.0), Memory()
+    line = linearise(
+        system, Motion(nodes, still, still), DriveState.single(np.zeros(0), np.zeros(0), 0.0), Memory()
     )
     columns = np.eye(2 * len(still)).reshape(-1, *still.shape)
     stiffness = line.along(columns, np.zeros_like(columns), np.zeros_like(columns)).reshape(len(columns), -1)
