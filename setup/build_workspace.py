@@ -65,7 +65,13 @@ def colcon_build(root: Path, packages: list[str]) -> int:
     python = sys.executable  # colcon's too: it becomes the interpreter of the executables
     command = [python, "-m", "colcon", "--log-level", "error", "--log-base", "log", "build"]
     command += ["--base-paths", "ros_ws/src", "--merge-install", "--packages-select", *packages]
-    command += ["--cmake-args", "-DCMAKE_BUILD_TYPE=Release", "-DBUILD_TESTING=OFF", "-Wno-dev"]
+    command += [
+        "--cmake-args",
+        "-DCMAKE_BUILD_TYPE=Release",
+        "-DBUILD_TESTING=OFF",
+        "-Wno-dev",
+        "--no-warn-unused-cli",
+    ]
     command += [f"-DPython3_EXECUTABLE={python}", f"-DPYTHON_EXECUTABLE={python}"]
     environment = {
         k: v for k, v in os.environ.items() if k != "PYTHONDONTWRITEBYTECODE"

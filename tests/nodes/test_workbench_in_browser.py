@@ -8,8 +8,8 @@ import pytest
 from hasel_bringup.demo.processes import Processes
 from hasel_bringup.errors import BringupError
 from hasel_bringup.live_demo.rig import Rig
-from hasel_sysid.workbench.bench.browser import Browser, find_browser
-from hasel_sysid.workbench.bench.browser_page import BrowserPage
+from hasel_workbench.bench.browser import Browser, find_browser
+from hasel_workbench.bench.browser_page import BrowserPage
 
 pytest.importorskip("nicegui", reason="NiceGUI is not installed: the extra `workbench`")
 pytestmark = pytest.mark.skipif(

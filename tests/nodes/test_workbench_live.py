@@ -12,7 +12,7 @@ from hasel_interfaces.msg import SupplyState
 from hasel_sim.model import load_model, save_model
 from hasel_sysid.errors import SysidError
 from hasel_sysid.suggest import Manoeuvre
-from hasel_sysid.workbench.live.rig import Rig
+from hasel_workbench.live.rig import Rig
 from std_srvs.srv import Trigger
 
 _UNARMED = ("STANDBY", "FAULT")  # the latter where this machine held up the virtual board

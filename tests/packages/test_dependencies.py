@@ -22,7 +22,9 @@ MAY_IMPORT = {
     "hasel_tracker": BELOW,
     "hasel_sim": BELOW,
     "hasel_sysid": BELOW | SIDE_BY_SIDE,
-    "hasel_bringup": BELOW | SIDE_BY_SIDE | {"hasel_sysid"},
+    "hasel_muscle": BELOW | SIDE_BY_SIDE | {"hasel_sysid"},
+    "hasel_workbench": BELOW | SIDE_BY_SIDE | {"hasel_sysid", "hasel_muscle"},
+    "hasel_bringup": BELOW | SIDE_BY_SIDE | {"hasel_sysid", "hasel_muscle", "hasel_workbench"},
 }
 ROSDEP_KEYS = {
     "cv2": "python3-opencv",
@@ -138,7 +140,7 @@ def normalised(requirement: str) -> str:
 
 @each_package
 def test_imports_go_downwards(package):
-    """interfaces < common < recording < driver, tracker, sim < sysid < bringup < benchmark."""
+    """interfaces < common < recording < driver, tracker, sim < sysid < muscle < workbench < bringup < benchmark."""
     allowed = MAY_IMPORT.get(package.name, {path.name for path in PACKAGES}) | {package.name}
     upward = {
         f"{file.relative_to(ROOT)} imports {name}"

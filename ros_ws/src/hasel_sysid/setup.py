@@ -6,7 +6,7 @@ setup(
     name=PACKAGE,
     version="0.1.0",
     packages=find_packages(exclude=["test", "test.*"]),
-    package_data={PACKAGE: ["py.typed", "report/templates/*", "workbench/page/static/*"]},
+    package_data={PACKAGE: ["py.typed", "report/templates/*"]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml", "CHANGELOG.rst"]),
@@ -26,7 +26,6 @@ setup(
     extras_require={
         "adam": ["torch>=2"],
         "cluster": ["distributed"],
-        "workbench": ["nicegui>=3,<4", "fastapi", "websockets"],
         "test": ["fastapi", "pytest", "pytest-timeout", "statsmodels", "websockets"],
     },
     zip_safe=False,
@@ -43,9 +42,7 @@ setup(
             "diagnose = hasel_sysid.command_line.entry:diagnose",
             "improve = hasel_sysid.command_line.entry:improve",
             "suggest = hasel_sysid.command_line.entry:suggest",
-            "bench_muscle = hasel_sysid.command_line.entry:bench_muscle",
             "measured_fish = hasel_sysid.command_line.entry:measured_fish",
-            "workbench = hasel_sysid.command_line.entry:workbench",
             "add = hasel_sysid.command_line.entry:add",
             "remove = hasel_sysid.command_line.entry:remove",
             "convert = hasel_sysid.command_line.convert:main",

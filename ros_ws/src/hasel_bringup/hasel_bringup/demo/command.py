@@ -8,8 +8,9 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
+from hasel_muscle import command as bench_muscle
 from hasel_recording import RecordingError, read_recording
-from hasel_sysid.command_line import bench_muscle, fit, improve, measured_fish
+from hasel_sysid.command_line import fit, improve, measured_fish
 from hasel_sysid.command_line.running import MISLEADING
 from hasel_sysid.errors import SysidError
 from hasel_sysid.measured_fish.reading import filmed_runs
@@ -87,7 +88,7 @@ class Demo:
         """The command that opens these runs in the workbench."""
         folder = self.fitted[0].parent
         runs = f"{folder}/fit_*.csv --validate {folder}/val_*.csv"
-        return f"bin/ros2 run hasel_sysid workbench {runs} --output {self.output / 'workbench'}"
+        return f"bin/ros2 run hasel_workbench workbench {runs} --output {self.output / 'workbench'}"
 
     def _step(self, title: str, work: Callable[[], None]) -> None:
         self._console.rule(f"[bold]{escape(title)}", align="left")

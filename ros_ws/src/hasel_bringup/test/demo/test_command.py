@@ -28,7 +28,7 @@ def test_it_says_how_to_go_on_by_hand(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(demo, "_step", lambda title, work: None)
     demo.run()
     said = capsys.readouterr().out
-    command = re.search(r"bin/ros2 run hasel_sysid workbench (\S+) --validate (\S+) --output", said)
+    command = re.search(r"bin/ros2 run hasel_workbench workbench (\S+) --validate (\S+) --output", said)
     assert [Path(pattern).parent for pattern in command.groups()] == [DATA, DATA]
     assert [len(list(DATA.glob(Path(pattern).name))) for pattern in command.groups()] == [9, 3]
     assert (ROOT / "bin" / "ros2").exists()

@@ -48,21 +48,9 @@ def suggest() -> int:
 
 
 @command
-def bench_muscle() -> int:
-    """`bench_muscle RECORDING…`."""
-    return _run(specimen_parsers.bench_muscle_parser, "bench_muscle")
-
-
-@command
 def measured_fish() -> int:
     """`measured_fish DIR`."""
     return _run(specimen_parsers.measured_fish_parser, "measured_fish")
-
-
-@command
-def workbench() -> int:
-    """`workbench [RECORDING…]`."""
-    return _run(parsers.workbench_parser, "workbench")
 
 
 @command

@@ -36,7 +36,7 @@ def test_help_needs_neither_simulator_nor_scipy():
     "name",
     [
         *("check", "compare", "fit", "diagnose", "improve", "suggest"),
-        *("bench_muscle", "measured_fish", "add", "remove"),
+        *("measured_fish", "add", "remove"),
     ],
 )
 def test_every_executable_has_its_options(name, monkeypatch, capsys):

@@ -7,8 +7,6 @@ import sys
 from pathlib import Path
 
 import pytest
-from hasel_sim.muscle.catalogue import muscle_catalogue
-from hasel_sysid.bench_muscle.read_csv import QUANTITIES
 
 ROOT = Path(__file__).resolve().parents[5]
 README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
@@ -27,24 +25,6 @@ def test_the_program_names_the_drag():
     assert re.sub(number, "", done.stdout) == re.sub(number, "", printed)
     expected = [float(value) for value in re.findall(number, printed)]
     assert [float(value) for value in re.findall(number, done.stdout)] == pytest.approx(expected, rel=0.02)
-
-
-def test_effects_of_the_muscle_are_those_of_the_catalogue():
-    """Every one with its equation, and no other."""
-    section = README.split("## The muscle on its bench")[1]
-    rows = re.findall(
-        r"^\| `(\w+)` \| (.*?) \| (?:voltage|pouch|force|contraction(?:, in time)?) \|$", section, re.M
-    )
-    assert rows == [(name, effect.equation) for name, effect in muscle_catalogue().items()]
-
-
-def test_columns_of_a_bench_are_those_that_are_read():
-    """Every quantity, with all the units that its column may end in."""
-    section = README.split("## The muscle on its bench")[1].split("| effect of the muscle")[0]
-    for quantity, units in QUANTITIES.items():
-        (row,) = re.findall(rf"^\| `{quantity}_(.*)$", section, re.M)
-        named = {row.split("`")[0], *re.findall(r"`_(\w+)`", row)}
-        assert named == set(units), quantity
 
 
 def test_links_lead_somewhere():

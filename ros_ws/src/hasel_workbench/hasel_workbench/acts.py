@@ -1,0 +1,143 @@
+"""What can be done with a session: each gives a step or a finding, and changes nothing."""
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import replace
+from functools import partial
+
+from hasel_sim.errors import SimulationError
+from hasel_sim.model import Model
+from hasel_sysid.dataset import prepared
+from hasel_sysid.diagnosis import Diagnosis
+from hasel_sysid.errors import SysidError
+from hasel_sysid.estimation import FittedModel, identify
+from hasel_sysid.improvement import diagnose
+from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest
+
+from hasel_workbench.cards import source_of
+from hasel_workbench.evaluate import Progress, WatchedProblem, evaluated
+from hasel_workbench.state import State
+from hasel_workbench.step import Step
+
+FIT = "model = h.fit(model, fitted).model"
+_SMALLER = (1.0, 0.5, 0.25)
+"""Shares of an effect's typical size that are tried until one can be simulated."""
+
+
+def nothing_is_tried(state: State) -> None:
+    """Raise SysidError while something is being tried."""
+    if state.trial is not None:
+        raise SysidError(f"'{state.trial.label}' is being tried; keep it or take it back first")
+
+
+def fitted(state: State, pool: Executor, progress: Progress) -> Step:
+    """What is being tried, else the current step, fitted."""
+    shown = state.shown
+    model = prepared(shown.model, state.experiments)
+    problem = WatchedProblem(state.experiments, pool, lambda: progress("fitting", 0.0))
+    result = identify(problem, model, "least_squares", progress)
+    label, did = (shown.label, (*shown.did, FIT)) if state.trial else ("fit", (FIT,))
+    return _evaluated(state, label, result.model, pool, progress, result, did)
+
+
+def diagnosed(state: State, pool: Executor, only: Sequence[str] | None, progress: Progress) -> Diagnosis:
+    """What the current step, which is fitted, may lack."""
+    problem = WatchedProblem(state.experiments, pool, lambda: progress("trying effects", 0.0))
+    return diagnose(problem, state.current.fit, only, progress)
+
+
+def with_effect(
+    state: State, effect: str, only: tuple[str, ...] | None, pool: Executor, progress: Progress
+) -> Step:
+    """The current step with an effect: as fitted in a diagnosis, as expected there, or at its typical size."""
+    current = state.current
+    source = source_of(current.model, effect, only)
+    label, add = f"+ {effect}", f"model = model.with_effects({source!r})"
+    finding = None
+    if state.diagnosis is not None and state.diagnosed == state.at:
+        finding = next((each for each in state.diagnosis.findings if each.effect == effect), None)
+    if finding is not None and finding.fit is not None:
+        values = finding.fit.model.values
+        return _evaluated(
+            state, label, finding.fit.model, pool, progress, finding.fit, (add, _values_line(values))
+        )
+    model = current.model.with_effects(source)
+    for share in _SMALLER:
+        values = _sized(model, effect, share)
+        if finding is not None and finding.expected and finding.is_plausible and share == 1.0:
+            values |= {name: value for name, (value, _) in finding.expected.items()}
+        try:
+            tried = model.with_values(values)
+            return _evaluated(state, label, tried, pool, progress, None, (add, _values_line(values)))
+        except SimulationError:
+            if share == _SMALLER[-1]:
+                raise
+    raise AssertionError
+
+
+def without_effect(state: State, effect: str, pool: Executor, progress: Progress) -> Step:
+    """The current step without one of its effects."""
+    model = state.current.model.without_effects(effect)
+    did = (f"model = model.without_effects({effect!r})",)
+    return _evaluated(state, f"− {effect}", model, pool, progress, None, did)
+
+
+def with_values(state: State, values: Mapping[str, float], pool: Executor, progress: Progress) -> Step:
+    """What is shown, with other values; those outside their bounds are moved onto them."""
+    shown = state.shown
+    known = {name: shown.model.parameter(name) for name in values}
+    values = {
+        name: min(max(float(value), known[name].lower), known[name].upper) for name, value in values.items()
+    }
+    model = shown.model.with_values(values, dict.fromkeys(values))
+    label = shown.label if state.trial else "by hand"
+    did = (*(shown.did if state.trial else ()), _values_line(values))
+    return _evaluated(state, label, model, pool, progress, None, did)
+
+
+def suggestions(state: State, pool: Executor, progress: Progress) -> tuple[Suggestion, ...]:
+    """The runs that best tell apart what the last diagnosis left in doubt, at no more than was driven already."""
+    if state.diagnosis is None:
+        raise SysidError("nothing was diagnosed so far; expected a ranking to decide about: diagnose first")
+    problem = WatchedProblem(state.experiments, pool, lambda: progress("explanations", 0.0))
+    candidates = rivals(state.diagnosis, partial(fitted_briefly, problem))
+    highest = max(state.current.model.levels, default=0.0)
+    found = suggest(pool, candidates, state.diagnosis.noise, float(highest), progress, brief=True)
+    if not found:
+        raise SysidError(
+            "no experiment of the library can be simulated with these explanations: plan it by hand"
+        )
+    return tuple(found)
+
+
+def filed(step: Step, label: str, file: str = "") -> Step:
+    """A step with the name that it has in the history and that of its model file; what was worked out of it stays."""
+    new = replace(step, label=label, file=file)
+    new.__dict__["comparison"] = step.comparison
+    return new
+
+
+def _evaluated(
+    state: State,
+    label: str,
+    model: Model,
+    pool: Executor,
+    progress: Progress,
+    fit: FittedModel | None,
+    did: tuple[str, ...],
+) -> Step:
+    return evaluated(label, model, state.experiments, state.unseen, pool, progress, fit, did)
+
+
+def _sized(model: Model, effect: str, share: float) -> dict[str, float]:
+    """Values of an effect, a share of the way from doing nothing to its typical size."""
+    kind = next(each for each in model.effects if each.id == effect)
+    return {
+        f"{effect}.{p.name}": p.typical if p.scan else p.null + share * (p.typical - p.null)
+        for p in kind.parameters
+    }
+
+
+def _values_line(values: Mapping[str, float]) -> str:
+    numbers = ", ".join(f"{name!r}: {float(value)!r}" for name, value in values.items())
+    return f"model = model.with_values({{{numbers}}})"

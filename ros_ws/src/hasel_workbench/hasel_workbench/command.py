@@ -1,0 +1,98 @@
+"""`workbench [RECORDING…]`: a page in the browser on which the four steps are done by hand."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from contextlib import ExitStack
+from importlib.util import find_spec
+from pathlib import Path
+
+from hasel_recording.reading import drive_of_each
+from hasel_sim.parallel import executor
+from hasel_sysid.command_line.running import run_command
+from hasel_sysid.command_line.workers import workers
+from hasel_sysid.errors import SysidError
+
+from hasel_workbench.options import workbench_parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    return run(workbench_parser().parse_args(arguments))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code."""
+    return run_command(lambda: _serve(options))
+
+
+def _serve(options: argparse.Namespace) -> int:
+    if find_spec("nicegui") is None:
+        raise SysidError(
+            "the workbench needs NiceGUI 3, which is not installed: `pip install 'nicegui>=3,<4'` into the environment "
+            "of this workspace"
+        )
+    from hasel_workbench.jobs import Jobs
+    from hasel_workbench.live.rig import Rig
+    from hasel_workbench.page.server import opening, serve
+    from hasel_workbench.recordings import Reading
+    from hasel_workbench.workbench import Workbench
+
+    certificate = _certificate(options)
+    told = opening(options.host, certificate, options.unencrypted)
+    if told:
+        print(f"note: {told}", file=sys.stderr)
+    paths = [*options.recordings, *options.validate]
+    drives = dict(zip(map(str, paths), drive_of_each(paths, options.drive), strict=True))
+    reading = Reading(options.map, {path: Path(drive) for path, drive in drives.items() if drive is not None})
+    folder = options.output.resolve()
+    jobs, rig = Jobs(), Rig()
+    with ExitStack() as open_:
+        pool = open_.enter_context(workers(options))
+        hand = open_.enter_context(
+            executor(2)
+        )  # processes of their own: what is dragged never waits for a search
+        effects = tuple(options.effects) if options.effects else None
+        session = Workbench(pool, hand, folder, options.model, effects, reading)
+        open_.callback(rig.close)
+        if options.rig and (why := rig.connect(options.namespace)):
+            print(f"note: {why}", file=sys.stderr)
+
+        def begin(progress) -> None:
+            if options.validate:
+                session.load(options.validate, True, progress)
+            session.load(options.recordings, False, progress)
+
+        if paths:
+            jobs.start("load", begin)
+        open_.callback(jobs.cancel)
+        visit = _visit if options.bench else None
+        browser = options.browser and not options.bench
+        port = 0 if options.bench else options.port
+        serve(session, jobs, rig, options.host, port, browser, visit, certificate)
+    return 0
+
+
+def _certificate(options: argparse.Namespace) -> tuple[Path, Path] | None:
+    given = (options.certificate, options.key)
+    if given == (None, None):
+        return None
+    if None in given:
+        raise SysidError("a certificate needs its key; give both --certificate FILE and --key FILE")
+    missing = [str(path) for path in given if not path.is_file()]
+    if missing:
+        raise SysidError(f"there is no file {missing[0]}; check the name of the certificate and of its key")
+    return given
+
+
+def _visit(address: str) -> None:
+    from hasel_workbench.bench.measure import measure
+
+    try:
+        measure(address, lambda line: print(line, flush=True))
+    except SysidError as error:
+        print(f"error: {error}", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,178 @@
+"""One browser page on the session: its parts, and what happens when something changes."""
+
+from collections.abc import Callable
+from html import escape
+from pathlib import Path
+
+from hasel_sysid.errors import SysidError
+from hasel_sysid.report.numbers import error_text
+from nicegui import ui
+from nicegui.events import GenericEventArguments, MultiUploadEventArguments
+
+from hasel_workbench.evaluate import Progress
+from hasel_workbench.jobs import Jobs
+from hasel_workbench.live.rig import Rig
+from hasel_workbench.page.columns_panel import ColumnsPanel
+from hasel_workbench.page.effects_panel import EffectsPanel
+from hasel_workbench.page.history_panel import HistoryPanel
+from hasel_workbench.page.live_panel import LivePanel
+from hasel_workbench.page.runs_panel import RunsPanel
+from hasel_workbench.page.toolbar import Toolbar
+from hasel_workbench.page.view_panel import view_panel
+from hasel_workbench.waterfall import noise_floor
+from hasel_workbench.workbench import Workbench
+
+_LOOK_S = 0.2
+
+
+class Page:
+    """session, jobs, rig: shared by all pages; what one page has of its own is in its browser."""
+
+    def __init__(self, session: Workbench, jobs: Jobs, rig: Rig) -> None:
+        self.session, self.jobs, self.rig = session, jobs, rig
+        self._built, self._drawn = session.version, -1
+        self._told = jobs.said[-1].number if jobs.said else 0
+        self._values: dict[str, float] = {}
+
+    def build(self) -> None:
+        """Lay it out, and begin to look for changes."""
+        self.dark = ui.dark_mode(None)
+        with ui.element("header").classes("wb-head"):
+            ui.html("<h1>HASEL workbench</h1>", sanitize=False)
+            self._numbers()
+            with ui.element("div").classes("wb-corner"):
+                darker = ui.button(icon="dark_mode", on_click=self._darker)
+                darker.props('dense flat round aria-label="light or dark"')
+                self.stop = ui.button("STOP", on_click=self._stop).classes("wb-stop")
+                self.stop.props('color=negative no-caps aria-label="emergency stop: ground the high voltage"')
+            tools = Toolbar(self)
+        with ui.element("main").classes("wb-grid"):
+            with ui.element("div").classes("wb-column"):
+                self.banners()
+                columns = ColumnsPanel(self)
+                runs = RunsPanel(self)
+            with ui.element("div").classes("wb-column middle"):
+                live = LivePanel(self)
+                view_panel()
+                history = HistoryPanel(self)
+            with ui.element("div").classes("wb-column"):
+                effects = EffectsPanel(self)
+        self._panels = (tools, columns, runs, history, effects)
+        self._live, self._tools, self._history = live, tools, history
+        ui.on("wb-values", self._let_go)
+        ui.on("wb-act", self._act)
+        ui.timer(_LOOK_S, self._look)
+
+    def do(self, title: str, work: Callable[[Progress], object], done: str = "") -> None:
+        """Begin long work; where something else is under way, say so."""
+        try:
+            self.jobs.start(title, work, done)
+        except SysidError as error:
+            ui.notify(str(error), type="warning")
+
+    def at_once(self, act: Callable[[], object]) -> None:
+        """Do what takes no time."""
+        try:
+            act()
+        except SysidError as error:
+            ui.notify(str(error), type="warning")
+
+    async def uploaded(self, event: MultiUploadEventArguments, unseen: bool) -> None:
+        """Keep the files that were dropped and load them."""
+        folder = self.session.folder / "uploads"
+        folder.mkdir(parents=True, exist_ok=True)
+        paths = []
+        for file in event.files:
+            path = free_path(folder, Path(file.name).name)
+            await file.save(path)
+            paths.append(path)
+        self.do("load", lambda progress: self.session.load(paths, unseen, progress))
+
+    @ui.refreshable_method
+    def _numbers(self) -> None:
+        state = self.session.state
+        if not state.steps:
+            ui.html("<p>Drop recordings to begin, or open Live beside a running rig.</p>", sanitize=False)
+            return
+        shown = state.shown
+        unseen = (
+            ""
+            if shown.error_unseen is None
+            else _number("wb-error-unseen", shown.error_unseen, "unseen runs")
+        )
+        effects = " + ".join((shown.model.name, *shown.effects))
+        ui.html(
+            f'<div class="wb-numbers" aria-live="polite"><div><b>{escape(effects)}</b><small>model'
+            f"{', tried: ' + escape(state.trial.label) if state.trial else ''}</small></div>"
+            f"{_number('wb-error', shown.error, 'mean |Δ sin θ|, fitted runs')}{unseen}"
+            f"{_number('wb-noise', noise_floor(state), 'noise floor')}</div>",
+            sanitize=False,
+        )
+
+    @ui.refreshable_method
+    def banners(self) -> None:
+        """What must be seen before any number."""
+        found = self.session.state.banners
+        for banner in found:
+            text = f"<b>{banner.severity}</b> {escape(banner.text)}"
+            ui.html(text, sanitize=False).classes(f"wb-banner {banner.severity}").props('role="alert"')
+        if found:
+            dismiss = ui.button("I have read these", on_click=lambda: self.at_once(self.session.dismiss))
+            dismiss.props("dense flat no-caps")
+
+    def _look(self) -> None:
+        """What has changed since the last look?"""
+        version = self.session.version
+        if self._built != version:
+            self._built = version
+            self._numbers.refresh()
+            self.banners.refresh()
+            for panel in self._panels:
+                panel.refresh()
+        if self._drawn != version:
+            self._drawn = version
+            names = [each.name for each in self.session.state.every] if self.session.state.steps else []
+            ui.run_javascript(f"bench.refresh({version}, {names!r})")
+        doing = self.jobs.doing
+        self._tools.look()
+        for said in [each for each in self.jobs.said if each.number > self._told]:
+            self._told = said.number
+            ui.notify(said.text, type=said.severity, multi_line=True, timeout=8000)
+        if doing is None and self._values:
+            values, self._values = self._values, {}
+            self.do("simulate all runs", lambda progress: self.session.set_values(values, progress))
+        self._live.look()
+        self._history.look()
+        self.stop.set_enabled(self.rig.link is not None)  # also while the rig is silent
+
+    def _act(self, event: GenericEventArguments) -> None:
+        """What a run's own buttons ask for."""
+        run, act, session = event.args["run"], event.args["act"], self.session
+        if act == "remove":
+            self.do(f"remove {run}", lambda progress: session.remove(run, progress))
+        else:
+            self.do(f"{act} {run}", lambda progress: session.set_unseen(run, act == "unseen", progress))
+
+    def _let_go(self, event: GenericEventArguments) -> None:
+        self._values |= {name: float(value) for name, value in event.args.items()}
+
+    async def _darker(self) -> None:
+        if self.dark.value is None:  # as the system has it
+            self.dark.value = await ui.run_javascript("document.body.classList.contains('body--dark')")
+        self.dark.value = not self.dark.value
+
+    async def _stop(self) -> None:
+        self.jobs.say("negative", await self.rig.stop())
+
+
+def free_path(folder: Path, name: str) -> Path:
+    """A path of this name that no file has yet: numbered where one has."""
+    path, number = folder / name, 1
+    while path.exists():
+        number += 1
+        path = folder / f"{Path(name).stem}_{number}{Path(name).suffix}"
+    return path
+
+
+def _number(identity: str, value: float, label: str) -> str:
+    return f'<div><b id="{identity}">{error_text(value)}</b><small>{label}</small></div>'

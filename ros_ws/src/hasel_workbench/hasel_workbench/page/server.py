@@ -1,0 +1,128 @@
+"""The web server of the page; it loads nothing from elsewhere."""
+
+import asyncio
+import secrets
+import socket
+from collections.abc import Callable
+from pathlib import Path
+
+from fastapi.middleware.trustedhost import TrustedHostMiddleware
+from hasel_sysid.errors import SysidError
+from nicegui import app, background_tasks, run, ui
+
+from hasel_workbench.jobs import Jobs
+from hasel_workbench.live.rig import Rig
+from hasel_workbench.page.door import Door
+from hasel_workbench.page.page import Page
+from hasel_workbench.page.routes import add_routes
+from hasel_workbench.workbench import Workbench
+
+_STATIC = Path(__file__).with_name("static")
+_SCRIPTS = ("packet.js", "body.js", "curves.js", "tuning.js", "live.js", "bench.js")
+LOOPBACK = ("127.0.0.1", "localhost", "::1")
+
+
+def opening(host: str, certificate: tuple[Path, Path] | None, unencrypted: bool) -> str:
+    """What listening at a host opens, in one sentence; '' for this machine only.
+
+    Raises SysidError where others on the network would be let in without a certificate and without being told so.
+    """
+    if host in LOOPBACK:
+        return ""
+    opens = (
+        f"--host {host} opens the workbench to the network: whoever has its address with the token can run experiments "
+        "on the rig and read recordings and effect files"
+    )
+    if certificate is not None:
+        return f"{opens}."
+    if not unencrypted:
+        raise SysidError(
+            f"{opens}, and without encryption everybody on the way can read the token; give --certificate FILE --key "
+            "FILE, or say --unencrypted where you trust the network"
+        )
+    return f"{opens}; without encryption everybody on the way can read the token."
+
+
+def serve(
+    session: Workbench,
+    jobs: Jobs,
+    rig: Rig,
+    host: str,
+    port: int,
+    show: bool,
+    visit: Callable[[str], None] | None = None,
+    certificate: tuple[Path, Path] | None = None,
+) -> None:
+    """Serve until interrupted; port 0: any that is free. certificate: its file and that of its key, for HTTPS.
+
+    visit: called with the address, in a thread, once the server answers; after it the server ends. Raises SysidError
+    where the port is taken.
+    """
+    port = _free_port(host, port)
+    add_routes(session, rig)
+    (session.folder / "export").mkdir(parents=True, exist_ok=True)
+    app.add_static_files("/workbench", _STATIC)
+    app.add_static_files("/export", session.folder / "export")
+    token = secrets.token_urlsafe(24)
+    app.add_middleware(Door, token=token, port=port)
+    if host in LOOPBACK:  # the outermost: a page elsewhere may give its own name this machine's address
+        app.add_middleware(TrustedHostMiddleware, allowed_hosts=list(LOOPBACK))
+    head = '<link rel="stylesheet" href="/workbench/workbench.css">'
+    head += "".join(f'<script src="/workbench/{name}"></script>' for name in _SCRIPTS)
+
+    @ui.page("/", title="HASEL workbench", language="en-US")
+    def page() -> None:
+        ui.add_head_html(head)
+        Page(session, jobs, rig).build()
+
+    shown = "127.0.0.1" if host in ("0.0.0.0", "::") else f"[{host}]" if ":" in host else host
+    address = f"{'http' if certificate is None else 'https'}://{shown}:{port}/?token={token}"
+    told = f"The workbench is at {address} (Ctrl-C ends it); what is kept is in {session.folder}."
+
+    async def opened() -> None:
+        await _until_open(host, port)
+        print(told, flush=True)
+        if visit is not None:
+            try:
+                await run.io_bound(visit, address)
+            finally:
+                app.shutdown()
+
+    app.on_startup(lambda: background_tasks.create(opened()))
+    ui.run(
+        host=host,
+        port=port,
+        reload=False,
+        show=f"/?token={token}" if show else False,
+        dark=None,
+        title="HASEL workbench",
+        favicon="〰️",
+        show_welcome_message=False,
+        **({} if certificate is None else {"ssl_certfile": certificate[0], "ssl_keyfile": certificate[1]}),
+    )
+
+
+async def _until_open(host: str, port: int) -> None:
+    """Wait until the server answers."""
+    while True:
+        await asyncio.sleep(0.05)
+        try:
+            _, writer = await asyncio.open_connection(host, port)
+        except OSError:
+            continue
+        writer.close()
+        return
+
+
+def _free_port(host: str, port: int) -> int:
+    """The port, once it is known to be free."""
+    with socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET) as tried:
+        tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            tried.bind((host, port))
+        except OSError as error:
+            raise SysidError(
+                f"{host} port {port} cannot be listened at ({error.strerror}): is a workbench there already? Otherwise "
+                "give another --port, or --port 0 for any that is free"
+            ) from None
+        return tried.getsockname()[1]

@@ -1,0 +1,83 @@
+"""All that a session of the workbench knows; never changed, only replaced as a whole."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from hasel_sysid.diagnosis import Diagnosis
+from hasel_sysid.errors import SysidError
+from hasel_sysid.experiment import Experiment
+from hasel_sysid.suggest import Suggestion
+
+from hasel_workbench.step import Step
+
+
+@dataclass(frozen=True)
+class Banner:
+    """A sentence that must be seen before any number; severity: error or warning."""
+
+    severity: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Unread:
+    """A file of rows that could not be read, and the names of its columns; unseen: what it is to be loaded as."""
+
+    path: Path
+    names: tuple[str, ...]
+    unseen: bool = False
+
+
+@dataclass(frozen=True)
+class State:
+    """experiments, unseen: the runs; banners: what is wrong with recordings; steps: the history; at: the current one
+    (those after it were taken back); trial: what is being tried and not yet kept; diagnosis: of the step
+    numbered `diagnosed`; suggestions: runs to make next, the best first; unread: files whose columns are to be named.
+    """
+
+    experiments: tuple[Experiment, ...] = ()
+    unseen: tuple[Experiment, ...] = ()
+    banners: tuple[Banner, ...] = ()
+    steps: tuple[Step, ...] = ()
+    at: int = 0
+    trial: Step | None = None
+    diagnosis: Diagnosis | None = None
+    diagnosed: int = 0
+    suggestions: tuple[Suggestion, ...] = ()
+    unread: tuple[Unread, ...] = ()
+
+    @property
+    def every(self) -> tuple[Experiment, ...]:
+        """All runs, the unseen ones last."""
+        return (*self.experiments, *self.unseen)
+
+    @property
+    def current(self) -> Step:
+        """The last step that was kept. Raises SysidError before any run was loaded."""
+        if not self.steps:
+            raise SysidError("no run was loaded so far; expected at least one: drop .csv or .mcap files")
+        return self.steps[self.at]
+
+    @property
+    def shown(self) -> Step:
+        """What is being tried, else the current step."""
+        return self.trial or self.current
+
+    @property
+    def kept(self) -> tuple[Step, ...]:
+        """The history up to the current step."""
+        return self.steps[: self.at + 1]
+
+    def number_of(self, run: str) -> int:
+        """Number of a run among all of them. Raises SysidError for one that is not there."""
+        names = [each.name for each in self.every]
+        if run not in names:
+            raise SysidError(
+                f"there is no run '{run}'; expected one of: {', '.join(names) or 'none is loaded'}"
+            )
+        return names.index(run)
+
+    def with_step(self, step: Step) -> "State":
+        """With one more step in the history, after the current one."""
+        steps = (*self.kept, step) if self.steps else (step,)
+        return replace(self, steps=steps, at=len(steps) - 1, trial=None)
