@@ -47,15 +47,16 @@ test-slow: build ## the slow tests
 fuzz: build ## readers and parameters against 22,000 damaged inputs (FUZZ_SHARE=0.1: a tenth of them)
 	@$(ENVIRONMENT) && python -m pytest -q -o python_files='fuzz_*.py' -o python_functions='fuzz_*' -o timeout=7200 tests/fuzz
 
-docs: build ## write the reference from the docstrings, build/docs/index.html
+docs: build ## write the site, build/site/index.html, and the reference from the docstrings, build/site/code/index.html
 	@$(ENVIRONMENT) && python -m pip install --quiet --disable-pip-version-check -r docs/requirements.txt
-	@$(ENVIRONMENT) && python -m pdoc --no-show-source -o build/docs $(PACKAGES)
-	@echo "Written: build/docs/index.html"
+	@$(ENVIRONMENT) && NO_MKDOCS_2_WARNING=1 python -m mkdocs build --strict --quiet
+	@$(ENVIRONMENT) && python -m pdoc --no-show-source -o build/site/code $(PACKAGES)
+	@echo "Written: build/site/index.html and build/site/code/index.html"
 
 demo: build ## fit the swimmer, compare on unseen runs, replay one, write report.html (BODY=DIR, MUSCLE=DIR, FISHSIM=DIR: measured ones too)
 	@bin/ros2-run hasel_bringup demo $(foreach folder,$(BODY) $(BEAM),--body $(folder)) $(foreach folder,$(MUSCLE),--muscle $(folder)) $(foreach folder,$(FISHSIM),--fish $(folder))
 
-bench: build ## measure the speeds that docs/results.md states
+bench: build ## measure the speeds that docs/results/index.md states
 	@bin/ros2-run hasel_bringup bench
 	@bin/ros2-run hasel_tracker bench
 

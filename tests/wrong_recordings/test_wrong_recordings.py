@@ -10,7 +10,7 @@ from tests.wrong_recordings.said import faults, sentences, templates
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "ros_ws" / "src"
-PAGE = (SOURCE / "hasel_recording" / "docs" / "wrong_recordings.md").read_text(encoding="utf-8")
+PAGE = (SOURCE.parents[1] / "docs" / "how_to" / "wrong_recordings.md").read_text(encoding="utf-8")
 ROWS = re.findall(r"^\| (?!what is wrong)[^|]+ \| (`+)(.+?)\1 \| [^|]+ \|$", PAGE, flags=re.M)
 QUOTED = [sentence for _, sentence in ROWS]
 

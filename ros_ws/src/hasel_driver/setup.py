@@ -12,7 +12,6 @@ setup(
         (f"share/{PACKAGE}", ["package.xml", "README.md", "CHANGELOG.rst"]),
         (f"share/{PACKAGE}/launch", ["launch/driver.launch.py"]),
         (f"share/{PACKAGE}/security", ["security/policy.xml"]),
-        (f"share/{PACKAGE}/docs", ["docs/hardware.md", "docs/network.md", "docs/safety.md"]),
     ],
     install_requires=["setuptools", "numpy>=1.26", "pyserial>=3.5", "PyYAML"],
     extras_require={"test": ["hypothesis", "pytest", "pytest-timeout"]},

@@ -37,7 +37,7 @@ def reach(environment: MutableMapping[str, str] = os.environ) -> str:
     """Who can command, in words."""
     if _this_machine_only(environment) or environment.get(PROFILES) == str(LOOPBACK):
         return "this machine only"
-    return "EVERY machine that discovers this one: see docs/network.md of hasel_driver"
+    return "EVERY machine that discovers this one: see docs/how_to/network.md"
 
 
 def _this_machine_only(environment: MutableMapping[str, str]) -> bool:

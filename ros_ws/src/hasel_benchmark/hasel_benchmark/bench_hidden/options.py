@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-PAGE = Path("docs/hidden_effects.md")
+PAGE = Path("docs/results/hidden_effects.md")
 KINDS = {
     "nothing": "nothing",
     "single": "single",

@@ -9,7 +9,7 @@ _DOCUMENT = """# Effects
 Written by `ros2 run hasel_sim effects --table`; a test fails when it is stale. `ros2 run hasel_sim effects NAME` prints
 one effect with its sources, its signature in the residual, and the experiment that separates it from its like. At the
 null values the model is exactly the one without the effect. How to write one of your own:
-[effects_of_your_own.md](effects_of_your_own.md).
+[effects_of_your_own.md](../how_to/effects_of_your_own.md).
 """
 
 

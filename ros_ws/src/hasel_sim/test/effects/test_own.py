@@ -20,6 +20,7 @@ from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 
 DOCS = Path(__file__).parents[2] / "docs"
+PAGES = Path(__file__).resolve().parents[5] / "docs"
 EXAMPLE = DOCS / "examples" / "cross_talk.py"
 
 DRAG = """
@@ -102,7 +103,7 @@ def test_the_worked_example_is_short_and_in_the_documentation():
     """The example has at most 30 lines and stands word for word in the documentation."""
     text = EXAMPLE.read_text()
     assert len(text.splitlines()) <= 30
-    assert text.rstrip() in (DOCS / "effects_of_your_own.md").read_text()
+    assert text.rstrip() in (PAGES / "how_to" / "effects_of_your_own.md").read_text()
 
 
 def test_cross_talk_pulls_on_the_resting_muscle(coarse_swimmer, short_boxes):

@@ -1,6 +1,6 @@
 """The façade behind `import hasel_sysid as h`: h.load, h.model, h.simulate, h.fit, h.diagnose, h.improve.
 
-Results print as sentences and plot; docs/api.md lists them.
+Results print as sentences and plot; docs/reference/python.md lists them.
 """
 
 from hasel_sysid.api.results import Diagnosed, Fitted, Improved, Recordings, Simulated

@@ -17,7 +17,8 @@ from hasel_sysid.errors import SysidError
 
 PACKAGE = Path(__file__).parents[2]
 ROOT = PACKAGE.parents[2]
-NOTEBOOK = PACKAGE / "docs" / "first_look.ipynb"
+DOCS = Path(__file__).resolve().parents[5] / "docs"
+NOTEBOOK = DOCS / "tutorial" / "first_look.ipynb"
 RUNNER = """
 import json, os, re, sys
 (notebook,) = sys.argv[1:]
@@ -66,7 +67,7 @@ def test_the_notebook_is_kept_without_results():
 
 def test_every_step_is_on_the_page_with_its_arguments():
     """Names, order and defaults as in the code."""
-    page = (PACKAGE / "docs" / "api.md").read_text(encoding="utf-8")
+    page = (DOCS / "reference" / "python.md").read_text(encoding="utf-8")
     for name in filter(str.islower, hasel_sysid.api.__all__):
         parts = []
         for p in inspect.signature(getattr(h, name)).parameters.values():

@@ -1,0 +1,46 @@
+"""The page's tables say what the code does."""
+
+import re
+from pathlib import Path
+
+import pytest
+from hasel_bringup.recorder.recorder_parameters import PARAMETERS as RECORDER
+from hasel_bringup.virtual_camera.camera_parameters import PARAMETERS as CAMERA
+from hasel_bringup.virtual_rig.body_parameters import PARAMETERS as BODY
+
+PACKAGE = Path(__file__).resolve().parents[1]
+DOCS = Path(__file__).resolve().parents[4] / "docs"
+PAGE = (DOCS / "how_to/launch.md").read_text(encoding="utf-8")
+LAUNCH_FILES = sorted((PACKAGE / "launch").glob("*.launch.py"))
+
+
+def test_commands_are_listed():
+    """Exactly the executables of the package."""
+    executables = re.findall(r'"(\w+) = hasel_bringup', (PACKAGE / "setup.py").read_text(encoding="utf-8"))
+    assert executables
+    assert sorted(re.findall(r"^\| `(\w+)` \| [^|]* \|$", PAGE, flags=re.M)) == sorted(executables)
+
+
+@pytest.mark.parametrize(
+    ("node", "table"), [("recorder", RECORDER), ("virtual_camera", CAMERA), ("virtual_rig", BODY)]
+)
+def test_parameters_are_those_of_the_nodes(node, table):
+    """Every parameter has its row with default, unit and meaning, and no row is about another."""
+    rows = re.findall(rf"^\| {node} \| `(\w+)` \| (\S+) \| (\S*) ?\| (.*) \|$", PAGE, flags=re.M)
+    expected = [
+        (p.name, "none" if p.default == [""] else f"`{p.default}`", p.unit, p.description) for p in table
+    ]
+    assert rows == expected
+
+
+@pytest.mark.parametrize("path", LAUNCH_FILES, ids=lambda path: path.name)
+def test_arguments_are_those_of_the_launch_files(path):
+    """In their order, with the meaning that --show-args tells."""
+    declared = re.findall(
+        r'DeclareLaunchArgument\(\s*"(\w+)".*?description="([^"]+)"',
+        path.read_text(encoding="utf-8"),
+        flags=re.S,
+    )
+    rows = re.findall(rf"^\| `{path.name}` \| `(\w+)` \| .* \| (.*) \|$", PAGE, flags=re.M)
+    assert rows == declared
+    assert len(re.findall(rf"^\| `{path.name}` \| [^`|]", PAGE, flags=re.M)) == 1
