@@ -1,8 +1,8 @@
 """Compare the model with measurements, fit it, and learn which physical effect it lacks.
 
-In Python: `import hasel_sysid as h`, then h.load, h.model, h.simulate, h.fit, h.diagnose, h.improve;
-docs/reference/python.md lists all of it. The façade, `hasel_sysid.api`, is read when one of its names is first asked for: a command imports only what
-it needs.
+In Python: `import hasel_sysid as h`, then h.load, h.model, h.simulate, h.fit, h.diagnose, h.improve; they are listed in
+docs/reference/python.md. The façade, `hasel_sysid.api`, is read when one of its names is first asked for: a command
+imports only what it needs.
 """
 
 from importlib import import_module
