@@ -53,6 +53,8 @@ def remove_old_files(root: Path, name: str) -> None:
     folder = root / "build" / name
     (folder / "source-fingerprint").unlink(missing_ok=True)
     shutil.rmtree(folder / "build", ignore_errors=True)
+    for metadata in (root / "install").glob(f"lib/python*/site-packages/{name}-*.egg-info"):
+        shutil.rmtree(metadata)  # of whatever version
     record = folder / "install.log"
     if record.exists():
         for path in map(Path, record.read_text(encoding="utf-8").splitlines()):

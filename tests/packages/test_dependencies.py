@@ -224,9 +224,14 @@ def test_python_imports_are_pinned(package):
 
 @each_package
 def test_manifest(package):
-    """Each package has the licence, the version of all others and a maintainer."""
+    """Each package has the licence, a maintainer, and the version of the citation and of the newest changelog entry."""
     root = ElementTree.parse(package / "package.xml").getroot()
-    assert (root.findtext("license"), root.findtext("version")) == ("Apache-2.0", "0.1.0")
+    assert root.findtext("license") == "Apache-2.0"
+    assert f"\nversion: {root.findtext('version')}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    newest = re.search(
+        r"^(\d+\.\d+\.\d+) \(\d{4}-\d\d-\d\d\)$", (package / "CHANGELOG.rst").read_text("utf-8"), re.M
+    )
+    assert newest[1] == root.findtext("version")
     assert root.find("maintainer").get("email")
     if (package / "setup.py").exists():
         assert f'version="{root.findtext("version")}"' in (package / "setup.py").read_text(encoding="utf-8")

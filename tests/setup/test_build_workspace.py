@@ -101,6 +101,17 @@ def test_deleted_module_is_uninstalled(root):
     ]
 
 
+def test_of_two_versions_the_former_is_uninstalled(root):
+    """Else the executables would be told that they are of both."""
+    build_workspace.build(root)
+    former = root / "install" / "lib" / "python3.11" / "site-packages" / "beta-0.1.0-py3.11.egg-info"
+    former.mkdir(parents=True)
+    (former / "PKG-INFO").write_text("Version: 0.1.0\n")
+    (root / "ros_ws" / "src" / "beta" / "package.xml").write_text("<package>0.2.0</package>")
+    build_workspace.build(root)
+    assert not former.exists()
+
+
 def test_what_a_failed_build_removed_is_built_again(root):
     """Also when the change that made it fail is taken back."""
     build_workspace.build(root)

@@ -12,7 +12,7 @@ PREFIX = "recorded_by."  # of the header lines; what an experiment is about has 
 
 def provenance(recorder: str, packages: Iterable[str], parameters: Mapping[str, Any]) -> dict[str, str]:
     """Return header lines: the recorder and packages with their versions, the time, and each parameter's value."""
-    versions = {name: _version(name) for name in packages}
+    versions = {name: installed_version(name) for name in packages}
     lines = {
         "node": recorder,
         "time": datetime.now(timezone.utc).isoformat(timespec="seconds"),
@@ -34,7 +34,8 @@ def without_provenance(header: Mapping[str, str]) -> tuple[dict[str, str], str]:
     return others, f"by {recorder} at {when}; `info` lists versions and parameters, {len(made)} lines"
 
 
-def _version(package: str) -> str:
+def installed_version(package: str) -> str:
+    """Return a package's version, or "unknown" where it runs without having been installed."""
     try:
         return version(package)
     except PackageNotFoundError:

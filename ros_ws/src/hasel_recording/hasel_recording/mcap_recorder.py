@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hasel_common.names import nearest
+from hasel_common.provenance import installed_version
 from hasel_common.topics import FRAMES, TOPIC_TYPES
 from mcap.well_known import SchemaEncoding
 from mcap.writer import Writer
@@ -49,7 +50,7 @@ class McapRecorder:
         self._last_ns = 0
         self._failure: OSError | None = None
         self._writer = Writer(self._file, chunk_size=CHUNK_BYTES)
-        self._writer.start(profile="ros2", library="hasel_recording")
+        self._writer.start(profile="ros2", library=f"hasel_recording {installed_version('hasel_recording')}")
         self._writer.add_metadata(HEADER_RECORD, self._metadata)
         if time_origin_ns is not None:
             self._writer.add_metadata(TIME_RECORD, {"time_origin_ns": str(time_origin_ns)})

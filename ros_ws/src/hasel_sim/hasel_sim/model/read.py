@@ -8,6 +8,7 @@ from importlib import resources
 from pathlib import Path
 
 from hasel_common.names import nearest_name
+from hasel_common.provenance import installed_version
 from pydantic import ValidationError
 from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
@@ -161,6 +162,7 @@ def save_model(model: Model, path: str | Path) -> None:
     yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]
     yaml.default_flow_style = False
     with Path(path).open("w") as file:
+        file.write(f"# written by hasel_sim {installed_version('hasel_sim')}\n")
         yaml.dump(content, file)
 
 
