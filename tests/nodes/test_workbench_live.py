@@ -12,7 +12,7 @@ from hasel_interfaces.msg import SupplyState
 from hasel_sim.model import load_model, save_model
 from hasel_sysid.errors import SysidError
 from hasel_sysid.suggest import Manoeuvre
-from hasel_workbench.live.rig import Rig
+from hasel_workbench.live.rig import RunningRig
 from std_srvs.srv import Trigger
 
 _UNARMED = ("STANDBY", "FAULT")  # the latter where this machine held up the virtual board
@@ -39,7 +39,9 @@ def _simulators(folder: Path) -> list[str]:
     return found
 
 
-def _made(rig: Rig, run: Manoeuvre, call: Callable[[str], Trigger.Response]) -> tuple[str, list[float]]:
+def _made(
+    rig: RunningRig, run: Manoeuvre, call: Callable[[str], Trigger.Response]
+) -> tuple[str, list[float]]:
     """What is said of a run and how far it had come; made again where this machine holds up the virtual board."""
     for _ in range(8):
         shares: list[float] = []
@@ -54,7 +56,7 @@ def _made(rig: Rig, run: Manoeuvre, call: Callable[[str], Trigger.Response]) -> 
     pytest.skip("this machine is too busy for a virtual board: it stopped itself in every run")
 
 
-def _takes_a_model(rig: Rig, folder: Path) -> None:
+def _takes_a_model(rig: RunningRig, folder: Path) -> None:
     """There being no simulator, one is started; it takes another model; one that is none of the rig's is refused."""
     file = folder / "model.yaml"
     for name, words in (("swimmer", "was started"), ("swimmer", "is simulated from now on")):
@@ -66,7 +68,7 @@ def _takes_a_model(rig: Rig, folder: Path) -> None:
         rig.load(file, lambda *_: None)
 
 
-def _ended(rig: Rig, folder: Path) -> bool:
+def _ended(rig: RunningRig, folder: Path) -> bool:
     """Whether the last run can be taken."""
     try:
         return bool(rig.recordings(folder / "heard"))
@@ -77,7 +79,7 @@ def _ended(rig: Rig, folder: Path) -> bool:
 @pytest.mark.timeout(600)
 def test_a_run_is_made_heard_and_stopped(tmp_path, environment, domain, listener):
     """Not armed, a run is refused; armed by the driver's own service it is made and heard; STOP is a fault."""
-    rig, short = Rig(), Manoeuvre(3000.0, 4.0, 2, "box", "both")
+    rig, short = RunningRig(), Manoeuvre(3000.0, 4.0, 2, "box", "both")
     assert asyncio.run(rig.stop()) == "no rig is connected: use the mushroom switch"
     with pytest.raises(SysidError, match="no rig is heard"):
         rig.run(short, lambda *_: None)

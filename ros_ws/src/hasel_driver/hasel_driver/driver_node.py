@@ -36,11 +36,11 @@ from hasel_driver.parameter_files import check_files
 from hasel_driver.parent import end_with_parent
 from hasel_driver.realtime import middleware_threads, request_realtime
 from hasel_driver.serial_port import check_not_in_use
-from hasel_driver.status import Status
+from hasel_driver.status import SupplyStatus
 from hasel_driver.supervisor import Supervisor
 from hasel_driver.supply_history import SupplyHistory
 from hasel_driver.supply_thread import SupplyThread
-from hasel_driver.surroundings import Surroundings
+from hasel_driver.surroundings import HostSurroundings
 from hasel_driver.urgent_inputs import ALIVE_PERIOD_S, STEADY, UrgentInputs
 
 THREAD_SWITCH_S = 0.0005  # Python's 5 ms would let the executor hold up the supply's thread
@@ -83,7 +83,7 @@ class DriverNode(LifecycleNode):
             self._on_inputs_alive,
             values(self)["realtime_priority"],
         )
-        self._surroundings = Surroundings(self._inputs)
+        self._surroundings = HostSurroundings(self._inputs)
         self._trigger_services = DriverServices(
             self,
             slow,
@@ -242,7 +242,7 @@ class DriverNode(LifecycleNode):
         if thread is not None:
             thread.host_is_alive("inputs")
 
-    def _publish(self, status: Status) -> None:
+    def _publish(self, status: SupplyStatus) -> None:
         inputs, thread = self._inputs, self._thread
         with quiet_at_shutdown():
             holders = inputs.holders.names(inputs.stop_topic.present()) if inputs.holders else []
@@ -290,7 +290,7 @@ class DriverNode(LifecycleNode):
         thread = self._thread
         inputs = self._inputs
         holders = inputs.holders.names(inputs.stop_topic.present())
-        status: Status | None = None
+        status: SupplyStatus | None = None
         details: dict[str, object] = {"emergency_stop_held_by": ", ".join(holders) or "nobody"}
         details |= self.history.summary()
         if thread is not None:

@@ -46,7 +46,7 @@ class ExperimentPlan:
             )
 
 
-class Experiment:
+class DrivenExperiment:
     """Runs a plan on a supervisor. `step` is called often; `failure` tells why it ended early."""
 
     def __init__(self, plan: ExperimentPlan, supervisor: Supervisor, clock: Callable[[], float]) -> None:

@@ -20,7 +20,7 @@ from rclpy.node import Node
 
 from hasel_driver.client_watch import ClientWatch
 from hasel_driver.errors import DriverError, LimitError, RefusedError
-from hasel_driver.experiment import Experiment, ExperimentPlan
+from hasel_driver.experiment import DrivenExperiment, ExperimentPlan
 from hasel_driver.experiment_recording import ExperimentRecording
 from hasel_driver.node_parameters import values
 from hasel_driver.one_at_a_time import OneAtATime
@@ -39,7 +39,7 @@ class ExperimentServer:
     def __init__(self, node: Node, thread: Callable[[], SupplyThread | None], group: CallbackGroup) -> None:
         self._node, self._thread, self._group = node, thread, group
         self._state_topic = node.resolve_topic_name(relative(STATE))
-        self._experiment: Experiment | None = None
+        self._experiment: DrivenExperiment | None = None
         self._recording: ExperimentRecording | None = None
         self._watched: list = []
         self._place = OneAtATime()
@@ -127,7 +127,7 @@ class ExperimentServer:
         if thread is None:
             raise RefusedError("The port is closed: configure the node (lifecycle) first.")
         topics = tuple(s.topic_name for s in self._watched if self._node.count_publishers(s.topic_name))
-        experiment = Experiment(plan, thread.supervisor, time.monotonic)
+        experiment = DrivenExperiment(plan, thread.supervisor, time.monotonic)
         thread.call(experiment.begin).result(timeout=5.0)
         try:
             path = self._reserve(goal_handle.request, plan)
@@ -210,7 +210,7 @@ def plan_of(goal: RunExperiment.Goal, waveforms: Path) -> ExperimentPlan:
     return ExperimentPlan(waveform, goal.rest_time)
 
 
-def _feedback(experiment: Experiment) -> RunExperiment.Feedback:
+def _feedback(experiment: DrivenExperiment) -> RunExperiment.Feedback:
     duration_s = experiment.plan.duration_s
     elapsed_s = min(experiment.elapsed_s, duration_s)
     return RunExperiment.Feedback(

@@ -11,7 +11,7 @@ from hasel_interfaces.msg import SupplyState
 from hasel_driver.ground import Ground
 from hasel_driver.limits import MUSCLE_NAMES, Limits
 from hasel_driver.mode import Mode
-from hasel_driver.status import Status
+from hasel_driver.status import SupplyStatus
 
 OUTPUT_WORDS = {
     "grounded": "The supply reports its output grounded, and has proven it; stored charge needs its bleeder's time.",
@@ -28,7 +28,7 @@ def to_time(monotonic_s: float) -> Time:
 
 
 def to_supply_state(
-    status: Status,
+    status: SupplyStatus,
     limits: Limits | None = None,
     holders: Sequence[str] = (),
     frame_id: str = "",
@@ -65,7 +65,7 @@ def _interlock(closed: tuple[bool, bool] | None) -> list[int]:
 
 
 def to_diagnostics(
-    node: str, status: Status | None, stamp: Time, details: dict[str, object]
+    node: str, status: SupplyStatus | None, stamp: Time, details: dict[str, object]
 ) -> DiagnosticArray:
     """`/diagnostics` of a node; no status means that it is not configured."""
     entry = DiagnosticStatus(name=f"{node}: supply", hardware_id=str(details.get("device", "")))

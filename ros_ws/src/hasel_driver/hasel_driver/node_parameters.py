@@ -10,7 +10,7 @@ from rclpy.node import Node
 
 from hasel_driver.backends import limits_of
 from hasel_driver.errors import DriverError, LimitError
-from hasel_driver.parameters import LOWERABLE, PARAMETERS, Parameter
+from hasel_driver.parameters import LOWERABLE, PARAMETERS, DriverParameter
 
 OF_ROS = {"use_sim_time", "start_type_description_service"}
 TABLE = {parameter.name: parameter for parameter in PARAMETERS}
@@ -50,7 +50,9 @@ def values(node: Node) -> dict:
     }
 
 
-def _check_change(parameter: Parameter, value: Any, in_use: bool, lower: Callable[[float], None]) -> None:
+def _check_change(
+    parameter: DriverParameter, value: Any, in_use: bool, lower: Callable[[float], None]
+) -> None:
     parameter.check(value)
     if not in_use:
         return

@@ -10,7 +10,7 @@ from hasel_driver.errors import LimitError
 LOWERABLE = "maximum_voltage"  # the one that may be changed, downwards, while it is in use
 
 
-class Parameter(NodeParameter):
+class DriverParameter(NodeParameter):
     """One parameter, checked by ourselves with a sentence."""
 
     def check(self, value: Any) -> None:
@@ -47,11 +47,11 @@ class Parameter(NodeParameter):
         return "text" if isinstance(value, str) else "list of texts"
 
 
-PARAMETERS: tuple[Parameter, ...] = (
-    Parameter("port", "/dev/ttyACM0", "serial port of the supply (with shvps: of the upper muscle's)"),
-    Parameter("backend", "hasel", "protocol of the supply", choices=("hasel", "shvps")),
-    Parameter("second_port", "", "serial port of the lower muscle's supply (shvps only)"),
-    Parameter(
+PARAMETERS: tuple[DriverParameter, ...] = (
+    DriverParameter("port", "/dev/ttyACM0", "serial port of the supply (with shvps: of the upper muscle's)"),
+    DriverParameter("backend", "hasel", "protocol of the supply", choices=("hasel", "shvps")),
+    DriverParameter("second_port", "", "serial port of the lower muscle's supply (shvps only)"),
+    DriverParameter(
         "maximum_voltage",
         6000.0,
         "commands are clipped to ± this; may be lowered at any time",
@@ -59,12 +59,14 @@ PARAMETERS: tuple[Parameter, ...] = (
         0.0,
         9800.0,
     ),
-    Parameter("slew_rate", 250.0, "steepest change of the set point", "V/ms", 1.0, 2000.0),
-    Parameter(
+    DriverParameter("slew_rate", 250.0, "steepest change of the set point", "V/ms", 1.0, 2000.0),
+    DriverParameter(
         "trip_current", 450e-6, "converter current at which the board latches a fault", "A", 1e-6, 9.8e-4
     ),
-    Parameter("heartbeat_timeout", 0.3, "silence after which the board grounds its output", "s", 0.1, 0.45),
-    Parameter(
+    DriverParameter(
+        "heartbeat_timeout", 0.3, "silence after which the board grounds its output", "s", 0.1, 0.45
+    ),
+    DriverParameter(
         "dead_time",
         0.005,
         "between opening and closing relays: at least their release time and bounce by the data sheet",
@@ -72,7 +74,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         0.002,
         0.05,
     ),
-    Parameter(
+    DriverParameter(
         "load_capacitance",
         4.5e-9,
         "of the largest muscle with its cable, whose discharge counts in the half second to ground",
@@ -80,30 +82,38 @@ PARAMETERS: tuple[Parameter, ...] = (
         0.0,
         1e-8,
     ),
-    Parameter("contacts_read_back", False, "auxiliary contacts of the ground relays are wired to the board"),
-    Parameter(
+    DriverParameter(
+        "contacts_read_back", False, "auxiliary contacts of the ground relays are wired to the board"
+    ),
+    DriverParameter(
         "idle_disarm", 60.0, "armed without a command or an experiment for so long: disarm", "s", 1.0, 3600.0
     ),
-    Parameter(
+    DriverParameter(
         "state_folder", "~/.ros/hasel_driver", "where faults that outlive a restart are kept; empty: nowhere"
     ),
-    Parameter("discovery_time", 1.0, "arming waits this long for a latched emergency stop", "s", 0.0, 60.0),
-    Parameter("accept_no_deadman", False, "allow arming a supply that stays live when its host dies (shvps)"),
-    Parameter("recording_directory", "recordings", "below which RunExperiment writes, and nowhere else"),
-    Parameter(
+    DriverParameter(
+        "discovery_time", 1.0, "arming waits this long for a latched emergency stop", "s", 0.0, 60.0
+    ),
+    DriverParameter(
+        "accept_no_deadman", False, "allow arming a supply that stays live when its host dies (shvps)"
+    ),
+    DriverParameter(
+        "recording_directory", "recordings", "below which RunExperiment writes, and nowhere else"
+    ),
+    DriverParameter(
         "waveform_directory", "waveforms", "below which the waveform files of goals lie, and nowhere else"
     ),
-    Parameter(
+    DriverParameter(
         "history_file",
         "~/.ros/hasel_supply_history.jsonl",
         "where faults, breakdowns and leakage are noted for good; empty: nowhere",
     ),
-    Parameter(
+    DriverParameter(
         "recorded_topics",
         ["bending/measured", "markers/measured", "bending/simulated"],
         "recorded with the state; required in the recording when published as the experiment begins",
     ),
-    Parameter(
+    DriverParameter(
         "realtime_priority",
         40,
         "of the threads that send commands, where the system allows it; 0: none",
@@ -111,5 +121,5 @@ PARAMETERS: tuple[Parameter, ...] = (
         0,
         90,
     ),
-    Parameter("autostart", True, "configure and activate at start (never arms)"),
+    DriverParameter("autostart", True, "configure and activate at start (never arms)"),
 )

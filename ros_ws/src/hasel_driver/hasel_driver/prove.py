@@ -30,7 +30,7 @@ DISCOVERY_S = 3.5  # within which a driver that runs already is known
 
 
 @dataclass(frozen=True)
-class Row:
+class ProofRow:
     """What became of a kind, all rounds together; `otherwise`: what is expected of one that need not be found."""
 
     name: str
@@ -76,10 +76,10 @@ class Trials:
         return trial
 
 
-def prove_hardware(trials: Trials, kinds: Sequence[Kind]) -> Iterator[Row]:
+def prove_hardware(trials: Trials, kinds: Sequence[Kind]) -> Iterator[ProofRow]:
     """Each kind with the driver's thread on the supply."""
     for kind in kinds:
-        yield Row(kind.name, trials.of(partial(_try_hardware, kind)), "not before the next arming")
+        yield ProofRow(kind.name, trials.of(partial(_try_hardware, kind)), "not before the next arming")
 
 
 def _try_hardware(kind: Kind, rig: Rig) -> Trial:
@@ -109,7 +109,7 @@ def walk(command: list[str], duration_s: float, seed: int) -> list[str]:
     return [*walk.log, *walk.wrong] if walk.wrong else []
 
 
-def prove_neighbours(trials: Trials) -> Iterator[Row]:
+def prove_neighbours(trials: Trials) -> Iterator[ProofRow]:
     """Each kind of other node, which a driver on a supply meets. Raises RefusedError where one runs already."""
     from hasel_driver.testing.neighbours import NEIGHBOURS, drivers, meet
     from hasel_driver.testing.ros_client import RosClient
@@ -122,7 +122,7 @@ def prove_neighbours(trials: Trials) -> Iterator[Row]:
                 "A driver answers to /hasel already: end it first, or set a ROS_DOMAIN_ID of your own."
             )
         for kind in NEIGHBOURS:
-            yield Row(kind.name, trials.of(partial(meet, user, kind)), "not obeyed")
+            yield ProofRow(kind.name, trials.of(partial(meet, user, kind)), "not obeyed")
     finally:
         user.close()
 

@@ -20,7 +20,7 @@ WORDS = {
 
 
 @dataclass(frozen=True)
-class Status:
+class SupplyStatus:
     """What is known about the supply now; `commanded_v` and the rest are NaN where it is not known."""
 
     time_s: float

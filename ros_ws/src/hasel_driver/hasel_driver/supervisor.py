@@ -14,7 +14,7 @@ from hasel_driver.ground import Ground
 from hasel_driver.limits import Limits, Voltages, clip
 from hasel_driver.mode import Mode
 from hasel_driver.monitor_watch import OutputWatch
-from hasel_driver.status import UNKNOWN, Status
+from hasel_driver.status import UNKNOWN, SupplyStatus
 from hasel_driver.supply import Capabilities, Reading, Supply
 from hasel_driver.waveform import Waveform
 
@@ -92,19 +92,19 @@ class Supervisor:
         """Why the supply did not arm, in its own words."""
         return self._supply.refusal
 
-    def status(self) -> Status:
+    def status(self) -> SupplyStatus:
         """The present state, as far as it is known."""
         now_s = self._clock()
         reading = self._fresh_reading(now_s)
         if reading is None:
             silent_s = now_s - self._reading.time_s if self.fault is None and self._at_rest() else 0.0
             mode = Mode.STANDBY if silent_s else Mode.FAULT
-            return Status(now_s, mode, self.fault, None, UNKNOWN, UNKNOWN, UNKNOWN, silent_s=silent_s)
+            return SupplyStatus(now_s, mode, self.fault, None, UNKNOWN, UNKNOWN, UNKNOWN, silent_s=silent_s)
         ground = self._ground(reading)
         mode = Mode.ACTIVE if ground is Ground.NOT and reading.mode is not Mode.FAULT else reading.mode
         mode = Mode.FAULT if self.fault else mode
         values = (reading.commanded_v, reading.measured_v, reading.current_a)
-        return Status(reading.time_s, mode, self.fault, ground, *values, reading.interlock_closed)
+        return SupplyStatus(reading.time_s, mode, self.fault, ground, *values, reading.interlock_closed)
 
     def arm(self) -> None:
         """Ask the supply to arm, which begins with the proof of its ground. Raises RefusedError unless in STANDBY."""

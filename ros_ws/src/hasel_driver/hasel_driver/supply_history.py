@@ -19,7 +19,7 @@ from pathlib import Path
 
 from hasel_driver.faults import Fault, FaultCode
 from hasel_driver.mode import Mode
-from hasel_driver.status import Status
+from hasel_driver.status import SupplyStatus
 
 BREAKDOWNS = {FaultCode.OVERCURRENT}
 SETTLED_S = 0.5  # at one voltage, after which what still flows is leakage
@@ -46,7 +46,7 @@ class SupplyHistory:
         self._thread = threading.Thread(target=self._write, name="history", daemon=True)
         self._thread.start()
 
-    def take(self, status: Status) -> None:
+    def take(self, status: SupplyStatus) -> None:
         """Look at a status; note a new fault, and leakage at a voltage that has long stood still."""
         if status.fault is not None and status.fault != self._fault:
             self._note_fault(status)
@@ -67,7 +67,7 @@ class SupplyHistory:
         self._entries.put(None)
         self._thread.join(timeout=2.0)
 
-    def _note_fault(self, status: Status) -> None:
+    def _note_fault(self, status: SupplyStatus) -> None:
         fault = status.fault
         self.faults += 1
         self.breakdowns += fault.code in BREAKDOWNS
@@ -81,7 +81,7 @@ class SupplyHistory:
             current_a=_finite(status.current_a),
         )
 
-    def _watch_leakage(self, channel: int, status: Status) -> None:
+    def _watch_leakage(self, channel: int, status: SupplyStatus) -> None:
         voltage_v, current_a = status.commanded_v[channel], status.current_a[channel]
         live = status.mode is Mode.ACTIVE and abs(voltage_v) >= LEAST_LEAKAGE_V and current_a == current_a
         if not live or voltage_v != self._steady_v[channel]:

@@ -14,7 +14,7 @@ from typing import Any
 
 from hasel_driver.errors import RefusedError
 from hasel_driver.faults import Fault, FaultCode
-from hasel_driver.status import Status
+from hasel_driver.status import SupplyStatus
 from hasel_driver.supervisor import Supervisor
 from hasel_driver.supply import Supply
 
@@ -41,7 +41,7 @@ class SupplyThread(threading.Thread):
         self,
         supervisor: Supervisor,
         supply: Supply,
-        on_status: Callable[[Status], None],
+        on_status: Callable[[SupplyStatus], None],
         on_step: Callable[[], None] = lambda: None,
         on_begin: Callable[[], None] = lambda: None,
     ) -> None:

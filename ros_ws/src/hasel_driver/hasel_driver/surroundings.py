@@ -25,7 +25,7 @@ class _Lasting:
         return 0.0 if self._since_s is None else now_s - self._since_s
 
 
-class Surroundings:
+class HostSurroundings:
     """Asked before arming and clearing, and for a fault while armed."""
 
     def __init__(self, inputs: UrgentInputs) -> None:

@@ -19,7 +19,7 @@ from hasel_driver.virtual_ground import (
     LEAST_FALL_V,
     GroundEvidence,
     GroundProof,
-    Verdict,
+    GroundVerdict,
 )
 from hasel_driver.virtual_muscle import Contact, VirtualMuscle
 from hasel_driver.waveform import Waveform
@@ -206,11 +206,11 @@ class VirtualBoard:
     def _prove(self, proof: GroundProof) -> None:
         magnitudes = [abs(volts) for volts in self.measured_v]
         verdict = proof.step(magnitudes, self._contacts_grounded, self.evidence)
-        if verdict is Verdict.NOT_CHARGED and Latch.UNPROVEN not in self.latches:
+        if verdict is GroundVerdict.NOT_CHARGED and Latch.UNPROVEN not in self.latches:
             self.fail(FaultCode.MONITOR)
-        elif verdict in (Verdict.NOT_CHARGED, Verdict.NOT_GROUNDED):
+        elif verdict in (GroundVerdict.NOT_CHARGED, GroundVerdict.NOT_GROUNDED):
             self.fail(FaultCode.NOT_GROUNDED)
-        elif verdict is Verdict.PROVEN:
+        elif verdict is GroundVerdict.PROVEN:
             self.proof = None
             self.mode = Mode.ARMED if self.fault is FaultCode.NONE else Mode.STANDBY
             self.fault = FaultCode.NONE

@@ -45,7 +45,7 @@ class GroundEvidence:
             self._leaked_v *= self.kept
 
 
-class Verdict(Enum):
+class GroundVerdict(Enum):
     """How far the test pulse is."""
 
     RUNNING = 0
@@ -69,22 +69,24 @@ class GroundProof:
         """What both channels are to have [V]."""
         return self.pulse_v if self._phase == "charge" else 0.0
 
-    def step(self, measured_v: Sequence[float], closed: bool, evidence: Sequence[GroundEvidence]) -> Verdict:
+    def step(
+        self, measured_v: Sequence[float], closed: bool, evidence: Sequence[GroundEvidence]
+    ) -> GroundVerdict:
         """One millisecond; `closed`: both ground contacts. The leakage that is seen goes into `evidence`."""
         self._phase_ms += 1
         if self._phase == "charge":
             if min(measured_v) >= 0.8 * self.pulse_v:
                 self._charged_v = self._kept_v = tuple(measured_v)
                 self._begin("let go")
-            return Verdict.NOT_CHARGED if self._phase_ms > CHARGE_MS else Verdict.RUNNING
+            return GroundVerdict.NOT_CHARGED if self._phase_ms > CHARGE_MS else GroundVerdict.RUNNING
         if self._phase == "let go":
             self._see_leakage(measured_v, closed, evidence)
             if closed:
                 self._begin("ground")
-            return Verdict.NOT_GROUNDED if self._phase_ms > CHARGE_MS else Verdict.RUNNING
+            return GroundVerdict.NOT_GROUNDED if self._phase_ms > CHARGE_MS else GroundVerdict.RUNNING
         if all(each.proven for each in evidence):
-            return Verdict.PROVEN
-        return Verdict.NOT_GROUNDED if self._phase_ms > GROUND_PROOF_MS else Verdict.RUNNING
+            return GroundVerdict.PROVEN
+        return GroundVerdict.NOT_GROUNDED if self._phase_ms > GROUND_PROOF_MS else GroundVerdict.RUNNING
 
     def _begin(self, phase: str) -> None:
         self._phase, self._phase_ms = phase, 0

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 from hasel_driver.errors import LimitError, RefusedError
-from hasel_driver.experiment import Experiment, ExperimentPlan
+from hasel_driver.experiment import DrivenExperiment, ExperimentPlan
 from hasel_driver.experiment_recording import ExperimentRecording
 from hasel_driver.mode import Mode
 from hasel_driver.waveform import Waveform
@@ -53,7 +53,7 @@ def run(experiment, clock, supervisor, until_s: float = math.inf) -> list[tuple[
 def test_rests_drives_and_rests():
     """0 V for the rest, then the waveform for periods / frequency, then 0 V for the rest."""
     clock, supervisor = [0.0], FakeSupervisor()
-    experiment = Experiment(PLAN, supervisor, lambda: clock[0])
+    experiment = DrivenExperiment(PLAN, supervisor, lambda: clock[0])
     voltages = run(experiment, clock, supervisor)
     live = [index for index, voltage in enumerate(voltages) if any(voltage)]
     assert experiment.failure is None
@@ -71,7 +71,7 @@ def test_rests_drives_and_rests():
 def test_ends_when_the_supply_leaves_the_armed_state():
     """A fault ends the run, and is told."""
     clock, supervisor = [0.0], FakeSupervisor()
-    experiment = Experiment(PLAN, supervisor, lambda: clock[0])
+    experiment = DrivenExperiment(PLAN, supervisor, lambda: clock[0])
     run(experiment, clock, supervisor, until_s=1.0)
     supervisor.mode = Mode.FAULT
     experiment.step()
@@ -84,7 +84,7 @@ def test_refuses_what_would_be_clipped():
     supervisor = FakeSupervisor()
     supervisor.maximum_voltage_v = 2000.0
     with pytest.raises(LimitError, match="asks for 3000 V, the limit is 2000 V"):
-        Experiment(PLAN, supervisor, lambda: 0.0).begin()
+        DrivenExperiment(PLAN, supervisor, lambda: 0.0).begin()
     with pytest.raises(LimitError, match="positive voltages only"):
         PLAN.check_against(5000.0, bipolar=False)
 

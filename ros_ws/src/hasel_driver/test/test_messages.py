@@ -6,7 +6,7 @@ from hasel_driver.ground import Ground
 from hasel_driver.messages import to_diagnostics, to_supply_state
 from hasel_driver.mode import Mode
 from hasel_driver.presets import PRESETS
-from hasel_driver.status import UNKNOWN, Status
+from hasel_driver.status import UNKNOWN, SupplyStatus
 from hasel_driver.waveform import MUSCLES, POLARITIES, SHAPES
 from hasel_interfaces.action import RunExperiment
 from hasel_interfaces.msg import SupplyState
@@ -33,7 +33,7 @@ def test_words_of_an_experiment_are_those_that_it_takes():
 
 def test_state_names_muscles_and_frame():
     """One voltage and one current for each muscle, in a named frame."""
-    status = Status(0.0, Mode.ARMED, None, Ground.PROVEN, (1.0, -2.0), (3.0, 4.0), (0.0, 0.0))
+    status = SupplyStatus(0.0, Mode.ARMED, None, Ground.PROVEN, (1.0, -2.0), (3.0, 4.0), (0.0, 0.0))
     message = to_supply_state(status, frame_id="rig_1/supply")
     assert message.header.frame_id == "rig_1/supply"
     assert message.muscle == ["upper", "lower"]
@@ -43,7 +43,7 @@ def test_state_names_muscles_and_frame():
 
 def test_a_supply_that_is_silent_at_rest_is_a_warning():
     """In the diagnostics, with the time; the state claims nothing of its output."""
-    status = Status(0.0, Mode.STANDBY, None, None, UNKNOWN, UNKNOWN, UNKNOWN, silent_s=1.2)
+    status = SupplyStatus(0.0, Mode.STANDBY, None, None, UNKNOWN, UNKNOWN, UNKNOWN, silent_s=1.2)
     (entry,) = to_diagnostics("driver", status, Time(), {}).status
     assert (entry.level, entry.message) == (
         DiagnosticStatus.WARN,

@@ -7,7 +7,7 @@ import random
 import pytest
 from hasel_driver.faults import Fault, FaultCode
 from hasel_driver.mode import Mode
-from hasel_driver.status import Status
+from hasel_driver.status import SupplyStatus
 from hasel_driver.supply_history import SupplyHistory
 
 BREAKDOWN = Fault(FaultCode.OVERCURRENT, "test")
@@ -15,11 +15,11 @@ BREAKDOWN = Fault(FaultCode.OVERCURRENT, "test")
 
 def status(
     time_s: float, voltage_v: float = 0.0, current_a: float = 0.0, fault: Fault | None = None
-) -> Status:
+) -> SupplyStatus:
     """A driven upper muscle, or a fault."""
     mode = Mode.FAULT if fault else Mode.ACTIVE
     pair = (voltage_v, 0.0)
-    return Status(time_s, mode, fault, False, pair, pair, (current_a, math.nan))
+    return SupplyStatus(time_s, mode, fault, False, pair, pair, (current_a, math.nan))
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from hasel_driver.errors import RefusedError
 from hasel_driver.faults import FaultCode
 from hasel_driver.rivals import NOT_TOLD
 from hasel_driver.stop_holders import StopHolders
-from hasel_driver.surroundings import DISCOVERY_S, NAMING_S, Surroundings
+from hasel_driver.surroundings import DISCOVERY_S, NAMING_S, HostSurroundings
 
 NAMED, NAMELESS = "/hasel/hasel_driver on bench2 (process 7)", f"/stranger {NOT_TOLD}"
 
@@ -49,7 +49,7 @@ def clock(monkeypatch) -> SimpleNamespace:
 
 def test_a_quiet_graph_allows_arming_and_is_no_threat(graph):
     """Nothing is refused, nothing is a fault."""
-    around = Surroundings(graph)
+    around = HostSurroundings(graph)
     around.check_arming()
     assert around.threat() is None
 
@@ -68,12 +68,12 @@ def test_arming_is_refused_with_the_name(graph, change, words):
     """Whoever is in the way is named."""
     change(graph)
     with pytest.raises(RefusedError, match=words):
-        Surroundings(graph).check_arming()
+        HostSurroundings(graph).check_arming()
 
 
 def test_another_driver_is_a_fault_at_once_or_once_its_name_cannot_be_learnt(graph, clock):
     """With its name and host at once; one that tells no host is given a moment, and no more."""
-    around = Surroundings(graph)
+    around = HostSurroundings(graph)
     graph.others = [NAMED]
     assert around.threat().code is FaultCode.TWO_DRIVERS
     around.calm()
@@ -85,7 +85,7 @@ def test_another_driver_is_a_fault_at_once_or_once_its_name_cannot_be_learnt(gra
 
 def test_a_stop_that_cannot_be_heard_is_a_fault_when_it_lasts(graph, clock):
     """A new publisher is known before it is connected."""
-    around = Surroundings(graph)
+    around = HostSurroundings(graph)
     graph.deaf = "of 2 publishers only 1 is connected"
     assert around.threat() is None
     clock.now_s += 0.9 * DISCOVERY_S

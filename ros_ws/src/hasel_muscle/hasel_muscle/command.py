@@ -15,12 +15,12 @@ from rich.console import Console
 
 from hasel_muscle import shown
 from hasel_muscle.improve import described, fit_muscle, improve_muscle
+from hasel_muscle.muscle_report import write_report
+from hasel_muscle.muscle_runs import muscle_for, readable, settled_runs
 from hasel_muscle.options import bench_muscle_parser
-from hasel_muscle.picture import write_picture
 from hasel_muscle.problem import BenchProblem, as_muscle, bench_problem
-from hasel_muscle.reading import muscle_for, readable, settled_runs
-from hasel_muscle.report import write_report
 from hasel_muscle.result import BenchImprovement
+from hasel_muscle.stroke_picture import write_picture
 from hasel_muscle.stroke_table import Rival, rival_table
 from hasel_muscle.swinging import Swinging, swinging
 from hasel_muscle.where_it_fails import where_it_fails

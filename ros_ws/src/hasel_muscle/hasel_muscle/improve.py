@@ -31,7 +31,7 @@ from hasel_sysid.selection.search import Search, Searched
 from hasel_sysid.verdict import DETECTION, findings, share_left, status_with
 
 from hasel_muscle.problem import BenchProblem, as_model, as_muscle
-from hasel_muscle.result import BenchFinding, BenchImprovement, BenchVerdict, Described, Stage
+from hasel_muscle.result import BenchFinding, BenchImprovement, BenchVerdict, Described, MuscleStage
 
 _OFTEN = replace(POLICY, fits=12)
 """A formula costs little: more models are fitted than of a body that is simulated."""
@@ -87,9 +87,11 @@ def improve_muscle(
             "judged on voltages left out: record more, or use --fit-only"
         )
 
-    def stage(fit: FittedModel, added: tuple[str, ...] = (), rivals: tuple[str, ...] = ()) -> Stage:
+    def stage(fit: FittedModel, added: tuple[str, ...] = (), rivals: tuple[str, ...] = ()) -> MuscleStage:
         law = as_muscle(fit.model)
-        return Stage(added, fit, problem.error(law), {} if unseen is None else unseen.error(law), rivals)
+        return MuscleStage(
+            added, fit, problem.error(law), {} if unseen is None else unseen.error(law), rivals
+        )
 
     fit = fit_muscle(problem, muscle)
     present = {effect.id for effect in muscle.effects}
@@ -129,7 +131,7 @@ def _groups(found: Searched) -> tuple[tuple[str, ...], ...]:
     return (tuple(alike),) if len(alike) > 1 else ()
 
 
-def _status(found: Searched, stages: Sequence[Stage], describes: bool) -> Status:
+def _status(found: Searched, stages: Sequence[MuscleStage], describes: bool) -> Status:
     nothing_else = found.last.chance >= POLICY.level
     if not found.choice.chosen:
         return Status.NOTHING_MISSING if describes and nothing_else else Status.UNEXPLAINED
@@ -141,7 +143,7 @@ def _findings(
     problem: BenchProblem,
     found: Searched,
     effects: Sequence[Candidate],
-    stages: Sequence[Stage],
+    stages: Sequence[MuscleStage],
     describes: bool,
 ) -> tuple[BenchFinding, ...]:
     """What is said of every effect, beside those that were added."""
@@ -170,7 +172,7 @@ def _may_hide(problem: BenchProblem, found: Searched, candidate: Candidate, besi
     return answer.whitened.logarithm - likely < 0.5 * DETECTION**2
 
 
-def _finding(one: Finding, found: Searched, stages: Sequence[Stage], describes: bool) -> BenchFinding:
+def _finding(one: Finding, found: Searched, stages: Sequence[MuscleStage], describes: bool) -> BenchFinding:
     name = one.effect
     alone = found.models.get(frozenset({name}))
     instead = [" and ".join(stage.added) for stage in stages[2:] if name in stage.rivals]

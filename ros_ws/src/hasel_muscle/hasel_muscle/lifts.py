@@ -19,7 +19,7 @@ _KEPT_S = 4e-3
 
 
 @dataclass(frozen=True)
-class Stretch:
+class HeldStretch:
     """A lift in a recording: level [V], numbers of the samples that are compared, contraction at rest before [m]."""
 
     level: float
@@ -33,7 +33,7 @@ def shows_swings(recording: BenchRecording) -> bool:
     return recording.held == "load" and step > 0 and 1 / step >= _SLOWEST_SAMPLES
 
 
-def stretches_of(recording: BenchRecording) -> list[Stretch]:
+def stretches_of(recording: BenchRecording) -> list[HeldStretch]:
     """Lifts from rest to a voltage that is held."""
     time, voltage = recording.time, np.abs(recording.voltage)
     same = SAME * float(voltage.max())
@@ -52,5 +52,5 @@ def stretches_of(recording: BenchRecording) -> list[Stretch]:
         level = float(np.median(voltage[held]))
         quiet = voltage[before].max() <= same and time[start] - time[0] >= _REST_S
         if quiet and np.ptp(voltage[held]) <= 2 * same and np.isfinite(recording.contraction[window]).any():
-            found.append(Stretch(float(f"{level:.3g}"), window, float(np.nanmedian(rest))))
+            found.append(HeldStretch(float(f"{level:.3g}"), window, float(np.nanmedian(rest))))
     return found

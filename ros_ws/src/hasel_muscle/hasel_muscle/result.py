@@ -63,7 +63,7 @@ class Described:
 
 
 @dataclass(frozen=True)
-class Stage:
+class MuscleStage:
     """What was added, the fit with it, and mean |law - measurement| by unit, of fitted and of unseen lifts."""
 
     added: tuple[str, ...]
@@ -90,7 +90,7 @@ class BenchImprovement:
     lifts cannot tell apart.
     """
 
-    stages: tuple[Stage, ...]
+    stages: tuple[MuscleStage, ...]
     findings: tuple[BenchFinding, ...]
     status: Status
     described: Described

@@ -9,7 +9,7 @@ from rich.table import Table
 
 from hasel_muscle.lifts import WINDOW_S
 from hasel_muscle.problem import BenchProblem
-from hasel_muscle.result import BenchImprovement, Stage
+from hasel_muscle.result import BenchImprovement, MuscleStage
 from hasel_muscle.stroke_table import Rival
 from hasel_muscle.swinging import Swinging
 
@@ -54,7 +54,7 @@ def _rows(problem: BenchProblem, muscles: Sequence[Muscle]) -> list[tuple]:
     return rows
 
 
-def stage_name(stage: Stage, number: int) -> str:
+def stage_name(stage: MuscleStage, number: int) -> str:
     """What a stage is called."""
     return ("the formula, nothing fitted", "fitted")[number] if number < 2 else "+ " + " + ".join(stage.added)
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from hasel_muscle.improve import improve_muscle
+from hasel_muscle.muscle_runs import read_bench
 from hasel_muscle.problem import bench_problem
-from hasel_muscle.reading import read_bench
 from hasel_muscle.result import BenchVerdict
 from hasel_muscle.settled import settled
 from hasel_sim.muscle.catalogue import muscle_catalogue

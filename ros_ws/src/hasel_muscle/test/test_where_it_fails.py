@@ -1,7 +1,7 @@
 """Where a law fails, said of muscles whose failure is known."""
 
+from hasel_muscle.muscle_runs import read_bench
 from hasel_muscle.problem import bench_problem
-from hasel_muscle.reading import read_bench
 from hasel_muscle.settled import settled
 from hasel_muscle.where_it_fails import where_it_fails
 from hasel_sim.muscle.muscle_file import load_muscle

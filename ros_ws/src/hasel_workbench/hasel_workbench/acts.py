@@ -16,7 +16,7 @@ from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest
 
 from hasel_workbench.cards import source_of
 from hasel_workbench.evaluate import Progress, WatchedProblem, evaluated
-from hasel_workbench.state import State
+from hasel_workbench.state import SessionState
 from hasel_workbench.step import Step
 
 FIT = "model = h.fit(model, fitted).model"
@@ -24,13 +24,13 @@ _SMALLER = (1.0, 0.5, 0.25)
 """Shares of an effect's typical size that are tried until one can be simulated."""
 
 
-def nothing_is_tried(state: State) -> None:
+def nothing_is_tried(state: SessionState) -> None:
     """Raise SysidError while something is being tried."""
     if state.trial is not None:
         raise SysidError(f"'{state.trial.label}' is being tried; keep it or take it back first")
 
 
-def fitted(state: State, pool: Executor, progress: Progress) -> Step:
+def fitted(state: SessionState, pool: Executor, progress: Progress) -> Step:
     """What is being tried, else the current step, fitted."""
     shown = state.shown
     model = prepared(shown.model, state.experiments)
@@ -40,14 +40,16 @@ def fitted(state: State, pool: Executor, progress: Progress) -> Step:
     return _evaluated(state, label, result.model, pool, progress, result, did)
 
 
-def diagnosed(state: State, pool: Executor, only: Sequence[str] | None, progress: Progress) -> Diagnosis:
+def diagnosed(
+    state: SessionState, pool: Executor, only: Sequence[str] | None, progress: Progress
+) -> Diagnosis:
     """What the current step, which is fitted, may lack."""
     problem = WatchedProblem(state.experiments, pool, lambda: progress("trying effects", 0.0))
     return diagnose(problem, state.current.fit, only, progress)
 
 
 def with_effect(
-    state: State, effect: str, only: tuple[str, ...] | None, pool: Executor, progress: Progress
+    state: SessionState, effect: str, only: tuple[str, ...] | None, pool: Executor, progress: Progress
 ) -> Step:
     """The current step with an effect: as fitted in a diagnosis, as expected there, or at its typical size."""
     current = state.current
@@ -75,14 +77,14 @@ def with_effect(
     raise AssertionError
 
 
-def without_effect(state: State, effect: str, pool: Executor, progress: Progress) -> Step:
+def without_effect(state: SessionState, effect: str, pool: Executor, progress: Progress) -> Step:
     """The current step without one of its effects."""
     model = state.current.model.without_effects(effect)
     did = (f"model = model.without_effects({effect!r})",)
     return _evaluated(state, f"− {effect}", model, pool, progress, None, did)
 
 
-def with_values(state: State, values: Mapping[str, float], pool: Executor, progress: Progress) -> Step:
+def with_values(state: SessionState, values: Mapping[str, float], pool: Executor, progress: Progress) -> Step:
     """What is shown, with other values; those outside their bounds are moved onto them."""
     shown = state.shown
     known = {name: shown.model.parameter(name) for name in values}
@@ -95,7 +97,7 @@ def with_values(state: State, values: Mapping[str, float], pool: Executor, progr
     return _evaluated(state, label, model, pool, progress, None, did)
 
 
-def suggestions(state: State, pool: Executor, progress: Progress) -> tuple[Suggestion, ...]:
+def suggestions(state: SessionState, pool: Executor, progress: Progress) -> tuple[Suggestion, ...]:
     """The runs that best tell apart what the last diagnosis left in doubt, at no more than was driven already."""
     if state.diagnosis is None:
         raise SysidError("nothing was diagnosed so far; expected a ranking to decide about: diagnose first")
@@ -118,7 +120,7 @@ def filed(step: Step, label: str, file: str = "") -> Step:
 
 
 def _evaluated(
-    state: State,
+    state: SessionState,
     label: str,
     model: Model,
     pool: Executor,

@@ -33,9 +33,9 @@ def _serve(options: argparse.Namespace) -> int:
             "of this workspace"
         )
     from hasel_workbench.jobs import Jobs
-    from hasel_workbench.live.rig import Rig
+    from hasel_workbench.live.rig import RunningRig
     from hasel_workbench.page.server import opening, serve
-    from hasel_workbench.recordings import Reading
+    from hasel_workbench.recordings import ReadingChoices
     from hasel_workbench.workbench import Workbench
 
     certificate = _certificate(options)
@@ -44,9 +44,11 @@ def _serve(options: argparse.Namespace) -> int:
         print(f"note: {told}", file=sys.stderr)
     paths = [*options.recordings, *options.validate]
     drives = dict(zip(map(str, paths), drive_of_each(paths, options.drive), strict=True))
-    reading = Reading(options.map, {path: Path(drive) for path, drive in drives.items() if drive is not None})
+    reading = ReadingChoices(
+        options.map, {path: Path(drive) for path, drive in drives.items() if drive is not None}
+    )
     folder = options.output.resolve()
-    jobs, rig = Jobs(), Rig()
+    jobs, rig = Jobs(), RunningRig()
     with ExitStack() as open_:
         pool = open_.enter_context(workers(options))
         hand = open_.enter_context(

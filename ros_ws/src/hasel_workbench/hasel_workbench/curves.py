@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from hasel_sysid.report.figures.overlay import driven_stretches
 
-from hasel_workbench.state import State
+from hasel_workbench.state import SessionState
 from hasel_workbench.step import Step
 
 
@@ -37,7 +37,7 @@ class Curves:
         }
 
 
-def curves(state: State, run: str) -> Curves:
+def curves(state: SessionState, run: str) -> Curves:
     """Of what is shown and, while something is being tried, of what it started from."""
     number = state.number_of(run)
     shown, before = state.shown, state.current if state.trial else None

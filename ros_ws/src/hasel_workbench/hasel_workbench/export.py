@@ -14,9 +14,9 @@ from hasel_sysid.report.shape import simulated_shapes
 from hasel_sysid.report.write import write_report
 
 from hasel_workbench.evaluate import Progress
-from hasel_workbench.recordings import Reading
+from hasel_workbench.recordings import ReadingChoices
 from hasel_workbench.script import START_FILE, script
-from hasel_workbench.state import State
+from hasel_workbench.state import SessionState
 from hasel_workbench.waterfall import waterfall
 
 MODEL_FILE, SCRIPT_FILE = "model.yaml", "session.py"
@@ -24,7 +24,9 @@ _MOST_MODELS = 3
 """More models in one curve's picture cannot be told apart: the first and the last ones are shown."""
 
 
-def export(state: State, folder: Path, reading: Reading, pool: Executor, progress: Progress) -> list[Path]:
+def export(
+    state: SessionState, folder: Path, reading: ReadingChoices, pool: Executor, progress: Progress
+) -> list[Path]:
     """Write the kept steps; what is being tried is not among them. Returns what was written.
 
     pool: what is simulated is simulated there.
@@ -49,7 +51,7 @@ def export(state: State, folder: Path, reading: Reading, pool: Executor, progres
     return written
 
 
-def report_content(state: State, pool: Executor) -> ReportContent:
+def report_content(state: SessionState, pool: Executor) -> ReportContent:
     """What the report shows of a session."""
     comparisons = _shown(state)
     falling = waterfall(state)
@@ -73,7 +75,7 @@ def report_content(state: State, pool: Executor) -> ReportContent:
     )
 
 
-def _shown(state: State) -> list[Comparison]:
+def _shown(state: SessionState) -> list[Comparison]:
     steps = (
         state.kept if len(state.kept) <= _MOST_MODELS else (state.kept[0], *state.kept[1 - _MOST_MODELS :])
     )

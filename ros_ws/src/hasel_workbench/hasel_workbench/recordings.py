@@ -21,7 +21,7 @@ DEFAULT_MODEL = "swimmer"
 
 
 @dataclass(frozen=True)
-class Reading:
+class ReadingChoices:
     """How recordings are read. mapping: columns, as of --map; drives: the file of the drive of each recording, by the
     recording's path, for those that have one; own: columns of single files, by their paths, instead of `mapping`.
     """
@@ -52,7 +52,7 @@ def columns_of(path: str | Path) -> tuple[str, ...]:
 
 
 def read(
-    paths: Sequence[str | Path], reading: Reading, unseen: bool = False
+    paths: Sequence[str | Path], reading: ReadingChoices, unseen: bool = False
 ) -> tuple[list[Recording], list[Banner], list[Unread]]:
     """What can be read, a sentence for each that cannot, and those of them that have columns to choose from."""
     found, banners, unread = [], [], []

@@ -7,8 +7,8 @@ from pathlib import Path
 from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment
 
-from hasel_workbench.recordings import Reading
-from hasel_workbench.state import State
+from hasel_workbench.recordings import ReadingChoices
+from hasel_workbench.state import SessionState
 
 START_FILE, AGAIN_FILE = "start.yaml", "model_again.yaml"
 
@@ -38,7 +38,7 @@ if __name__ == "__main__":
 '''
 
 
-def script(state: State, reading: Reading) -> str:
+def script(state: SessionState, reading: ReadingChoices) -> str:
     """Its text: the steps up to the current one; the first one's model lies beside it."""
     lines: list[str] = []
     for step in state.kept[1:]:
@@ -52,13 +52,13 @@ def script(state: State, reading: Reading) -> str:
     )
 
 
-def _loaded(experiments: Sequence[Experiment], reading: Reading) -> str:
+def _loaded(experiments: Sequence[Experiment], reading: ReadingChoices) -> str:
     """Recordings that follow one another and whose columns are called alike are read together."""
     alike = groupby(experiments, key=lambda each: dict(reading.of(each.recording.path or "")))
     return " + ".join(_read(list(each), columns, reading) for columns, each in alike)
 
 
-def _read(experiments: Sequence[Experiment], columns: Mapping[str, str], reading: Reading) -> str:
+def _read(experiments: Sequence[Experiment], columns: Mapping[str, str], reading: ReadingChoices) -> str:
     paths = [_path(each) for each in experiments]
     parts = [*(f"        {str(path)!r}," for path in paths)]
     if columns:

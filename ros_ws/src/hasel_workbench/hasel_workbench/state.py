@@ -29,7 +29,7 @@ class Unread:
 
 
 @dataclass(frozen=True)
-class State:
+class SessionState:
     """experiments, unseen: the runs; banners: what is wrong with recordings; steps: the history; at: the current one
     (those after it were taken back); trial: what is being tried and not yet kept; diagnosis: of the step
     numbered `diagnosed`; suggestions: runs to make next, the best first; unread: files whose columns are to be named.
@@ -77,7 +77,7 @@ class State:
             )
         return names.index(run)
 
-    def with_step(self, step: Step) -> "State":
+    def with_step(self, step: Step) -> "SessionState":
         """With one more step in the history, after the current one."""
         steps = (*self.kept, step) if self.steps else (step,)
         return replace(self, steps=steps, at=len(steps) - 1, trial=None)

@@ -21,8 +21,8 @@ from hasel_workbench.evaluate import Progress, evaluated, silent
 from hasel_workbench.export import export
 from hasel_workbench.ledger import StepLedger
 from hasel_workbench.prediction import Prediction, predicted
-from hasel_workbench.recordings import Reading, checked, chosen_name, read
-from hasel_workbench.state import State
+from hasel_workbench.recordings import ReadingChoices, checked, chosen_name, read
+from hasel_workbench.state import SessionState
 from hasel_workbench.step import Step
 
 
@@ -41,10 +41,10 @@ class Workbench:
         folder: Path,
         model: str | None = None,
         effects: tuple[str, ...] | None = None,
-        reading: Reading = Reading(),  # noqa: B008  frozen
+        reading: ReadingChoices = ReadingChoices(),  # noqa: B008  frozen
     ) -> None:
         self.pool, self.hand, self.folder, self.effects = pool, hand, folder, effects
-        self.state, self.version = State(), 0
+        self.state, self.version = SessionState(), 0
         self.reading, self._asked = reading, model
         self._ledger = StepLedger(folder)
         self._changing = threading.Lock()
@@ -229,14 +229,18 @@ class Workbench:
         self._commit(self._judged_anew(state, model, progress))
 
     def _regroup(
-        self, state: State, fitted: Sequence[Experiment], unseen: Sequence[Experiment], progress: Progress
+        self,
+        state: SessionState,
+        fitted: Sequence[Experiment],
+        unseen: Sequence[Experiment],
+        progress: Progress,
     ) -> None:
         if not fitted:
             raise SysidError("no run to fit would be left; expected one at least: load another one first")
         state = replace(state, experiments=tuple(fitted), unseen=tuple(unseen))
         self._commit(self._judged_anew(state, state.current.model, progress))
 
-    def _judged_anew(self, state: State, model: Model, progress: Progress) -> State:
+    def _judged_anew(self, state: SessionState, model: Model, progress: Progress) -> SessionState:
         """All steps against the runs there are now; what was said of fewer is forgotten."""
         state = replace(state, trial=None, diagnosis=None, suggestions=())
         if not state.steps:
@@ -252,18 +256,18 @@ class Workbench:
             steps.append(replace(again, file=step.file))
         return replace(state, steps=tuple(steps))
 
-    def _kept(self, state: State, step: Step) -> State:
+    def _kept(self, state: SessionState, step: Step) -> SessionState:
         step = acts.filed(step, _unlike(step.label, [each.label for each in state.kept]))
         return state.with_step(acts.filed(step, step.label, self._ledger.keep(step)))
 
-    def _go(self, state: State, number: int) -> None:
+    def _go(self, state: SessionState, number: int) -> None:
         self._ledger.note(
             "taken back" if number < state.at else "restored", state.steps[max(number, state.at)]
         )
         self._commit(replace(state, at=number))
 
     @contextmanager
-    def _change(self) -> Iterator[State]:
+    def _change(self) -> Iterator[SessionState]:
         if not self._changing.acquire(blocking=False):
             raise SysidError("the workbench is at work on something else; wait for it, or cancel it")
         try:
@@ -271,7 +275,7 @@ class Workbench:
         finally:
             self._changing.release()
 
-    def _commit(self, state: State) -> None:
+    def _commit(self, state: SessionState) -> None:
         self.state = state
         self.version += 1
 

@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from hasel_sysid.report.content import ParameterRow, RankedRow, ReportContent, RunOverlay, Stage
+from hasel_sysid.report.content import ParameterRow, RankedRow, ReportContent, RunOverlay, StageRow
 from hasel_sysid.report.write import write_report
 from hasel_workbench.bench.browser import Browser, find_browser
 
@@ -32,7 +32,11 @@ def report() -> ReportContent:
     )
     found = RankedRow("quadratic_drag", "missing", 0.99, 0.99, [size], 0.4, "What it is.", "It is missing.")
     rows = [ParameterRow(f"parameter_{n}", 0.1, 0.01, "1", meaning="what it means") for n in range(12)]
-    stages = (Stage("start", 0.08, 0.09), Stage("fit", 0.03, 0.05), Stage("+ quadratic_drag", 0.003, 0.004))
+    stages = (
+        StageRow("start", 0.08, 0.09),
+        StageRow("fit", 0.03, 0.05),
+        StageRow("+ quadratic_drag", 0.003, 0.004),
+    )
     return ReportContent(
         title="Missing: quadratic_drag",
         verdict="What is left is noise.",

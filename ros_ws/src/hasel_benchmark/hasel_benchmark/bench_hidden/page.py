@@ -7,7 +7,7 @@ from hasel_bringup.hidden_truth.truth import NUMERICS
 
 from hasel_benchmark.bench_hidden.outcome import Outcome, outcome_from_dict
 from hasel_benchmark.bench_hidden.reliability import Bin, reliability
-from hasel_benchmark.bench_hidden.summary import Bar, bars, confusion
+from hasel_benchmark.bench_hidden.scores import Bar, bars, confusion
 
 _LINE = 20
 _WORDS = {True: "yes", False: "**no**", None: ""}

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.stats import binomtest
 
 from hasel_benchmark.bench_hidden.outcome import Outcome
-from hasel_benchmark.bench_hidden.summary import LINES, Line, is_seen
+from hasel_benchmark.bench_hidden.scores import LINES, Line, is_seen
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from hasel_benchmark.bench_hidden.outcome import Estimate, Outcome
 from hasel_benchmark.bench_hidden.page import as_json, as_markdown
-from hasel_benchmark.bench_hidden.summary import Bar, bars, confusion
+from hasel_benchmark.bench_hidden.scores import Bar, bars, confusion
 from statsmodels.stats.proportion import proportion_confint
 
 

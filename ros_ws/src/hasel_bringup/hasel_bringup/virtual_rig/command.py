@@ -9,7 +9,7 @@ from threadpoolctl import threadpool_limits
 
 from hasel_bringup.errors import BringupError
 from hasel_bringup.virtual_rig.body_node import VirtualBodyNode
-from hasel_bringup.virtual_rig.virtual_supply import VirtualSupply
+from hasel_bringup.virtual_rig.virtual_supply import RigSupply
 
 
 def run(options: argparse.Namespace) -> int:
@@ -22,6 +22,6 @@ def _node(options: argparse.Namespace, stack: contextlib.ExitStack) -> VirtualBo
     """The body's node and, for as long as `stack` is open, a virtual supply that it watches."""
     node = VirtualBodyNode()
     if not options.body_only:
-        supply = stack.enter_context(VirtualSupply(node.get_namespace()))
+        supply = stack.enter_context(RigSupply(node.get_namespace()))
         node.create_timer(1.0, supply.check)
     return node

@@ -11,7 +11,7 @@ from hasel_bringup.errors import BringupError
 _PATIENCE_S = 15.0
 
 
-class VirtualSupply:
+class RigSupply:
     """Starts the board and the driver on its port; as a context manager, ends both.
 
     namespace: of the driver, such as /hasel.
@@ -20,7 +20,7 @@ class VirtualSupply:
     def __init__(self, namespace: str) -> None:
         self._namespace = namespace
 
-    def __enter__(self) -> "VirtualSupply":
+    def __enter__(self) -> "RigSupply":
         self._folder = tempfile.TemporaryDirectory(prefix="hasel_")
         port = Path(self._folder.name) / "supply"
         self._processes = [self._start("hasel_driver.virtual_supply", "--link", str(port))]

@@ -10,7 +10,7 @@ from hasel_driver.hasel_supply import HaselSupply
 from hasel_driver.limits import Limits, Voltages
 from hasel_driver.mode import Mode
 from hasel_driver.serial_port import SerialPort
-from hasel_driver.status import Status
+from hasel_driver.status import SupplyStatus
 from hasel_driver.supervisor import Supervisor
 from hasel_driver.supply_thread import SupplyThread
 from hasel_driver.testing.rig import Rig
@@ -21,7 +21,7 @@ class Bench:
 
     def __init__(self, rig: Rig, limits: Limits | None = None) -> None:
         self.rig = rig
-        self.statuses: list[Status] = []
+        self.statuses: list[SupplyStatus] = []
         self.host_alive = True
         self.port = SerialPort(rig.port, protocol.BAUD)
         supply = HaselSupply(self.port, limits or Limits())
@@ -38,7 +38,7 @@ class Bench:
         """Call a method of the supervisor in its thread."""
         return self.thread.call(lambda: method(*arguments)).result(timeout=10)
 
-    def status(self) -> Status:
+    def status(self) -> SupplyStatus:
         """The present status."""
         return self.call(self.supervisor.status)
 

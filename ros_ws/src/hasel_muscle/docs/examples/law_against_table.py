@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 from hasel_muscle.improve import fit_muscle
+from hasel_muscle.muscle_runs import muscle_for, settled_runs
 from hasel_muscle.problem import BenchProblem, as_muscle, bench_problem
-from hasel_muscle.reading import muscle_for, settled_runs
 from hasel_muscle.stroke_table import Rival, rival_table
 from hasel_sim.muscle.muscle import Muscle
 

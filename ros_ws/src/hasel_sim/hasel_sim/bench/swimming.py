@@ -7,8 +7,8 @@ from dataclasses import asdict, dataclass
 import numpy as np
 from rich.console import Console
 
-from hasel_sim.bench.report import Bar, bars_table
 from hasel_sim.bench.speed import free_swim_factor
+from hasel_sim.bench.speed_report import SpeedBar, bars_table
 from hasel_sim.model import load_model
 from hasel_sim.parallel import executor
 from hasel_sim.swimming.boxes import Boxes
@@ -31,16 +31,18 @@ class SwimmingReport:
     sweep: float
     load: float
 
-    def bars(self) -> list[Bar]:
+    def bars(self) -> list[SpeedBar]:
         """The figures that have a bar."""
         return [
-            Bar(
+            SpeedBar(
                 f"real-time factor, free swim of {DURATION_S:g} s with every force of the fluid",
                 self.free_swim,
                 5,
                 True,
             ),
-            Bar(f"sweep of {self.swims} swims of {DURATION_S:g} s, {JOBS} processes (s)", self.sweep, 300),
+            SpeedBar(
+                f"sweep of {self.swims} swims of {DURATION_S:g} s, {JOBS} processes (s)", self.sweep, 300
+            ),
         ]
 
     def values(self) -> dict:

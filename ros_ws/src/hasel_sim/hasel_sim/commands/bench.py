@@ -10,10 +10,10 @@ from threadpoolctl import threadpool_limits
 
 from hasel_sim.bench.cases import fitted_swimmer
 from hasel_sim.bench.convergence import mesh_errors, step_errors
-from hasel_sim.bench.effects import EffectsReport, measure_effects
+from hasel_sim.bench.effect_costs import EffectsReport, measure_effects
 from hasel_sim.bench.in_turns import InTurns, measure_in_turns
-from hasel_sim.bench.report import ConvergenceReport, SpeedReport
 from hasel_sim.bench.speed import by_nodes, by_parameters, free_swim_factor, measure_side_by_side
+from hasel_sim.bench.speed_report import ConvergenceReport, SpeedReport
 from hasel_sim.bench.swimming import SwimmingReport, measure_swimming
 from hasel_sim.bench.timing import first_run_seconds
 from hasel_sim.bench.where_time_goes import shares

@@ -18,8 +18,8 @@ from hasel_sim.model import Model, load_model
 from hasel_sim.parallel import executor
 from hasel_sim.swimming.boxes import Boxes
 from hasel_sim.swimming.optimum import Optimum, optimum, standard_error_of
-from hasel_sim.swimming.picture import draw_speeds
-from hasel_sim.swimming.sweep import Ledger, Swam, check_drives, fingerprint, sweep, swim_together
+from hasel_sim.swimming.sweep import Swam, SweepLedger, check_drives, fingerprint, sweep, swim_together
+from hasel_sim.swimming.swim_picture import draw_speeds
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ def _label(pair: tuple[float, float]) -> str:
 
 
 def _sweep(pool, model: Model, options: argparse.Namespace, name: str) -> Swept:
-    ledger = Ledger(options.output / f"{name}.csv", model, options.duration)
+    ledger = SweepLedger(options.output / f"{name}.csv", model, options.duration)
     drives = [Boxes(pair[0], pair[1], f) for pair in options.voltage for f in options.frequency]
     check_drives(model, drives, options.duration)
     with counted(name, len(set(drives))) as done:

@@ -39,7 +39,7 @@ class Channel(Section):
         return DriveChannel(self.name, self.quantity, self.unit)
 
 
-class Muscle(Section):
+class MuscleRegion(Section):
     """Contractile fibres along the body from from_m to to_m, in one half or both.
 
     rest_contraction: how much shorter than the body its fibres are when nothing is commanded (pretension).

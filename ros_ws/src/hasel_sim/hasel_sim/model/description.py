@@ -8,7 +8,7 @@ from hasel_common.names import nearest_name
 from pydantic import Field, model_validator
 
 from hasel_sim.effects.base import Surroundings
-from hasel_sim.model.actuation import Channel, Muscle
+from hasel_sim.model.actuation import Channel, MuscleRegion
 from hasel_sim.model.body import Body, BodyRegion, Material
 from hasel_sim.model.medium import Medium
 from hasel_sim.model.muscle_law import MuscleLaw
@@ -75,7 +75,7 @@ class Description(Section):
     material: Materials
     medium: Medium | None = None
     channels: tuple[Channel, ...] = ()
-    muscles: tuple[Muscle, ...] = ()
+    muscles: tuple[MuscleRegion, ...] = ()
     muscle_response: Literal["sloped_box", "first_order"] = "sloped_box"
     """How muscles follow what is commanded: the contraction at a limited rate (`slope`), or the drive itself through a
     first-order lag (`rise_time`, `fall_time`), as the pressure in a chamber does."""
@@ -137,7 +137,7 @@ def _places(d: Description) -> Iterator[str]:
             yield from _apart(kind, one, other)
 
 
-def _on_the_body(kind: str, part: Muscle | BodyRegion, d: Description) -> Iterator[str]:
+def _on_the_body(kind: str, part: MuscleRegion | BodyRegion, d: Description) -> Iterator[str]:
     longest = d.body.whole_length_m if kind == "body.regions" and part.layer == "spine" else d.body.length_m
     if part.to_m <= part.from_m or part.to_m > longest + _SLACK:
         yield (
@@ -148,7 +148,7 @@ def _on_the_body(kind: str, part: Muscle | BodyRegion, d: Description) -> Iterat
         yield f"{kind}: '{part.name}' lies in the spine, and this body has none: choose another layer"
 
 
-def _apart(kind: str, one: Muscle | BodyRegion, other: Muscle | BodyRegion) -> Iterator[str]:
+def _apart(kind: str, one: MuscleRegion | BodyRegion, other: MuscleRegion | BodyRegion) -> Iterator[str]:
     first, second = one.stretch, other.stretch
     shared = set(first.layers) & set(second.layers)
     start, end = max(first.start, second.start), min(first.end, second.end)

@@ -14,7 +14,7 @@ _SECTIONS: dict[str, type[BaseModel]] = {
     "soft": body.Material,
     "medium": medium.Medium,
     "channels": actuation.Channel,
-    "muscles": actuation.Muscle,
+    "muscles": actuation.MuscleRegion,
     "numerics": description.Numerics,
     "muscle": muscle_law.MuscleLaw,
     "pouch": pouch_section.PouchSection,

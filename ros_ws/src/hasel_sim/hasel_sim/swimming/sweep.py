@@ -67,7 +67,7 @@ def swim_together(model: Model, drives: Sequence[Boxes], duration: float) -> lis
     return out
 
 
-class Ledger:
+class SweepLedger:
     """The file of a sweep: a line per drive, written when it ends; only for one model and one duration [s]."""
 
     def __init__(self, path: Path, model: Model, duration: float) -> None:
@@ -121,7 +121,7 @@ def sweep(
     model: Model,
     drives: Sequence[Boxes],
     duration: float,
-    ledger: Ledger | None = None,
+    ledger: SweepLedger | None = None,
     done: Callable[[int], None] = lambda count: None,
 ) -> list[Swam]:
     """Every drive's swim, in the order of the drives; done: called with how many have ended."""

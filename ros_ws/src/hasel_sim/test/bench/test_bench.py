@@ -14,8 +14,7 @@ from hasel_sim.bench.cases import (
     with_nodes,
 )
 from hasel_sim.bench.convergence import mesh_errors, step_errors
-from hasel_sim.bench.effects import measure_effects
-from hasel_sim.bench.report import Bar, SpeedReport
+from hasel_sim.bench.effect_costs import measure_effects
 from hasel_sim.bench.speed import (
     SideBySide,
     Speed,
@@ -23,6 +22,7 @@ from hasel_sim.bench.speed import (
     measure_side_by_side,
     measure_speed,
 )
+from hasel_sim.bench.speed_report import SpeedBar, SpeedReport
 from hasel_sim.bench.swimming import measure_swimming
 from hasel_sim.bench.timing import first_run_seconds, processor_seconds
 from hasel_sim.bench.where_time_goes import shares
@@ -119,9 +119,9 @@ def test_the_profile_accounts_for_all_time():
 
 def test_a_missed_bar_is_not_met():
     """In either direction."""
-    assert not Bar("speed", 4.0, 5.0, at_least=True).met
-    assert not Bar("cost", 3.0, 2.0).met
-    assert Bar("cost", 1.0, 2.0).met
+    assert not SpeedBar("speed", 4.0, 5.0, at_least=True).met
+    assert not SpeedBar("cost", 3.0, 2.0).met
+    assert SpeedBar("cost", 1.0, 2.0).met
 
 
 @pytest.mark.slow
@@ -191,10 +191,10 @@ def test_a_free_swim_costs_little_more_than_its_effects_must():
 def test_every_effect_is_timed_over_the_run_without_it(monkeypatch):
     """In the catalogue's order; forward over the baseline's forward, sensitivities over the same forward run."""
     monkeypatch.setattr(
-        "hasel_sim.bench.effects.catalogue", lambda: dict.fromkeys(["quadratic_drag"], QUADRATIC_DRAG)
+        "hasel_sim.bench.effect_costs.catalogue", lambda: dict.fromkeys(["quadratic_drag"], QUADRATIC_DRAG)
     )
     monkeypatch.setattr(
-        "hasel_sim.bench.effects.processor_seconds", lambda works, repeats: [2.0, 4.0, 3.0, 7.5]
+        "hasel_sim.bench.effect_costs.processor_seconds", lambda works, repeats: [2.0, 4.0, 3.0, 7.5]
     )
     report = measure_effects(1, 0.05)
     assert (report.baseline_s, report.baseline_sensitivities) == (2.0, 2.0)
@@ -206,7 +206,7 @@ def test_every_effect_is_timed_over_the_run_without_it(monkeypatch):
 def test_what_is_timed_of_an_effect_runs(monkeypatch):
     """Four runs forward and with all sensitivities, with the effect at its typical values."""
     monkeypatch.setattr(
-        "hasel_sim.bench.effects.catalogue", lambda: dict.fromkeys(["quadratic_drag"], QUADRATIC_DRAG)
+        "hasel_sim.bench.effect_costs.catalogue", lambda: dict.fromkeys(["quadratic_drag"], QUADRATIC_DRAG)
     )
     asked = []
 
@@ -219,7 +219,7 @@ def test_what_is_timed_of_an_effect_runs(monkeypatch):
         asked.append((len(cases), sorted(cases[0][0].effects, key=str) != [], len(names)))
         return simulate_many(cases, names)
 
-    monkeypatch.setattr("hasel_sim.bench.effects.processor_seconds", timed)
-    monkeypatch.setattr("hasel_sim.bench.effects.simulate_many", counted)
+    monkeypatch.setattr("hasel_sim.bench.effect_costs.processor_seconds", timed)
+    monkeypatch.setattr("hasel_sim.bench.effect_costs.simulate_many", counted)
     measure_effects(1, 0.05)
     assert asked == [(4, False, 0), (4, False, 4), (4, True, 0), (4, True, 5)]

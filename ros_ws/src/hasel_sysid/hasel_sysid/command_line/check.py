@@ -13,7 +13,7 @@ from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import check_parser
 from hasel_sysid.command_line.running import BAD_INPUT, run_command
 from hasel_sysid.data_gate.check import refusal
-from hasel_sysid.data_gate.summary import Summary, summary
+from hasel_sysid.data_gate.understood import Summary, summary
 from hasel_sysid.dataset import for_model
 from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import experiment_of

@@ -16,7 +16,7 @@ from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import code_after, show
 from hasel_sysid.command_line.workers import workers
 from hasel_sysid.compare import Comparison, compare
-from hasel_sysid.data_gate import Finding
+from hasel_sysid.data_gate import DataFinding
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import FittedModel, identify
 from hasel_sysid.report.from_results import fit_content
@@ -61,7 +61,7 @@ def _fit(options: argparse.Namespace) -> int:
 
 
 def _finish(
-    options: argparse.Namespace, result: FittedModel, comparison: Comparison, said: Sequence[Finding]
+    options: argparse.Namespace, result: FittedModel, comparison: Comparison, said: Sequence[DataFinding]
 ) -> None:
     path = _save(result.model, options.output)
     show([comparison], said)

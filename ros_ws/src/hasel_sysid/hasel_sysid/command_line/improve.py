@@ -19,7 +19,7 @@ from hasel_sysid.command_line.summary import improvement_lines
 from hasel_sysid.command_line.workers import workers
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.compare.compare import comparison_of
-from hasel_sysid.data_gate import Finding
+from hasel_sysid.data_gate import DataFinding
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.improvement import improve
 from hasel_sysid.ledger import Ledger
@@ -97,7 +97,7 @@ def _improve(options: argparse.Namespace) -> int:
     return MISLEADING if found.set_up else code_after([*given.said, *fitted])
 
 
-def _undecided(comparison: Comparison) -> list[Finding]:
+def _undecided(comparison: Comparison) -> list[DataFinding]:
     return [finding for finding in comparison.set_up if finding.fault not in DECIDED]
 
 
@@ -126,7 +126,7 @@ def _finish(
     start: Comparison,
     stages: Sequence[Comparison],
     suggestions: Sequence[Suggestion],
-    suspected: Sequence[Finding],
+    suspected: Sequence[DataFinding],
 ) -> None:
     folder: Path = options.output
     save_model(found.model, folder / MODEL_FILE)

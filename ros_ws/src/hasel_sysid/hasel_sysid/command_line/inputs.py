@@ -12,7 +12,7 @@ from hasel_sim.model import Model, load_model
 
 from hasel_sysid.command_line.options import DEFAULT_MODEL
 from hasel_sysid.command_line.shown import announce
-from hasel_sysid.data_gate import Finding
+from hasel_sysid.data_gate import DataFinding
 from hasel_sysid.dataset import for_model, load_experiments, prepared, simulable
 from hasel_sysid.drive_match import check_levels
 from hasel_sysid.experiment import GENTLEST, Experiment
@@ -31,7 +31,7 @@ class Inputs:
     unseen: list[Experiment]
     label: str
     model: Model
-    said: list[Finding]
+    said: list[DataFinding]
     noise: "NoiseModel | None" = None
 
 

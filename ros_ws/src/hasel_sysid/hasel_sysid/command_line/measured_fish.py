@@ -12,8 +12,8 @@ from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.specimen_parsers import measured_fish_parser
 from hasel_sysid.measured_fish.comparison import FishComparison, compare_films
-from hasel_sysid.measured_fish.picture import write_picture
-from hasel_sysid.measured_fish.reading import filmed_runs
+from hasel_sysid.measured_fish.films import filmed_runs
+from hasel_sysid.measured_fish.fish_picture import write_picture
 
 PICTURE_FILE = "measured_fish.png"
 

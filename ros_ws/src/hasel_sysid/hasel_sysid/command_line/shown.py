@@ -8,11 +8,11 @@ from rich.console import Console
 from hasel_sysid.command_line.running import MISLEADING
 from hasel_sysid.compare import Comparison
 from hasel_sysid.compare.table import condition_table, run_table, speed_table
-from hasel_sysid.data_gate import Finding, Severity, check_recording
+from hasel_sysid.data_gate import DataFinding, Severity, check_recording
 from hasel_sysid.experiment import Experiment
 
 
-def announce(experiments: Sequence[Experiment], but: Collection[str] = ()) -> list[Finding]:
+def announce(experiments: Sequence[Experiment], but: Collection[str] = ()) -> list[DataFinding]:
     """Check recordings before anything is simulated; faults of the set-up but these go to stderr, and are returned."""
     found = [
         f for experiment in experiments for f in check_recording(experiment.recording) if f.fault not in but
@@ -21,7 +21,7 @@ def announce(experiments: Sequence[Experiment], but: Collection[str] = ()) -> li
     return found
 
 
-def show(comparisons: Sequence[Comparison], said: Sequence[Finding] = ()) -> None:
+def show(comparisons: Sequence[Comparison], said: Sequence[DataFinding] = ()) -> None:
     """Print tables and where the models fail, and those faults of the set-up that have not been `said`."""
     tell(comparisons[0].set_up, said)
     console = Console(soft_wrap=True)
@@ -46,12 +46,12 @@ def summarise(lines: Sequence[str], everything: Callable[[], None], show_all: bo
         print(f"({others}: --all, and in the report)")
 
 
-def code_after(findings: Sequence[Finding]) -> int:
+def code_after(findings: Sequence[DataFinding]) -> int:
     """Exit code of a command that ran to its end: MISLEADING where a recording has a fault that misleads."""
     return MISLEADING if any(finding.severity is Severity.ERROR for finding in findings) else 0
 
 
-def tell(findings: Sequence[Finding], said: Sequence[Finding] = ()) -> None:
+def tell(findings: Sequence[DataFinding], said: Sequence[DataFinding] = ()) -> None:
     """Print the faults of the set-up that have not been `said`."""
     for finding in findings:
         if finding in said:

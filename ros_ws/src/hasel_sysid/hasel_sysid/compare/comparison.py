@@ -7,7 +7,7 @@ import numpy as np
 from hasel_sim.model import Model
 
 from hasel_sysid.compare.run_comparison import RunComparison
-from hasel_sysid.data_gate import Finding
+from hasel_sysid.data_gate import DataFinding
 from hasel_sysid.where_it_fails.analyse import WhereItFails
 from hasel_sysid.where_it_fails.by_condition import ConditionError, error_by_frequency, error_by_level
 
@@ -27,7 +27,7 @@ class Comparison:
     model: Model
     runs: tuple[RunComparison, ...]
     where: WhereItFails
-    set_up: tuple[Finding, ...] = ()
+    set_up: tuple[DataFinding, ...] = ()
 
     @property
     def mean_absolute_error(self) -> float | None:

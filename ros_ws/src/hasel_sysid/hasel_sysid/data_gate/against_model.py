@@ -5,7 +5,7 @@ from hasel_recording import Recording
 
 from hasel_sysid.data_gate.channel_lag import check_channel_lag
 from hasel_sysid.data_gate.check import ordered
-from hasel_sysid.data_gate.finding import Finding, error, warning
+from hasel_sysid.data_gate.finding import DataFinding, error, warning
 from hasel_sysid.where_it_fails.components.aligned import Alignment, align
 from hasel_sysid.where_it_fails.noise import high_frequency_noise
 from hasel_sysid.where_it_fails.run_series import RunSeries, run_series
@@ -18,7 +18,7 @@ _HARDLY_MORE = 1.5
 
 def check_against_model(
     recording: Recording, sin_theta: np.ndarray, markers: np.ndarray | None = None
-) -> list[Finding]:
+) -> list[DataFinding]:
     """Faults that show against a simulation, errors first.
 
     sin_theta [n]: simulated at the recording's frames (NaN where not); markers [m] [n, 3, 2]: simulated, if recorded
@@ -34,7 +34,7 @@ def check_against_model(
     return ordered(recording.name, found)
 
 
-def _same(run: RunSeries) -> list[Finding]:
+def _same(run: RunSeries) -> list[DataFinding]:
     apart = float(np.abs(run.measured - run.simulated).max())
     if apart > 1e-9:
         return []
@@ -42,7 +42,7 @@ def _same(run: RunSeries) -> list[Finding]:
     return [warning("simulation equals measurement", apart, evidence, "check which signal was recorded")]
 
 
-def _sign(run: RunSeries) -> list[Finding]:
+def _sign(run: RunSeries) -> list[DataFinding]:
     """Opposite over the whole run and from the very start, where resonance has not yet shifted any phase."""
     alike = float(np.corrcoef(run.measured, run.simulated)[0, 1])
     beginning = run.time <= (run.time[0] + 0.5 * run.cycle.period if run.cycle else np.inf)
@@ -57,7 +57,7 @@ def _sign(run: RunSeries) -> list[Finding]:
     return [error("sign flip or swapped channels", alike, evidence, advice)]
 
 
-def _aligned(run: RunSeries) -> list[Finding]:
+def _aligned(run: RunSeries) -> list[DataFinding]:
     aligned = align(run)
     alike = float(np.corrcoef(run.measured, aligned.shifted)[0, 1])
     if alike < _ALIKE:
@@ -65,7 +65,7 @@ def _aligned(run: RunSeries) -> list[Finding]:
     return _scale(aligned) or [*_lag(run, aligned), *check_channel_lag(run, aligned)]
 
 
-def _scale(aligned: Alignment) -> list[Finding]:
+def _scale(aligned: Alignment) -> list[DataFinding]:
     gain = aligned.gain
     if 1 / 8 < gain < 8:
         return []
@@ -75,7 +75,7 @@ def _scale(aligned: Alignment) -> list[Finding]:
     return [warning("scale of the angle", gain, evidence, "check units and calibration, or fit the model")]
 
 
-def _lag(run: RunSeries, aligned: Alignment) -> list[Finding]:
+def _lag(run: RunSeries, aligned: Alignment) -> list[DataFinding]:
     """A pure shift in time: it leaves hardly more than noise, which a lag of the body or the muscles would not."""
     lag, shift = aligned.components[2], float(np.std(aligned.remainder))
     pure = shift < _HARDLY_MORE * high_frequency_noise(run.measured)
@@ -93,7 +93,7 @@ def _lag(run: RunSeries, aligned: Alignment) -> list[Finding]:
     return [(error if impossible else warning)("command lag", lag.value, evidence, advice)]
 
 
-def _lengths(recording: Recording, markers: np.ndarray | None) -> list[Finding]:
+def _lengths(recording: Recording, markers: np.ndarray | None) -> list[DataFinding]:
     if markers is None or recording.angle_markers is None:
         return []
     measured, simulated = _parts(recording.angle_markers), _parts(markers)

@@ -4,7 +4,7 @@ import numpy as np
 from hasel_recording import Recording
 from scipy.ndimage import median_filter
 
-from hasel_sysid.data_gate.finding import Finding, error, warning
+from hasel_sysid.data_gate.finding import DataFinding, error, warning
 from hasel_sysid.where_it_fails.drive_cycle import comparable, drive_cycle
 from hasel_sysid.where_it_fails.noise import high_frequency_noise
 
@@ -18,7 +18,7 @@ _LEAST_MOTION_IN_NOISE = 10.0
 _FRAMES_PER_CYCLE = 8
 
 
-def check_angle(recording: Recording) -> list[Finding]:
+def check_angle(recording: Recording) -> list[DataFinding]:
     """Faults of sin theta alone."""
     sin_theta = recording.sin_theta[recording.valid]
     lost = _lost(recording)
@@ -28,7 +28,7 @@ def check_angle(recording: Recording) -> list[Finding]:
     return lost + (unit or [*_frozen(recording), *_jumps(sin_theta), *_motion(recording, sin_theta)])
 
 
-def _lost(recording: Recording) -> list[Finding]:
+def _lost(recording: Recording) -> list[DataFinding]:
     share = 1.0 - float(recording.valid.mean())
     if share == 0:
         return []
@@ -37,7 +37,7 @@ def _lost(recording: Recording) -> list[Finding]:
     return [make("lost frames", share, evidence, "look at the markers' colour and light in the video")]
 
 
-def _unit(sin_theta: np.ndarray) -> list[Finding]:
+def _unit(sin_theta: np.ndarray) -> list[DataFinding]:
     largest = float(np.abs(sin_theta).max())
     outside = float(np.mean(np.abs(sin_theta) > 1.0))
     if outside < 0.01:
@@ -47,7 +47,7 @@ def _unit(sin_theta: np.ndarray) -> list[Finding]:
     return [error("unit of the angle", largest, evidence, f"give its sine; is it the angle in {unit}?")]
 
 
-def _frozen(recording: Recording) -> list[Finding]:
+def _frozen(recording: Recording) -> list[DataFinding]:
     values, time = recording.sin_theta, recording.time_s
     starts = np.flatnonzero(np.concatenate([[True], values[1:] != values[:-1]]))
     ends = np.append(starts[1:], len(values)) - 1
@@ -61,7 +61,7 @@ def _frozen(recording: Recording) -> list[Finding]:
     return [make("frozen angle", longest, evidence, advice)]
 
 
-def _jumps(sin_theta: np.ndarray) -> list[Finding]:
+def _jumps(sin_theta: np.ndarray) -> list[DataFinding]:
     usual = median_filter(sin_theta, size=5, mode="nearest")
     apart = np.abs(sin_theta - usual)
     noise = high_frequency_noise(sin_theta)
@@ -73,7 +73,7 @@ def _jumps(sin_theta: np.ndarray) -> list[Finding]:
     return [warning("jumping marker", jumps, evidence, "another object is taken for a marker: cover it")]
 
 
-def _motion(recording: Recording, sin_theta: np.ndarray) -> list[Finding]:
+def _motion(recording: Recording, sin_theta: np.ndarray) -> list[DataFinding]:
     if _too_fast_to_tell(recording):
         return []
     noise = high_frequency_noise(sin_theta)

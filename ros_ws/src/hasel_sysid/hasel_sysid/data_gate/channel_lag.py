@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hasel_sysid.data_gate.finding import Finding, warning
+from hasel_sysid.data_gate.finding import DataFinding, warning
 from hasel_sysid.where_it_fails.components.added import explained_by
 from hasel_sysid.where_it_fails.components.aligned import Alignment
 from hasel_sysid.where_it_fails.run_series import RunSeries
@@ -11,7 +11,7 @@ _CLEAR = 5.0
 _LEAST_S = 0.004
 
 
-def check_channel_lag(run: RunSeries, aligned: Alignment) -> list[Finding]:
+def check_channel_lag(run: RunSeries, aligned: Alignment) -> list[DataFinding]:
     """Compare the lag after switches to the upper muscle with that after switches to the lower one."""
     if (
         run.cycle is None

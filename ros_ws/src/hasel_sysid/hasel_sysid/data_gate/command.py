@@ -3,7 +3,7 @@
 import numpy as np
 from hasel_recording import HASEL_PAIR, Recording
 
-from hasel_sysid.data_gate.finding import Finding, error, warning
+from hasel_sysid.data_gate.finding import DataFinding, error, warning
 from hasel_sysid.where_it_fails.drive_cycle import comparable, drive_cycle, net_drive
 from hasel_sysid.where_it_fails.noise import high_frequency_noise
 
@@ -22,7 +22,7 @@ _SEEN_AT_FRAMES = 2.05
 """A switch is seen up to one frame late, so regular ones seem to be up to two frames more or less apart."""
 
 
-def check_command(recording: Recording) -> list[Finding]:
+def check_command(recording: Recording) -> list[DataFinding]:
     """Faults of the drive, by itself and against the header lines; none for a passive body."""
     if not recording.driven:
         return []
@@ -43,7 +43,7 @@ def check_command(recording: Recording) -> list[Finding]:
     ]
 
 
-def _unit(recording: Recording, values: np.ndarray) -> list[Finding]:
+def _unit(recording: Recording, values: np.ndarray) -> list[DataFinding]:
     found = []
     for quantity, (least, most, others) in _LIKELY.items():
         own = [
@@ -59,7 +59,7 @@ def _unit(recording: Recording, values: np.ndarray) -> list[Finding]:
     return found
 
 
-def _channels(recording: Recording, values: np.ndarray) -> list[Finding]:
+def _channels(recording: Recording, values: np.ndarray) -> list[DataFinding]:
     used = np.abs(values).max(axis=0) > 0
     names = [channel.name for channel in recording.channels]
     both = recording.metadata.get("muscles", "both") in ("both", "lower_first")
@@ -88,7 +88,7 @@ def _channels(recording: Recording, values: np.ndarray) -> list[Finding]:
     return found
 
 
-def _clipping(recording: Recording, voltage: np.ndarray) -> list[Finding]:
+def _clipping(recording: Recording, voltage: np.ndarray) -> list[DataFinding]:
     """A command that stays below what was asked for, or at a limit; only the rig's supply has one that is known."""
     if recording.channels != HASEL_PAIR:
         return []
@@ -112,7 +112,7 @@ def _clipping(recording: Recording, voltage: np.ndarray) -> list[Finding]:
     return found
 
 
-def _switching(recording: Recording, time: np.ndarray, values: np.ndarray) -> list[Finding]:
+def _switching(recording: Recording, time: np.ndarray, values: np.ndarray) -> list[DataFinding]:
     cycle = drive_cycle(time, comparable(values, recording.channels))
     if cycle is None:
         if recording.channels != HASEL_PAIR:
@@ -138,7 +138,7 @@ def _switching(recording: Recording, time: np.ndarray, values: np.ndarray) -> li
 
 def _between_frames(
     recording: Recording, time: np.ndarray, values: np.ndarray, frame: float
-) -> list[Finding]:
+) -> list[DataFinding]:
     """Switches that fall between frames, where the drive is known at the frames only and the body moves fast."""
     changes = time[1 + np.flatnonzero(np.any(np.diff(values, axis=0) != 0, axis=1))]
     distances = np.diff(changes)
@@ -173,7 +173,7 @@ def _recurrences(time: np.ndarray, values: np.ndarray) -> np.ndarray:
     return distances[distances < 1.5 * np.median(distances)]
 
 
-def _faked(recording: Recording) -> list[Finding]:
+def _faked(recording: Recording) -> list[DataFinding]:
     """An angle that is the command itself, to a rounding: a slow body follows a slow drive closely, but never so."""
     if recording.drive_signal is None:
         return []

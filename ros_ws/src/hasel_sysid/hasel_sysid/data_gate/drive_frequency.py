@@ -3,7 +3,7 @@
 import numpy as np
 from hasel_recording import Recording
 
-from hasel_sysid.data_gate.finding import Finding, error
+from hasel_sysid.data_gate.finding import DataFinding, error
 from hasel_sysid.where_it_fails.drive_cycle import DriveCycle, comparable, drive_cycle
 
 _HARMONICS = 6
@@ -14,7 +14,7 @@ _PERIODIC, _NOT_AT_THE_DRIVES = 0.8, 0.5
 _RATIOS = np.arange(0.3, 3.0, 0.01)
 
 
-def check_drive_frequency(recording: Recording) -> list[Finding]:
+def check_drive_frequency(recording: Recording) -> list[DataFinding]:
     """A response that repeats, but neither with the drive's period nor a whole part of it.
 
     A body that is driven periodically answers, once it has settled, with the drive's period. The first half of what is

@@ -12,7 +12,7 @@ class Severity(str, Enum):
 
 
 @dataclass(frozen=True)
-class Finding:
+class DataFinding:
     """fault: its name; evidence: what was found, with `number`; advice: what to do; recording: where."""
 
     fault: str
@@ -43,11 +43,11 @@ class Finding:
         }
 
 
-def error(fault: str, number: float, evidence: str, advice: str) -> Finding:
+def error(fault: str, number: float, evidence: str, advice: str) -> DataFinding:
     """A fault with which results mislead."""
-    return Finding(fault, Severity.ERROR, evidence, float(number), advice)
+    return DataFinding(fault, Severity.ERROR, evidence, float(number), advice)
 
 
-def warning(fault: str, number: float, evidence: str, advice: str) -> Finding:
+def warning(fault: str, number: float, evidence: str, advice: str) -> DataFinding:
     """A fault with which results may still hold."""
-    return Finding(fault, Severity.WARNING, evidence, float(number), advice)
+    return DataFinding(fault, Severity.WARNING, evidence, float(number), advice)

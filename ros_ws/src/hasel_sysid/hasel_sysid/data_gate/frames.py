@@ -3,7 +3,7 @@
 import numpy as np
 from hasel_recording import Recording
 
-from hasel_sysid.data_gate.finding import Finding, error, warning
+from hasel_sysid.data_gate.finding import DataFinding, error, warning
 
 _FEWEST_FRAMES = 16
 _MOST_JITTER = 0.2
@@ -15,7 +15,7 @@ _SMALLER_UNITS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 _CHANCE = 3.0
 
 
-def check_frames(recording: Recording) -> list[Finding]:
+def check_frames(recording: Recording) -> list[DataFinding]:
     """Faults of the times alone."""
     time = recording.time_s
     seen = int(recording.valid.sum())
@@ -36,7 +36,7 @@ def check_frames(recording: Recording) -> list[Finding]:
     return _unit(steps) or [*_length(time), *_gaps(steps), *_jitter(steps), *_rate(steps)]
 
 
-def _unit(steps: np.ndarray) -> list[Finding]:
+def _unit(steps: np.ndarray) -> list[DataFinding]:
     usual = float(np.median(steps))
     if usual < _SHORTEST_STEP_S:
         evidence = f"frames are {usual:.3g} s apart, {1 / usual:.6g} per second, which no camera takes"
@@ -51,7 +51,7 @@ def _unit(steps: np.ndarray) -> list[Finding]:
     return [error("unit of time", usual, evidence, advice)]
 
 
-def _length(time: np.ndarray) -> list[Finding]:
+def _length(time: np.ndarray) -> list[DataFinding]:
     duration = float(time[-1] - time[0])
     if duration <= _LONGEST_RUN_S:
         return []
@@ -63,7 +63,7 @@ def _length(time: np.ndarray) -> list[Finding]:
     ]
 
 
-def _gaps(steps: np.ndarray) -> list[Finding]:
+def _gaps(steps: np.ndarray) -> list[DataFinding]:
     """Missing frames; a long step that a short one makes up for is a late stamp, not a missing frame."""
     usual = float(np.median(steps))
     late = np.count_nonzero(steps < 0.5 * usual)
@@ -75,7 +75,7 @@ def _gaps(steps: np.ndarray) -> list[Finding]:
     return [make("dropped frames", missing, evidence, "record with less load, or a lower frame rate")]
 
 
-def _jitter(steps: np.ndarray) -> list[Finding]:
+def _jitter(steps: np.ndarray) -> list[DataFinding]:
     usual = float(np.median(steps))
     jitter = float(np.std(steps[steps <= 1.5 * usual]) / usual)
     if jitter <= _MOST_JITTER:
@@ -84,7 +84,7 @@ def _jitter(steps: np.ndarray) -> list[Finding]:
     return [warning("jitter", jitter, evidence, "stamp frames when they are exposed, not when they arrive")]
 
 
-def _rate(steps: np.ndarray) -> list[Finding]:
+def _rate(steps: np.ndarray) -> list[DataFinding]:
     rate = float(1 / np.median(steps))
     if rate >= _LOWEST_RATE_HZ or rate <= 2:
         return []

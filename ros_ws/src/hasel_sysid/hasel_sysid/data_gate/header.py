@@ -4,10 +4,10 @@ from hasel_common.names import nearest
 from hasel_recording import Recording
 from hasel_recording.header_keys import KNOWN_KEYS
 
-from hasel_sysid.data_gate.finding import Finding, error, warning
+from hasel_sysid.data_gate.finding import DataFinding, error, warning
 
 
-def check_header(recording: Recording) -> list[Finding]:
+def check_header(recording: Recording) -> list[DataFinding]:
     """Values that are not understood, and keys that resemble a known one; any other key is kept as a note."""
     found = [*_numbers(recording)]
     for key in recording.metadata:
@@ -18,7 +18,7 @@ def check_header(recording: Recording) -> list[Finding]:
     return found
 
 
-def _numbers(recording: Recording) -> list[Finding]:
+def _numbers(recording: Recording) -> list[DataFinding]:
     found = []
     for key in ("initial_time_s", "initial_load_factor"):
         try:

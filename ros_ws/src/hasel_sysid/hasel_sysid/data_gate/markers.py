@@ -3,13 +3,13 @@
 import numpy as np
 from hasel_recording import Recording, sin_theta_from_markers
 
-from hasel_sysid.data_gate.finding import Finding, error, warning
+from hasel_sysid.data_gate.finding import DataFinding, error, warning
 
 _LONGEST_BODY_M = 3.0
 _JUMP_IN_BODIES = 0.3
 
 
-def check_markers(recording: Recording) -> list[Finding]:
+def check_markers(recording: Recording) -> list[DataFinding]:
     """Faults of recorded markers; none where head, middle and tail were not."""
     three = recording.angle_markers
     if three is None:
@@ -31,7 +31,7 @@ def _length(markers: np.ndarray) -> float:
     return float(np.median(sum(np.linalg.norm(vector, axis=1) for vector in _vectors(markers))))
 
 
-def _unit(markers: np.ndarray, unit: str) -> list[Finding]:
+def _unit(markers: np.ndarray, unit: str) -> list[DataFinding]:
     length = _length(markers)
     if unit != "m" or length < _LONGEST_BODY_M:
         return []
@@ -39,7 +39,7 @@ def _unit(markers: np.ndarray, unit: str) -> list[Finding]:
     return [error("unit of the markers", length, evidence, "give metres; are they in millimetres?")]
 
 
-def _middle(markers: np.ndarray) -> list[Finding]:
+def _middle(markers: np.ndarray) -> list[DataFinding]:
     first, second = _vectors(markers)
     outside = float(np.mean((first * second).sum(axis=1) < 0))
     if outside < 0.01:
@@ -50,7 +50,7 @@ def _middle(markers: np.ndarray) -> list[Finding]:
     return [error("marker swap", outside, evidence, f"middle and {other} seem exchanged: track them again")]
 
 
-def _exchanged(markers: np.ndarray) -> list[Finding]:
+def _exchanged(markers: np.ndarray) -> list[DataFinding]:
     steps = np.linalg.norm(np.diff(markers, axis=0), axis=2).max(axis=1)
     jumps = int(np.count_nonzero(steps > _JUMP_IN_BODIES * _length(markers)))
     if jumps == 0:
@@ -59,7 +59,7 @@ def _exchanged(markers: np.ndarray) -> list[Finding]:
     return [error("marker swap", jumps, evidence, "markers change places during the run: track them again")]
 
 
-def _angle(markers: np.ndarray, sin_theta: np.ndarray) -> list[Finding]:
+def _angle(markers: np.ndarray, sin_theta: np.ndarray) -> list[DataFinding]:
     own = sin_theta_from_markers(markers)
     both = np.isfinite(own) & np.isfinite(sin_theta)
     own, said = own[both], sin_theta[both]

@@ -3,7 +3,7 @@
 import numpy as np
 from hasel_recording import HASEL_PAIR, Recording
 
-from hasel_sysid.data_gate.finding import Finding, error, warning
+from hasel_sysid.data_gate.finding import DataFinding, error, warning
 from hasel_sysid.where_it_fails.drive_cycle import DriveCycle, comparable, drive_cycle
 from hasel_sysid.where_it_fails.noise import high_frequency_noise
 
@@ -14,7 +14,7 @@ _DEAD = 0.2
 _LATE_S = 0.25
 
 
-def check_response(recording: Recording) -> list[Finding]:
+def check_response(recording: Recording) -> list[DataFinding]:
     """Faults in runs that start from rest; needs frames from the first switch on."""
     if recording.metadata.get("initial_state", "rest") != "rest":
         return []
@@ -42,7 +42,7 @@ def check_response(recording: Recording) -> list[Finding]:
     ]
 
 
-def _early(time: np.ndarray, moved: np.ndarray, cycle: DriveCycle, limit: float) -> list[Finding]:
+def _early(time: np.ndarray, moved: np.ndarray, cycle: DriveCycle, limit: float) -> list[DataFinding]:
     before = time < cycle.start
     if np.count_nonzero(before) < 4 or np.ptp(moved[before]) <= 2 * limit:
         return []
@@ -52,7 +52,7 @@ def _early(time: np.ndarray, moved: np.ndarray, cycle: DriveCycle, limit: float)
     return [error("motion before command", early, evidence, "use one clock for the supply and the camera")]
 
 
-def _late(time: np.ndarray, moved: np.ndarray, cycle: DriveCycle, limit: float) -> list[Finding]:
+def _late(time: np.ndarray, moved: np.ndarray, cycle: DriveCycle, limit: float) -> list[DataFinding]:
     moving = np.abs(moved) > limit
     lasting = moving[:-2] & moving[1:-1] & moving[2:]
     if not lasting.any():
@@ -64,7 +64,7 @@ def _late(time: np.ndarray, moved: np.ndarray, cycle: DriveCycle, limit: float) 
     return [warning("command lag", late, evidence, "use one clock for the supply and the camera")]
 
 
-def _direction(time: np.ndarray, moved: np.ndarray, cycle: DriveCycle, noise: float) -> list[Finding]:
+def _direction(time: np.ndarray, moved: np.ndarray, cycle: DriveCycle, noise: float) -> list[DataFinding]:
     first = (time >= cycle.start) & (time < cycle.switches[1])
     towards = cycle.side[0] * float(moved[first].mean()) if first.any() else 0.0
     if towards > -max(_CLEAR * noise, _SMALLEST_MOTION):
@@ -75,7 +75,7 @@ def _direction(time: np.ndarray, moved: np.ndarray, cycle: DriveCycle, noise: fl
     return [error("sign flip or swapped channels", -towards, evidence, advice)]
 
 
-def _sides(time: np.ndarray, moved: np.ndarray, cycle: DriveCycle) -> list[Finding]:
+def _sides(time: np.ndarray, moved: np.ndarray, cycle: DriveCycle) -> list[DataFinding]:
     if not (np.any(cycle.side > 0) and np.any(cycle.side < 0)) or cycle.count(time) < 0.9:
         return []
     low, high = np.percentile(moved, [2, 98])

@@ -8,7 +8,7 @@ from hasel_sim.swimming.beating_fish import Beat, Fish, beat_shape
 from scipy.optimize import minimize_scalar
 
 from hasel_sysid.errors import SysidError
-from hasel_sysid.measured_fish.reading import HEAD_LENGTH, FilmedRun
+from hasel_sysid.measured_fish.films import HEAD_LENGTH, FilmedRun
 
 TAIL_BASE = 0.27
 """First hinge of the tail [m], along the head's axis from the middle between the head's markers."""

@@ -7,10 +7,10 @@ import numpy as np
 from hasel_sim.swimming.beating_fish import fitted_form_drag, settled_speed
 
 from hasel_sysid.data_gate.drive_frequency import check_drive_frequency
-from hasel_sysid.data_gate.finding import Finding
+from hasel_sysid.data_gate.finding import DataFinding
 from hasel_sysid.errors import SysidError
 from hasel_sysid.measured_fish.beating import SeenBeat, fish_of, seen_beat
-from hasel_sysid.measured_fish.reading import FilmedRun
+from hasel_sysid.measured_fish.films import FilmedRun
 
 PUBLISHED = {"ellipsoids with five fitted coefficients": 0.019, "elongated-body theory with two": 0.134}
 """Mean speed errors [m/s] in the fish's publication, arXiv 2602.23283."""
@@ -22,7 +22,7 @@ class ComparedFilm:
 
     name: str
     seen: SeenBeat
-    found: tuple[Finding, ...]
+    found: tuple[DataFinding, ...]
     simulated: float
     fitted: bool
 

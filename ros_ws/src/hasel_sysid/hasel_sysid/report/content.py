@@ -40,7 +40,7 @@ class RunOverlay:
 
 
 @dataclass(frozen=True)
-class Stage:
+class StageRow:
     """Mean |Δ sin θ| of one stage on fitted and on unseen runs (None without such runs), and what was changed."""
 
     label: str
@@ -111,7 +111,7 @@ class ReportContent:
     comparisons: Sequence[Comparison] = ()
     detailed: int = 0
     shapes: Shapes | None = None
-    stages: Sequence[Stage] = ()
+    stages: Sequence[StageRow] = ()
     noise_floor: float | None = None
     ranking: Sequence[RankedRow] = ()
     groups: Sequence[Sequence[str]] = ()

@@ -9,7 +9,7 @@ from hasel_sim.model.value_text import value_with_error
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.diagnosis import Verdict
 from hasel_sysid.improvement import listed
-from hasel_sysid.report.content import KeyNumber, NextRun, RankedRow, ReportContent, Stage
+from hasel_sysid.report.content import KeyNumber, NextRun, RankedRow, ReportContent, StageRow
 from hasel_sysid.report.from_diagnosis import ranked_rows, what_remains
 from hasel_sysid.report.from_results import comparison_content, parameter_rows
 from hasel_sysid.report.numbers import error_text, percent
@@ -146,11 +146,11 @@ def _key_numbers(improvement: Improvement, comparisons: Sequence[Comparison]) ->
 
 def _stages(
     comparisons: Sequence[Comparison], start: Comparison | None, constant: WrongConstant | None
-) -> tuple[Stage, ...]:
+) -> tuple[StageRow, ...]:
     stages = []
     if start is not None:
         stages.append(
-            Stage("start", start.mean_absolute_error, start.mean_absolute_error_unseen, "before the fit")
+            StageRow("start", start.mean_absolute_error, start.mean_absolute_error_unseen, "before the fit")
         )
     known: set[str] = set()
     for comparison in comparisons:
@@ -158,7 +158,7 @@ def _stages(
         label = "fit" if not stages or comparison is comparisons[0] else "+ " + ", ".join(added)
         values = [f"{name}: {_values(comparison, name)}" for name in added]
         stages.append(
-            Stage(
+            StageRow(
                 label,
                 comparison.mean_absolute_error,
                 comparison.mean_absolute_error_unseen,

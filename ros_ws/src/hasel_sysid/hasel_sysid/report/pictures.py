@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
-from hasel_sysid.report.content import ReportContent, RunOverlay, Stage
+from hasel_sysid.report.content import ReportContent, RunOverlay, StageRow
 from hasel_sysid.report.figures.style import DROP, FITTED, MEASURED, MODELS, NOISE, RISE, UNSEEN
 from hasel_sysid.report.numbers import change_text, error_text
 
@@ -30,7 +30,7 @@ def vector_figures(content: ReportContent, folder: Path) -> list[Path]:
     return written
 
 
-def waterfall_picture(stages: Sequence[Stage], noise_floor: float | None, path: Path) -> Path:
+def waterfall_picture(stages: Sequence[StageRow], noise_floor: float | None, path: Path) -> Path:
     """Draw the error waterfall on fitted and, where there are any, on unseen runs."""
     groups = [("fitted runs", [s.error for s in stages], FITTED)]
     if any(stage.error_unseen is not None for stage in stages):
@@ -49,7 +49,7 @@ def waterfall_picture(stages: Sequence[Stage], noise_floor: float | None, path: 
     return _save(figure, path)
 
 
-def stages_picture(stages: Sequence[Stage], noise_floor: float | None, path: Path) -> Path:
+def stages_picture(stages: Sequence[StageRow], noise_floor: float | None, path: Path) -> Path:
     """Draw the error of every stage as bars, fitted beside unseen runs."""
     figure, axis = plt.subplots(figsize=(1.6 + 1.5 * len(stages), 3.2))
     place = np.arange(len(stages))

@@ -13,7 +13,7 @@ import numpy as np
 from hasel_sysid.candidates import compatible
 from hasel_sysid.estimation.least_squares import bounded_change
 from hasel_sysid.selection.likelihood import FittedSet, Likelihood, Names
-from hasel_sysid.selection.linearise import Columns, own_columns, room
+from hasel_sysid.selection.linearise import CandidateColumns, own_columns, room
 
 _SHORTLIST = 40
 """Sets that are ranked with the bounds of their parameters; all others without."""
@@ -29,7 +29,11 @@ class Row:
 
 
 def best_subsets(
-    about: FittedSet, columns: Mapping[str, Columns], likelihood: Likelihood, most: int, penalty: float
+    about: FittedSet,
+    columns: Mapping[str, CandidateColumns],
+    likelihood: Likelihood,
+    most: int,
+    penalty: float,
 ) -> list[Row]:
     """The most promising sets of up to `most` candidates, by log-likelihood less a penalty for each of them.
 
@@ -67,7 +71,11 @@ def best_subsets(
 
 
 def _row(
-    about: FittedSet, parts: Mapping[str, Columns], base: list[str], names: Names, likelihood: Likelihood
+    about: FittedSet,
+    parts: Mapping[str, CandidateColumns],
+    base: list[str],
+    names: Names,
+    likelihood: Likelihood,
 ) -> Row:
     """A set within the bounds of its parameters."""
     stay, new = sorted(names & about.names), sorted(names - about.names)

@@ -17,7 +17,7 @@ _MOST_CHANGE = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class Columns:
+class CandidateColumns:
     """A candidate beside a model, linearised at some values of its parameters.
 
     values: there, by name; names: of the parameters that may change; change [frames]: of the simulated series by it;
@@ -39,7 +39,7 @@ class Columns:
         return np.column_stack([self.change, self.jacobian])
 
 
-def linearise(problem: Problem, about: FittedSet, begin: Sequence[Start]) -> list[Columns]:
+def linearise(problem: Problem, about: FittedSet, begin: Sequence[Start]) -> list[CandidateColumns]:
     """Candidates at these starts beside a fitted set; what cannot be simulated there is left out."""
     models: list[Model] = []
     able: list[Start] = []
@@ -52,7 +52,7 @@ def linearise(problem: Problem, about: FittedSet, begin: Sequence[Start]) -> lis
     known = set(about.fit.model.parameters)
     names = [tuple(name for name in model.free if name not in known) for model in models]
     return [
-        Columns(
+        CandidateColumns(
             start.candidate,
             {name: v for name, v in seen.model.values.items() if name not in known},
             own,
@@ -65,17 +65,17 @@ def linearise(problem: Problem, about: FittedSet, begin: Sequence[Start]) -> lis
     ]
 
 
-def secant(screened: Screened) -> Columns:
+def secant(screened: Screened) -> CandidateColumns:
     """A candidate by the change that its typical size makes beside another model: all of its sizes in proportion."""
     candidate, values = screened.start.candidate, dict(screened.start.values)
     name, p = next(iter(candidate.sizes.items()))
     lower, upper = p.lower - values[name], p.upper - values[name]
     slope = screened.change / (values[name] - p.null)
     ends = np.array([lower]), np.array([upper])
-    return Columns(candidate, values, (name,), screened.change, slope[:, None], *ends)
+    return CandidateColumns(candidate, values, (name,), screened.change, slope[:, None], *ends)
 
 
-def own_columns(of: FittedSet, name: str) -> Columns:
+def own_columns(of: FittedSet, name: str) -> CandidateColumns:
     """A candidate of a fitted set itself, linearised where it is; without it the set leaves `change` more."""
     candidate, evaluation = of.candidates[name], of.fit.evaluation
     own = tuple(n for n in of.moving if n in candidate.names)
@@ -86,7 +86,7 @@ def own_columns(of: FittedSet, name: str) -> Columns:
             change += slope * (evaluation.model.values[path] - p.null)
     model = of.fit.model
     values = {n: model.values[n] for n in own}
-    return Columns(candidate, values, own, change, evaluation.by(own).jacobian, *room(model, own))
+    return CandidateColumns(candidate, values, own, change, evaluation.by(own).jacobian, *room(model, own))
 
 
 def room(model: Model, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:

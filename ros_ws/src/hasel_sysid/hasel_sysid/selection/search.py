@@ -31,7 +31,7 @@ from hasel_sysid.selection.best_subsets import Row, best_subsets
 from hasel_sysid.selection.choose import Choice, ComparedModel, Judged, choose, compare
 from hasel_sysid.selection.cross_validation import leave_one_run_out
 from hasel_sysid.selection.likelihood import NOTHING, FittedSet, Likelihood, Names, Whitened
-from hasel_sysid.selection.linearise import Columns, linearise, secant
+from hasel_sysid.selection.linearise import CandidateColumns, linearise, secant
 from hasel_sysid.selection.race import race, screen_typical
 
 _LINEARISED = 12
@@ -88,7 +88,7 @@ class Search:
         self.fits = {NOTHING: FittedSet({}, baseline), **{one.names: one for one in begun}}
         self._tried: set[Names] = set(self.fits)
         self._proposed: dict[tuple[str, Names], int] = {}
-        self._columns: dict[Names, dict[str, Columns]] = {}
+        self._columns: dict[Names, dict[str, CandidateColumns]] = {}
         self._discretisation: dict[Names, dict[str, np.ndarray]] = {}
         self.screened: list[Screened] = []
         self._constants: list[Screened] = []
@@ -277,7 +277,7 @@ class Search:
         most = min(self.policy.most_effects, max(2, len(about) + 1))
         return best_subsets(self.fits[about], self._columns[about], self.likelihood, most, self.threshold)
 
-    def _linearised(self, about: Names) -> dict[str, Columns]:
+    def _linearised(self, about: Names) -> dict[str, CandidateColumns]:
         """Columns of every candidate that fits beside a set: by its own derivatives there where its score is more than
         noise makes of it, else by the secant that is known from beside the baseline.
         """

@@ -14,7 +14,7 @@ from hasel_sysid.policy import POLICY
 from hasel_sysid.selection.choose import Choice, Judged, choose
 from hasel_sysid.selection.cross_validation import leave_one_run_out
 from hasel_sysid.selection.likelihood import FittedSet, Likelihood, Names
-from hasel_sysid.selection.linearise import Columns
+from hasel_sysid.selection.linearise import CandidateColumns
 from hasel_sysid.testing.made_up_effects import made_up_effect, with_made_up
 from hasel_sysid.testing.made_up_runs import evaluation_of_runs
 
@@ -97,14 +97,14 @@ class LinearWorld:
             {n: self.candidates[n] for n in chosen}, FittedModel(model, evaluation, at_bound, ())
         )
 
-    def columns(self, about: FittedSet) -> dict[str, Columns]:
+    def columns(self, about: FittedSet) -> dict[str, CandidateColumns]:
         """Every candidate that a fitted set has not, linearised at a size of 0.1 beside it."""
         found = {}
         for name, own in self.series.items():
             if name not in about.names:
                 (p,) = self.candidates[name].parameters
                 path, ends = f"{name}.size", (np.array([p.lower - 0.1]), np.array([p.upper - 0.1]))
-                found[name] = Columns(
+                found[name] = CandidateColumns(
                     self.candidates[name], {path: 0.1}, (path,), 0.1 * own, own[:, None], *ends
                 )
         return found

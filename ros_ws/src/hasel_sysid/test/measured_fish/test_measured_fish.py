@@ -15,7 +15,7 @@ from hasel_sysid.command_line.measured_fish import main
 from hasel_sysid.data_gate import check_recording
 from hasel_sysid.errors import SysidError
 from hasel_sysid.measured_fish.beating import fish_of, seen_beat
-from hasel_sysid.measured_fish.reading import filmed_runs
+from hasel_sysid.measured_fish.films import filmed_runs
 
 MADE = Fish(-0.071, 0.27, np.array([2.0 + 2.0j, -1.0 - 3.5j, 1.5j]), 0.1, 1.6)
 DRAG, RATIO, PLACE, AMPLITUDE = 0.4, 0.75, 0.49, 0.1

@@ -2,10 +2,14 @@
 
 import matplotlib.image
 import numpy as np
-from hasel_sysid.report.content import ReportContent, RunOverlay, Stage
+from hasel_sysid.report.content import ReportContent, RunOverlay, StageRow
 from hasel_sysid.report.pictures import overlay_picture, stages_picture, vector_figures, waterfall_picture
 
-STAGES = (Stage("start", 0.08, 0.09), Stage("fit", 0.03, 0.05), Stage("+ quadratic_drag", 0.003, 0.004))
+STAGES = (
+    StageRow("start", 0.08, 0.09),
+    StageRow("fit", 0.03, 0.05),
+    StageRow("+ quadratic_drag", 0.003, 0.004),
+)
 
 
 def _colours(path) -> set[int]:
@@ -22,7 +26,7 @@ def test_waterfall_shows_fitted_and_unseen(tmp_path):
 
 def test_without_unseen_runs_there_is_one_panel(tmp_path):
     """Without unseen runs nothing is drawn for them."""
-    stages = [Stage(stage.label, stage.error) for stage in STAGES]
+    stages = [StageRow(stage.label, stage.error) for stage in STAGES]
     assert 0xEDAE49 not in _colours(waterfall_picture(stages, None, tmp_path / "w.png"))
     assert 0xEDAE49 not in _colours(stages_picture(stages, None, tmp_path / "s.png"))
     assert 0xEDAE49 in _colours(stages_picture(STAGES, 0.0024, tmp_path / "t.png"))

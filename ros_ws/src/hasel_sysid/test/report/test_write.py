@@ -13,7 +13,7 @@ from hasel_sim.model import load_model
 from hasel_sim.run import Simulation
 from hasel_sysid.compare.compare import comparison_of
 from hasel_sysid.experiment import experiment_of
-from hasel_sysid.report.content import NextRun, ParameterRow, RankedRow, ReportContent, RunOverlay, Stage
+from hasel_sysid.report.content import NextRun, ParameterRow, RankedRow, ReportContent, RunOverlay, StageRow
 from hasel_sysid.report.figures.overlay import driven_stretches, overlay_figure
 from hasel_sysid.report.figures.style import CHANNELS
 from hasel_sysid.report.figures.waterfall import waterfall_figures
@@ -29,7 +29,11 @@ def unpacked(page: str, name: str) -> str:
     return zlib.decompress(raw[4 : 4 + int.from_bytes(raw[:4], "big")]).decode()
 
 
-STAGES = (Stage("start", 0.08, 0.09), Stage("fit", 0.03, 0.05), Stage("+ quadratic_drag", 0.003, 0.004))
+STAGES = (
+    StageRow("start", 0.08, 0.09),
+    StageRow("fit", 0.03, 0.05),
+    StageRow("+ quadratic_drag", 0.003, 0.004),
+)
 
 
 class _Page(HTMLParser):

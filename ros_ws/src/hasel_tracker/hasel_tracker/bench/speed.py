@@ -19,7 +19,7 @@ CONDITION = CONDITIONS[2]
 
 
 @dataclass(frozen=True)
-class Speed:
+class TrackerSpeed:
     """Median frames per second of one core's time at 1080p: tracking alone, and with JPEG decoding before."""
 
     tracking_hz: float
@@ -36,7 +36,7 @@ class Speed:
         )
 
 
-def measure_speed(frames: int = 24, repeats: int = 8, csrt_frames: int = 8) -> Speed:
+def measure_speed(frames: int = 24, repeats: int = 8, csrt_frames: int = 8) -> TrackerSpeed:
     """Time the trackers on rendered pictures held in memory, OpenCV limited to one thread."""
     threads = cv2.getNumThreads()
     cv2.setNumThreads(1)
@@ -46,7 +46,7 @@ def measure_speed(frames: int = 24, repeats: int = 8, csrt_frames: int = 8) -> S
         encoded = [cv2.imencode(".jpg", picture, settings)[1].tobytes() for picture in pictures]
         plain = [Frame(i, i / FRAME_RATE_HZ, image=picture) for i, picture in enumerate(pictures)]
         coded = [Frame(i, i / FRAME_RATE_HZ, jpeg=code) for i, code in enumerate(encoded)]
-        return Speed(
+        return TrackerSpeed(
             _rate(plain, DEFAULT_METHOD, repeats),
             _rate(coded, DEFAULT_METHOD, repeats),
             _rate(plain[: csrt_frames + 1], "csrt", 1),

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from rich.console import Console
 
-from hasel_tracker.bench.report import run_bench
+from hasel_tracker.bench.tracker_report import run_bench
 from hasel_tracker.commands.command import run_command
 from hasel_tracker.commands.parsers import bench_parser
 from hasel_tracker.errors import TrackerError

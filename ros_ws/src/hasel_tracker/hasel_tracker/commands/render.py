@@ -14,7 +14,7 @@ from hasel_tracker.render.background import photograph
 from hasel_tracker.render.body_shape import BodyShape
 from hasel_tracker.render.camera_view import CameraView
 from hasel_tracker.render.degradation import Degradation
-from hasel_tracker.render.motion import BendingMotion, Motion
+from hasel_tracker.render.motion import BendingMotion, RenderedMotion
 from hasel_tracker.render.motion_file import read_motion
 from hasel_tracker.render.render_output import write_frames, write_truth
 from hasel_tracker.render.renderer import Renderer
@@ -59,7 +59,7 @@ def _render(options: argparse.Namespace) -> None:
     print(f"Wrote {total} frames to {options.output} and the truth to {path}.")
 
 
-def _motion(options: argparse.Namespace, shape: BodyShape) -> Motion:
+def _motion(options: argparse.Namespace, shape: BodyShape) -> RenderedMotion:
     if options.motion is not None:
         return read_motion(options.motion, shape)
     return BendingMotion(options.amplitude, options.frequency, options.duration, options.rest, shape=shape)

@@ -14,8 +14,8 @@ from hasel_tracker.commands.command import progress_bar, run_command
 from hasel_tracker.commands.parsers import track_parser
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.offline.drive import (
-    Alignment,
     Drive,
+    DriveAlignment,
     align_by_hand,
     align_by_lamp,
     align_by_response,
@@ -114,7 +114,7 @@ def _follow(
                 video.close()
 
 
-def _align(run: TrackedRun, drive: Drive, options: argparse.Namespace, lamp: np.ndarray) -> Alignment:
+def _align(run: TrackedRun, drive: Drive, options: argparse.Namespace, lamp: np.ndarray) -> DriveAlignment:
     if options.lag is not None:
         return align_by_hand(options.lag, run, drive)
     if options.led is not None:

@@ -41,7 +41,7 @@ class Drive:
 
 
 @dataclass(frozen=True)
-class Alignment:
+class DriveAlignment:
     """Drive time + lag_s = video time; how it was found, and how far it may be off [s]."""
 
     lag_s: float
@@ -64,7 +64,7 @@ def read_drive(path: Path) -> Drive:
     return Drive(drive.time_s, drive.values, drive.start_ns, drive.channels)
 
 
-def align_by_stamp(run: TrackedRun, drive: Drive) -> Alignment:
+def align_by_stamp(run: TrackedRun, drive: Drive) -> DriveAlignment:
     """Lag from the clocks of both recordings; raises TrackerError if one has none or they do not overlap."""
     if run.start_stamp_ns is None or drive.start_stamp_ns is None:
         which = "video" if run.start_stamp_ns is None else "drive's recording"
@@ -75,10 +75,10 @@ def align_by_stamp(run: TrackedRun, drive: Drive) -> Alignment:
             f"The drive was recorded {lag:+.1f} s from the video and does not overlap with it; give that "
             f"of this run."
         )
-    return Alignment(lag, 0.5 / run.frame_rate_hz, "from the stamps of both")
+    return DriveAlignment(lag, 0.5 / run.frame_rate_hz, "from the stamps of both")
 
 
-def align_by_response(run: TrackedRun, drive: Drive) -> Alignment:
+def align_by_response(run: TrackedRun, drive: Drive) -> DriveAlignment:
     """Lag at which the drive foretells the angle best over the whole run; TrackerError if it is not determined."""
     if drive.channels != HASEL_PAIR:
         raise TrackerError(
@@ -86,20 +86,20 @@ def align_by_response(run: TrackedRun, drive: Drive) -> Alignment:
             f"{', '.join(channel.column for channel in drive.channels)}; give --lag SECONDS or --led."
         )
     found = estimate_lag(run.time_s, run.sin_theta, drive.time_s, drive.values, drive.end_s)
-    return Alignment(found.lag_s, found.uncertainty_s, "from the body's answer to the drive")
+    return DriveAlignment(found.lag_s, found.uncertainty_s, "from the body's answer to the drive")
 
 
-def align_by_hand(lag_s: float, run: TrackedRun, drive: Drive) -> Alignment:
+def align_by_hand(lag_s: float, run: TrackedRun, drive: Drive) -> DriveAlignment:
     """A lag that the user gives; TrackerError if video and drive then do not overlap."""
     if lag_s + drive.end_s < run.time_s[0] or lag_s + drive.time_s[0] > run.time_s[-1]:
         raise TrackerError(
             f"With a lag of {lag_s:+.3f} s the drive ({drive.time_s[0]:.3f} to {drive.end_s:.3f} s) and the video "
             f"({run.time_s[0]:.3f} to {run.time_s[-1]:.3f} s) do not overlap; the lag is added to the drive's time."
         )
-    return Alignment(lag_s, 0.5 / run.frame_rate_hz, "as given")
+    return DriveAlignment(lag_s, 0.5 / run.frame_rate_hz, "as given")
 
 
-def align_by_lamp(run: TrackedRun, drive: Drive, lamp: np.ndarray) -> Alignment:
+def align_by_lamp(run: TrackedRun, drive: Drive, lamp: np.ndarray) -> DriveAlignment:
     """Lag at which a lamp that lights with the drive does so; lamp: its brightness (n,) in each frame."""
     driven = np.abs(drive.values).max(axis=1)
     first = int(np.argmax(driven > LAMP_SHARE * driven.max()))
@@ -112,10 +112,12 @@ def align_by_lamp(run: TrackedRun, drive: Drive, lamp: np.ndarray) -> Alignment:
         )
     index = int(np.argmax(lit))
     between = 0.5 * (run.time_s[index - 1] + run.time_s[index])
-    return Alignment(float(between - drive.time_s[first]), 0.5 / run.frame_rate_hz, "from the lamp in view")
+    return DriveAlignment(
+        float(between - drive.time_s[first]), 0.5 / run.frame_rate_hz, "from the lamp in view"
+    )
 
 
-def after_the_drive(run: TrackedRun, drive: Drive, alignment: Alignment) -> str:
+def after_the_drive(run: TrackedRun, drive: Drive, alignment: DriveAlignment) -> str:
     """A sentence about the frames whose drive is not known, or ''."""
     end_s = drive.end_s + alignment.lag_s
     count = int((run.time_s > end_s + 1e-9).sum())

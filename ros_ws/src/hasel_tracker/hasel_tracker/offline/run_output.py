@@ -19,7 +19,7 @@ from hasel_recording.bending_angle_message import bending_angle_message
 from hasel_recording.mcap_writer import state_message
 
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.offline.drive import Alignment, Drive, after_the_drive
+from hasel_tracker.offline.drive import Drive, DriveAlignment, after_the_drive
 from hasel_tracker.offline.tracked_run import TrackedRun
 from hasel_tracker.tracking.marker_set import marker_names
 
@@ -28,7 +28,11 @@ AFTER_S = 2e-9  # what is known still holds at the end itself
 
 
 def write_run(
-    path: Path, run: TrackedRun, drive: Drive | None, alignment: Alignment | None, metadata: dict[str, str]
+    path: Path,
+    run: TrackedRun,
+    drive: Drive | None,
+    alignment: DriveAlignment | None,
+    metadata: dict[str, str],
 ) -> str:
     """Write .csv or .mcap; times start at the run's first frame. Returns what could not be kept, or ''."""
     origin = float(run.time_s[0])

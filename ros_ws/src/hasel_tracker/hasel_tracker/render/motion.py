@@ -11,7 +11,7 @@ from hasel_tracker.render.body_shape import BodyShape
 STATION_COUNT = 96
 
 
-class Motion(Protocol):
+class RenderedMotion(Protocol):
     """Anything that can say where the centre line is."""
 
     @property

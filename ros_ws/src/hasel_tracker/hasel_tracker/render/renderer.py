@@ -10,7 +10,7 @@ from hasel_tracker.render.body_shape import BodyShape
 from hasel_tracker.render.camera_view import CameraView
 from hasel_tracker.render.degradation import Degradation, add_glints, add_noise, compress, uneven_light
 from hasel_tracker.render.marker_coverage import marker_coverage
-from hasel_tracker.render.motion import Motion, points_at
+from hasel_tracker.render.motion import RenderedMotion, points_at
 from hasel_tracker.tracking.bending_angle import bending_angle
 
 SUB_EXPOSURES = 7
@@ -36,7 +36,7 @@ class Renderer:
     `skin` is an 8-bit BGR image whose texture the body wears and carries along, or None for plain skin.
     """
 
-    motion: Motion
+    motion: RenderedMotion
     view: CameraView = field(default_factory=CameraView)
     shape: BodyShape = field(default_factory=BodyShape)
     degradation: Degradation = field(default_factory=Degradation)

@@ -55,7 +55,7 @@ def blobs_in_frame(image: np.ndarray, gate: ColourRange, step: int, minimum_radi
 
 
 @dataclass(frozen=True)
-class Outline:
+class BlobOutline:
     """The contour (n, 1, 2) nearest to a prediction, its distance from it, and that of the next like it [px]."""
 
     contour: np.ndarray
@@ -63,7 +63,7 @@ class Outline:
     rival_px: float
 
 
-def nearest_outline(mask: np.ndarray, predicted: np.ndarray, area: float) -> Outline | None:
+def nearest_outline(mask: np.ndarray, predicted: np.ndarray, area: float) -> BlobOutline | None:
     """Outer contour of the patch of about `area` [px²] nearest to `predicted` (2,), or None."""
     opened = cv2.morphologyEx(mask, cv2.MORPH_OPEN, SINGLE_PIXELS)
     contours, _ = cv2.findContours(opened, cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
@@ -79,4 +79,4 @@ def nearest_outline(mask: np.ndarray, predicted: np.ndarray, area: float) -> Out
     if not found:
         return None
     found.sort(key=lambda each: each[0])
-    return Outline(found[0][1], found[0][0], found[1][0] if len(found) > 1 else float("inf"))
+    return BlobOutline(found[0][1], found[0][0], found[1][0] if len(found) > 1 else float("inf"))

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hasel_tracker.tracking.blobs import Blob, Outline, nearest_outline
+from hasel_tracker.tracking.blobs import Blob, BlobOutline, nearest_outline
 from hasel_tracker.tracking.marker_contour import OUTSIDE_PX
 from hasel_tracker.tracking.marker_measurement import MarkerMeasurement
 from hasel_tracker.tracking.tracker_settings import TrackerSettings
@@ -28,7 +28,7 @@ class MarkerFinder:
 
     def near(
         self, image: np.ndarray, place: np.ndarray, area: float, margin_px: float
-    ) -> tuple[MarkerMeasurement | None, Outline | None]:
+    ) -> tuple[MarkerMeasurement | None, BlobOutline | None]:
         """The marker of about `area` [px²] nearest to `place` (2,), if there is one in reach."""
         radius = np.sqrt(area / np.pi)
         reach = int(radius + self.settings.edge_px + OUTSIDE_PX + SPARE_PX + int(margin_px))

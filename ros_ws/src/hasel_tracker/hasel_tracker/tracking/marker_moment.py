@@ -19,7 +19,12 @@ import cv2
 import numpy as np
 
 from hasel_tracker.tracking.marker_measurement import MarkerMeasurement
-from hasel_tracker.tracking.marker_surroundings import Surroundings, look_around, middle_value, sector_of
+from hasel_tracker.tracking.marker_surroundings import (
+    MarkerSurroundings,
+    look_around,
+    middle_value,
+    sector_of,
+)
 
 RING_WIDTH_PX = 3
 MINIMUM_CONTRAST = 12.0
@@ -102,7 +107,7 @@ def _marker_share(
     signal: np.ndarray,
     inside: np.ndarray,
     outer: np.ndarray,
-    surroundings: Surroundings,
+    surroundings: MarkerSurroundings,
     *,
     follows_light: bool,
 ) -> tuple[np.ndarray, float]:
@@ -120,7 +125,7 @@ def _marker_share(
 
 
 def _centre_and_area(
-    share: np.ndarray, outer: np.ndarray, surroundings: Surroundings
+    share: np.ndarray, outer: np.ndarray, surroundings: MarkerSurroundings
 ) -> tuple[np.ndarray, float]:
     """Centre (2,) and area of the marker, from the directions that nothing else crosses, or all if too few."""
     rows, columns = np.nonzero(outer)

@@ -12,7 +12,7 @@ REWEIGHTINGS = 4
 
 
 @dataclass(frozen=True)
-class Surroundings:
+class MarkerSurroundings:
     """Background about `origin` (2,): plane (level, slopes in x and y), noise, crossed directions (48,)."""
 
     origin: np.ndarray
@@ -58,7 +58,7 @@ _NEIGHBOURS = _neighbours(WIDENING)
 _SMOOTHING = _smoothing()
 
 
-def look_around(luma: np.ndarray, inside: np.ndarray, ring: np.ndarray) -> Surroundings:
+def look_around(luma: np.ndarray, inside: np.ndarray, ring: np.ndarray) -> MarkerSurroundings:
     """Describe the background in `ring` around the marker that covers `inside` (masks of the same shape)."""
     rows, columns = np.nonzero(inside)
     origin = np.array([columns.mean(), rows.mean()])
@@ -73,7 +73,7 @@ def look_around(luma: np.ndarray, inside: np.ndarray, ring: np.ndarray) -> Surro
     plane, left, spread = _robust_plane(design, mean_value, seen)
     crossed = seen & (np.abs(left) > 4.0 * spread + 1.0)
     noise = spread / np.sqrt(middle_value(share[seen]))
-    return Surroundings(origin, plane, float(noise), crossed)
+    return MarkerSurroundings(origin, plane, float(noise), crossed)
 
 
 def _robust_plane(

@@ -23,7 +23,7 @@ _MISSING = {
 _MODES = ("STANDBY", "ARMED", "ACTIVE", "FAULT")
 
 
-class Rig:
+class RunningRig:
     """link: to the nodes, where ROS 2 is there. Nothing here arms."""
 
     def __init__(self) -> None:

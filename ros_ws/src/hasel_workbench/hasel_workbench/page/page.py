@@ -11,7 +11,7 @@ from nicegui.events import GenericEventArguments, MultiUploadEventArguments
 
 from hasel_workbench.evaluate import Progress
 from hasel_workbench.jobs import Jobs
-from hasel_workbench.live.rig import Rig
+from hasel_workbench.live.rig import RunningRig
 from hasel_workbench.page.columns_panel import ColumnsPanel
 from hasel_workbench.page.effects_panel import EffectsPanel
 from hasel_workbench.page.history_panel import HistoryPanel
@@ -28,7 +28,7 @@ _LOOK_S = 0.2
 class Page:
     """session, jobs, rig: shared by all pages; what one page has of its own is in its browser."""
 
-    def __init__(self, session: Workbench, jobs: Jobs, rig: Rig) -> None:
+    def __init__(self, session: Workbench, jobs: Jobs, rig: RunningRig) -> None:
         self.session, self.jobs, self.rig = session, jobs, rig
         self._built, self._drawn = session.version, -1
         self._told = jobs.said[-1].number if jobs.said else 0

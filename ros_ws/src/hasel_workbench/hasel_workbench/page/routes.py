@@ -14,17 +14,17 @@ from nicegui import app
 from hasel_workbench.curves import curves
 from hasel_workbench.failure_map import stretch
 from hasel_workbench.film import film
-from hasel_workbench.live.rig import Rig
+from hasel_workbench.live.rig import RunningRig
 from hasel_workbench.live.stream import KINDS
 from hasel_workbench.packet import packet
 from hasel_workbench.prediction import beyond_first_order
-from hasel_workbench.state import State
+from hasel_workbench.state import SessionState
 from hasel_workbench.workbench import Workbench
 
 _KEPT_FILMS = 40
 
 
-def add_routes(session: Workbench, rig: Rig) -> None:
+def add_routes(session: Workbench, rig: RunningRig) -> None:
     """`/data/…` of a session and of a rig."""
     films: OrderedDict[tuple[int, str], bytes] = OrderedDict()
 
@@ -80,25 +80,25 @@ def add_routes(session: Workbench, rig: Rig) -> None:
         return _bytes(_heard(rig, await request.json()))
 
 
-def _curves(state: State, run: str) -> bytes:
+def _curves(state: SessionState, run: str) -> bytes:
     made = curves(state, run)
     return packet(made.header(), made.rows)
 
 
-def _stretch(state: State, run: str, cell: int) -> bytes:
+def _stretch(state: SessionState, run: str, cell: int) -> bytes:
     number = state.number_of(run)
     begin, end = stretch(state.shown.comparison.runs[number].series, cell)
     return packet({"begin": begin, "end": end}, np.zeros(0))
 
 
-def _film(state: State, run: str, simulation: Simulation) -> bytes:
+def _film(state: SessionState, run: str, simulation: Simulation) -> bytes:
     number = state.number_of(run)
     offset = state.shown.comparison.runs[number].series.offset
     made = film(state.shown.model, state.every[number], simulation, offset)
     return packet(made.header(), made.frames)
 
 
-def _heard(rig: Rig, seen: dict[str, int]) -> bytes:
+def _heard(rig: RunningRig, seen: dict[str, int]) -> bytes:
     count, rows, error = dict(rig.stream.count), rig.stream.since(seen), rig.stream.error
     header = {
         "said": rig.said(),

@@ -11,7 +11,7 @@ from hasel_sysid.errors import SysidError
 from nicegui import app, background_tasks, run, ui
 
 from hasel_workbench.jobs import Jobs
-from hasel_workbench.live.rig import Rig
+from hasel_workbench.live.rig import RunningRig
 from hasel_workbench.page.door import Door
 from hasel_workbench.page.page import Page
 from hasel_workbench.page.routes import add_routes
@@ -46,7 +46,7 @@ def opening(host: str, certificate: tuple[Path, Path] | None, unencrypted: bool)
 def serve(
     session: Workbench,
     jobs: Jobs,
-    rig: Rig,
+    rig: RunningRig,
     host: str,
     port: int,
     show: bool,

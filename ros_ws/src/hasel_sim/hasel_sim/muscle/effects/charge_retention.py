@@ -8,7 +8,7 @@ from hasel_sim.effects.drive.charge_retention import ChargeRetention as OfTheDri
 from hasel_sim.muscle.effect import MuscleEffect
 
 
-class ChargeRetention(MuscleEffect):
+class PouchChargeRetention(MuscleEffect):
     """The drive's effect of this name, on the bench."""
 
     id = OfTheDrive.id

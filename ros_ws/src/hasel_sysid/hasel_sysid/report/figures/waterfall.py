@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 import plotly.graph_objects as go
 
-from hasel_sysid.report.content import Stage
+from hasel_sysid.report.content import StageRow
 from hasel_sysid.report.figures.style import DROP, FITTED, NOISE, RISE, UNSEEN, styled
 from hasel_sysid.report.numbers import change_text, error_text
 
 
-def waterfall_figures(stages: Sequence[Stage], noise_floor: float | None) -> list[go.Figure]:
+def waterfall_figures(stages: Sequence[StageRow], noise_floor: float | None) -> list[go.Figure]:
     """One waterfall for the fitted runs and, where there are any, one for the unseen runs, at one scale."""
     groups = [("fitted runs", [s.error for s in stages], FITTED)]
     if any(stage.error_unseen is not None for stage in stages):

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 
 from hasel_sim.bench.cases import box_run, fitted_swimmer
-from hasel_sim.bench.report import Bar, bars_table
+from hasel_sim.bench.speed_report import SpeedBar, bars_table
 from hasel_sim.bench.timing import processor_seconds
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.errors import SimulationError
@@ -43,14 +43,14 @@ class EffectsReport:
     baseline_sensitivities: float
     effects: list[EffectCost]
 
-    def bars(self) -> list[Bar]:
+    def bars(self) -> list[SpeedBar]:
         """The figures that have a bar."""
         forward = [effect.forward for effect in self.effects]
         sensitivities = [self.baseline_sensitivities, *(effect.sensitivities for effect in self.effects)]
         return [
-            Bar("dearest effect / without", max(forward), FORWARD_BAR),
-            Bar("effect in the middle / without", float(np.median(forward)), MEDIAN_BAR),
-            Bar("all sensitivities / forward, dearest", max(sensitivities), SENSITIVITIES_BAR),
+            SpeedBar("dearest effect / without", max(forward), FORWARD_BAR),
+            SpeedBar("effect in the middle / without", float(np.median(forward)), MEDIAN_BAR),
+            SpeedBar("all sensitivities / forward, dearest", max(sensitivities), SENSITIVITIES_BAR),
         ]
 
     def values(self) -> dict:

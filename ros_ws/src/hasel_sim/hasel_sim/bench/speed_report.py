@@ -10,7 +10,7 @@ from hasel_sim.bench.speed import SideBySide, Speed
 
 
 @dataclass(frozen=True)
-class Bar:
+class SpeedBar:
     """What was measured, what it must reach, and whether it does."""
 
     what: str
@@ -41,30 +41,30 @@ class SpeedReport:
     profile: list[tuple[str, float]]
     free_swim: float
 
-    def bars(self) -> list[Bar]:
+    def bars(self) -> list[SpeedBar]:
         """The figures that have a bar."""
         named = (("default mesh", self.default), (f"{self.large.nodes} nodes", self.large))
         return [
-            Bar(f"real-time factor, {named[0][0]}", self.default.real_time_factor, 5, at_least=True),
-            Bar(f"real-time factor, {named[1][0]}", self.large.real_time_factor, 2, at_least=True),
-            Bar(
+            SpeedBar(f"real-time factor, {named[0][0]}", self.default.real_time_factor, 5, at_least=True),
+            SpeedBar(f"real-time factor, {named[1][0]}", self.large.real_time_factor, 2, at_least=True),
+            SpeedBar(
                 "real-time factor, free swim of 10 s with every force of the fluid",
                 self.free_swim,
                 5,
                 at_least=True,
             ),
             *(
-                Bar(f"all sensitivities / forward, {name}", s.sensitivities / s.forward, 2)
+                SpeedBar(f"all sensitivities / forward, {name}", s.sensitivities / s.forward, 2)
                 for name, s in named
             ),
-            *(Bar(f"adjoint sweep / forward, {name}", s.adjoint / s.forward, 2) for name, s in named),
-            Bar(
+            *(SpeedBar(f"adjoint sweep / forward, {name}", s.adjoint / s.forward, 2) for name, s in named),
+            SpeedBar(
                 f"{self.lanes.runs} runs side by side / one after the other",
                 self.lanes.forward_ratio,
                 4,
                 at_least=True,
             ),
-            Bar("first run, compiling (s)", self.first_run, 30),
+            SpeedBar("first run, compiling (s)", self.first_run, 30),
         ]
 
     def values(self) -> dict:
@@ -157,7 +157,7 @@ class ConvergenceReport:
         console.print(table, steps)
 
 
-def bars_table(bars: list[Bar]) -> Table:
+def bars_table(bars: list[SpeedBar]) -> Table:
     """Measured values beside their bars."""
     table = Table("what", "measured", "bar", "met", title="Bars")
     for bar in bars:

@@ -11,7 +11,7 @@ from rich.table import Table
 from hasel_tracker.bench.accuracy import CONDITIONS, Accuracy, measure_accuracy
 from hasel_tracker.bench.latency import Latency, measure_latency
 from hasel_tracker.bench.robustness import CASES, Robustness, measure_robustness
-from hasel_tracker.bench.speed import Speed, measure_speed
+from hasel_tracker.bench.speed import TrackerSpeed, measure_speed
 from hasel_tracker.lab.catalogue import ADVERSARIAL, REAL
 from hasel_tracker.lab.midline_catalogue import MIDLINE
 from hasel_tracker.lab.unforeseen import DECEIVING, UNFORESEEN
@@ -22,7 +22,7 @@ LAB_SEEDS, DRAWN_SEEDS, DECEIVING_SEEDS = 10, 3, 20
 
 
 @dataclass(frozen=True)
-class Bar:
+class TrackerBar:
     """What was measured, what it must reach, and whether it does."""
 
     what: str
@@ -45,28 +45,30 @@ class BenchReport:
     robustness: list[Robustness]
     honesty: list[Honesty]
     deceiving: list[Honesty]
-    speed: Speed
+    speed: TrackerSpeed
     latency: Latency
 
-    def bars(self) -> list[Bar]:
+    def bars(self) -> list[TrackerBar]:
         """The figures that have a bar."""
         by_name = {each.condition: each for each in self.accuracies}
         worst = {name: float(each.marker_rms_px.max()) for name, each in by_name.items()}
         rest = by_name["at rest, MJPEG 75"]
         return [
-            Bar("clean: worst marker (px rms)", worst["clean"], 0.02),
-            Bar("MJPEG quality 75: worst marker (px rms)", worst["MJPEG quality 75"], 0.05),
-            Bar("noise of sin θ at rest", rest.sin_theta_spread, 0.001),
-            Bar("frames/s, one core, without decoding", self.speed.tracking_hz, 300.0, at_least=True),
-            Bar(
+            TrackerBar("clean: worst marker (px rms)", worst["clean"], 0.02),
+            TrackerBar("MJPEG quality 75: worst marker (px rms)", worst["MJPEG quality 75"], 0.05),
+            TrackerBar("noise of sin θ at rest", rest.sin_theta_spread, 0.001),
+            TrackerBar("frames/s, one core, without decoding", self.speed.tracking_hz, 300.0, at_least=True),
+            TrackerBar(
                 "false angles in the robustness cases", sum(each.false_angles for each in self.robustness), 0
             ),
-            Bar("wrong while valid in the laboratory's scenes", sum(each.wrong for each in self.honesty), 0),
-            Bar(
+            TrackerBar(
+                "wrong while valid in the laboratory's scenes", sum(each.wrong for each in self.honesty), 0
+            ),
+            TrackerBar(
                 "wrong while valid in the scenes that deceive", sum(each.wrong for each in self.deceiving), 0
             ),
-            Bar("latency from capture to angle (ms, median)", 1e3 * self.latency.median_s, 50.0),
-            Bar("frames late to recover", sum(each.late_frames for each in self.robustness), 0),
+            TrackerBar("latency from capture to angle (ms, median)", 1e3 * self.latency.median_s, 50.0),
+            TrackerBar("frames late to recover", sum(each.late_frames for each in self.robustness), 0),
         ]
 
     def print(self, console: Console) -> None:

@@ -8,7 +8,7 @@ from hasel_common.provenance import without_provenance
 from hasel_recording import DriveChannel, Recording
 
 from hasel_sysid.data_gate.check import check_recording
-from hasel_sysid.data_gate.finding import Finding, Severity
+from hasel_sysid.data_gate.finding import DataFinding, Severity
 from hasel_sysid.where_it_fails.drive_cycle import comparable, drive_cycle
 from hasel_sysid.where_it_fails.noise import high_frequency_noise
 
@@ -21,7 +21,7 @@ class Summary:
 
     recording: Recording
     rows: tuple[tuple[str, str], ...]
-    findings: tuple[Finding, ...]
+    findings: tuple[DataFinding, ...]
     misfit: bool = False
 
     @property
