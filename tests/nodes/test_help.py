@@ -33,7 +33,7 @@ def start(entry: str, *arguments: str) -> subprocess.CompletedProcess:
         ("hasel_sysid.start_sysid:main", "window:=5.0"),
         ("hasel_bringup.entry:virtual_rig", "hidden:="),
         ("hasel_bringup.entry:recorder", "folder:=recordings"),
-        ("hasel_bringup.entry:virtual_camera", "hidden:=random"),
+        ("hasel_bringup.entry:virtual_camera", "hidden:=[random]"),
         ("hasel_bringup.entry:replay", "--rate"),
         ("hasel_driver.virtual_supply:main", "--link"),
     ],

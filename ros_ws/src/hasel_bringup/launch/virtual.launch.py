@@ -3,77 +3,70 @@
 import os
 import tempfile
 from pathlib import Path
+from typing import Any
 
-from hasel_bringup.live_demo.nodes import TRACKER
+from hasel_bringup.launching import Values, described, node
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, EmitEvent, RegisterEventHandler
-from launch.conditions import IfCondition
 from launch.event_handlers import OnProcessExit
 from launch.events import Shutdown
-from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
-from launch_ros.actions import Node
+from launch.substitutions import PathJoinSubstitution
+from launch_ros.substitutions import FindPackageShare
 
 _LATER = "nice -n 5"  # supply and driver stop themselves when they are held up
+ARGUMENTS = (
+    DeclareLaunchArgument(
+        "hidden",
+        default_value="random",
+        description="beyond the model: none, random, effects, or values [quadratic_drag.coefficient=0.25]",
+    ),
+    DeclareLaunchArgument(
+        "config",
+        default_value=PathJoinSubstitution([FindPackageShare("hasel_bringup"), "config", "virtual.yaml"]),
+        description="parameters of all nodes",
+    ),
+    DeclareLaunchArgument(
+        "output",
+        default_value=str(Path("output") / "live_demo"),
+        description="folder of recordings and results",
+    ),
+    DeclareLaunchArgument(
+        "experiment",
+        default_value="true",
+        description="true: the whole loop by itself, then all ends; false: the nodes only, for you to use",
+    ),
+)
 
 
 def generate_launch_description() -> LaunchDescription:
     """Virtual supply, driver, camera, tracker, simulator, identification, recorder, and who experiments with them."""
-    namespace, hidden, output = (LaunchConfiguration(name) for name in ("namespace", "hidden", "output"))
-    arguments = [
-        DeclareLaunchArgument(
-            "namespace", default_value="hasel", description="of all topics and services but /diagnostics"
-        ),
-        DeclareLaunchArgument(
-            "hidden",
-            default_value="random",
-            description="what the swimmer has beyond the model: an effect's id, random or none",
-        ),
-        DeclareLaunchArgument(
-            "output",
-            default_value=str(Path("output") / "live_demo"),
-            description="folder of recordings and results",
-        ),
-        DeclareLaunchArgument(
-            "experiment",
-            default_value="true",
-            description="true: the whole loop by itself, then all ends; false: the nodes only, for you to use",
-        ),
-    ]
+    return described(ARGUMENTS, _nodes)
+
+
+def _nodes(given: Values) -> list[Any]:
+    config, output = given["config"], Path(given["output"])
+    beside = str(output.parent)  # a folder in use already gets a number
     port = str(Path(tempfile.gettempdir()) / f"hasel_supply_{os.getpid()}")
-    own = {"history_file": f"{port}_history.jsonl", "state_folder": f"{port}_state"}
-    beside = PathJoinSubstitution([output, ".."])  # a folder in use already gets a number
-    supply = {"port": port, "recorded_topics": [""], "recording_directory": beside, **own}
-    folder = {"folder": PathJoinSubstitution([output, "recordings"])}
-
-    def node(package: str, executable: str, *parameters: dict, **options) -> Node:
-        return Node(
-            package=package,
-            executable=executable,
-            namespace=namespace,
-            parameters=list(parameters),
-            output="screen",
-            **options,
+    supply = {
+        "port": port,
+        "history_file": f"{port}_history.jsonl",
+        "state_folder": f"{port}_state",
+        "recording_directory": beside,
+    }
+    hidden = {"hidden": [word.strip() for word in given["hidden"].strip("[]").split(",")]}
+    nodes = [
+        node(given, "hasel_driver", "virtual_supply", arguments=["--link", port]),
+        node(given, "hasel_driver", "driver_node", config, supply),
+        node(given, "hasel_bringup", "virtual_camera", config, hidden, prefix=_LATER),
+        node(given, "hasel_tracker", "tracker_node", config, prefix=_LATER),
+        node(given, "hasel_sim", "simulator", config, {"own_files": beside}, prefix=_LATER),
+        node(given, "hasel_sysid", "sysid", config, prefix=_LATER),
+        node(given, "hasel_bringup", "recorder", {"folder": str(output / "recordings")}, prefix=_LATER),
+    ]
+    if given["experiment"] == "true":
+        experimenter = node(
+            given, "hasel_bringup", "live_demo", arguments=["--attach", "--output", str(output)]
         )
-
-    experimenter = node(
-        "hasel_bringup",
-        "live_demo",
-        arguments=["--attach", "--output", output],
-        condition=IfCondition(LaunchConfiguration("experiment")),
-    )
-    return LaunchDescription(
-        [
-            *arguments,
-            node("hasel_driver", "virtual_supply", arguments=["--link", port]),
-            node("hasel_driver", "driver_node", supply),
-            node("hasel_bringup", "virtual_camera", {"hidden": hidden}, prefix=_LATER),
-            node("hasel_tracker", "tracker_node", TRACKER, prefix=_LATER),
-            node("hasel_sim", "simulator", {"own_files": beside}, prefix=_LATER),
-            node("hasel_sysid", "sysid", prefix=_LATER),
-            node("hasel_bringup", "recorder", folder, prefix=_LATER),
-            experimenter,
-            RegisterEventHandler(
-                OnProcessExit(target_action=experimenter, on_exit=[EmitEvent(event=Shutdown())])
-            ),
-        ]
-    )
+        ended = OnProcessExit(target_action=experimenter, on_exit=[EmitEvent(event=Shutdown())])
+        nodes += [experimenter, RegisterEventHandler(ended)]
+    return nodes

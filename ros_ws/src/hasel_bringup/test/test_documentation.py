@@ -12,6 +12,7 @@ PACKAGE = Path(__file__).resolve().parents[1]
 DOCS = Path(__file__).resolve().parents[4] / "docs"
 PAGE = (DOCS / "how_to/launch.md").read_text(encoding="utf-8")
 LAUNCH_FILES = sorted((PACKAGE / "launch").glob("*.launch.py"))
+SHARED = PACKAGE / "hasel_bringup" / "launching.py"
 
 
 def test_commands_are_listed():
@@ -33,7 +34,7 @@ def test_parameters_are_those_of_the_nodes(node, table):
     assert rows == expected
 
 
-@pytest.mark.parametrize("path", LAUNCH_FILES, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", [*LAUNCH_FILES, SHARED], ids=lambda path: path.name)
 def test_arguments_are_those_of_the_launch_files(path):
     """In their order, with the meaning that --show-args tells."""
     declared = re.findall(
@@ -41,6 +42,7 @@ def test_arguments_are_those_of_the_launch_files(path):
         path.read_text(encoding="utf-8"),
         flags=re.S,
     )
-    rows = re.findall(rf"^\| `{path.name}` \| `(\w+)` \| .* \| (.*) \|$", PAGE, flags=re.M)
+    name = "all" if path == SHARED else f"`{path.name}`"
+    rows = re.findall(rf"^\| {name} \| `(\w+)` \| .* \| (.*) \|$", PAGE, flags=re.M)
     assert rows == declared
-    assert len(re.findall(rf"^\| `{path.name}` \| [^`|]", PAGE, flags=re.M)) == 1
+    assert len(re.findall(rf"^\| {name} \| [^`|]", PAGE, flags=re.M)) == (path != SHARED)

@@ -4,7 +4,7 @@ import zlib
 from dataclasses import asdict, dataclass
 
 import numpy as np
-from hasel_bringup.hidden_truth.hidden_values import draw_hidden_values
+from hasel_bringup.hidden_truth.drawn_values import draw_hidden_values
 
 from hasel_benchmark.bench_hidden.unlisted import UNLISTED
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from functools import cache
 from itertools import chain
 
-from hasel_bringup.hidden_truth.hidden_values import both_signs
+from hasel_bringup.hidden_truth.drawn_values import both_signs
 from hasel_common.names import nearest_name
 from hasel_sim.model import load_model
 from hasel_sysid.candidates import candidate_effects

@@ -4,7 +4,7 @@ from hasel_benchmark.bench_hidden.case import Case, draw_values
 from hasel_benchmark.bench_hidden.case_list import PAIRS, list_cases, listed_effects
 from hasel_benchmark.bench_hidden.generate import measure
 from hasel_benchmark.errors import BenchmarkError
-from hasel_bringup.hidden_truth.hidden_values import both_signs
+from hasel_bringup.hidden_truth.drawn_values import both_signs
 from hasel_bringup.hidden_truth.plan import BoxRun
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import load_model

@@ -4,11 +4,11 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
+from ament_index_python.packages import get_package_share_directory
+
 from hasel_bringup.demo.processes import Processes
 
 _NICENESS = 5  # of all but supply and driver, which stop themselves when they are held up
-TRACKER = {"source": "topic:camera/image/compressed", "head": "left", "queue_size": 1000, "preview_rate": 0.0}
-"""Parameters of a tracker that looks at the virtual camera's pictures."""
 
 
 def start_nodes(processes: Processes, folder: Path, hidden: str, seed: int) -> None:
@@ -24,12 +24,11 @@ def start_nodes(processes: Processes, folder: Path, hidden: str, seed: int) -> N
             "history_file": folder / "supply_history.jsonl",
             "state_folder": folder / "supply_state",
             "recording_directory": folder,
-            "recorded_topics": "['']",  # the recorder's work
         },
     )
     for package, executable, parameters in (
-        ("hasel_bringup", "virtual_camera", {"hidden": hidden, "seed": seed}),
-        ("hasel_tracker", "tracker_node", TRACKER),
+        ("hasel_bringup", "virtual_camera", {"hidden": f"[{hidden}]", "seed": seed}),
+        ("hasel_tracker", "tracker_node", {}),
         ("hasel_sim", "simulator", {"own_files": folder}),
         ("hasel_sysid", "sysid", {"output": folder}),
         ("hasel_bringup", "recorder", {"folder": folder / "recordings"}),
@@ -39,5 +38,6 @@ def start_nodes(processes: Processes, folder: Path, hidden: str, seed: int) -> N
 
 
 def _start(processes: Processes, package: str, executable: str, parameters: Mapping[str, object]) -> None:
+    config = Path(get_package_share_directory("hasel_bringup")) / "config" / "virtual.yaml"
     given = [word for name, value in parameters.items() for word in ("-p", f"{name}:={value}")]
-    processes.start(package, executable, *(["--ros-args", *given] if given else []))
+    processes.start(package, executable, "--ros-args", "--params-file", str(config), *given)

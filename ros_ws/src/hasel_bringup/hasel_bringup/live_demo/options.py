@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from hasel_bringup.errors import BringupError
-from hasel_bringup.virtual_camera.hideable import RANDOM, check_hidden
+from hasel_bringup.hidden_truth.hidden import MEANING, RANDOM, check_hidden
 
 
 def parser() -> argparse.ArgumentParser:
@@ -18,8 +18,8 @@ def parser() -> argparse.ArgumentParser:
         "--hidden",
         default=RANDOM,
         type=_hidden,
-        metavar="NAME",
-        help="what the swimmer has beyond the model: an effect's id, random or none (default: %(default)s)",
+        metavar="A,B",
+        help=f"{MEANING} (default: %(default)s)",
     )
     options.add_argument("--seed", type=int, default=-1, help="of what is random; -1: another one each time")
     options.add_argument(
@@ -40,7 +40,7 @@ def parser() -> argparse.ArgumentParser:
 
 def _hidden(text: str) -> str:
     try:
-        check_hidden(text)
+        check_hidden(text.split(","))
     except BringupError as error:
         raise argparse.ArgumentTypeError(str(error)) from error
     return text

@@ -12,7 +12,7 @@ from functools import partial
 
 import cv2
 import numpy as np
-from hasel_common.declared_parameters import declare
+from hasel_common.declared_parameters import declare, words
 from hasel_common.endpoints import Role, frame_of, publisher, subscription
 from hasel_common.topics import MEASURED, NAMESPACE, STATE
 from hasel_interfaces.msg import BendingAngle, SupplyState
@@ -49,7 +49,7 @@ class VirtualCameraNode(Node):
         declare(self, PARAMETERS)
         seed = self._value("seed")
         generator = np.random.default_rng(None if seed < 0 else seed)
-        self._secret = draw_secret(self._value("hidden"), generator)
+        self._secret = draw_secret(words(self, "hidden"), generator)
         self._swimmer = FilmedSwimmer(
             self._secret.model(), self._value("frame_rate"), 1e-3 * self._value("ripple"), generator
         )

@@ -2,10 +2,10 @@
 
 from hasel_common.node_parameter import NodeParameter
 
+from hasel_bringup.hidden_truth.hidden import MEANING, RANDOM
+
 PARAMETERS = (
-    NodeParameter(
-        "hidden", "random", "what the swimmer has beyond the model: an effect's id, random or none"
-    ),
+    NodeParameter("hidden", [RANDOM], MEANING),
     NodeParameter("seed", -1, "of secret, muscles and noise; -1: another one each time", "1", -1, 2**31 - 1),
     NodeParameter("frame_rate", 120.0, "of the camera, which has a clock of its own", "1/s", 1.0, 1000.0),
     NodeParameter("width", 640, "of the picture", "px", 64, 4096),

@@ -12,9 +12,9 @@ from hasel_sim.live.repeated_warnings import RepeatedWarnings
 from hasel_sim.simulator_messages import angle_message, rig_voltage, to_nanoseconds
 from rclpy.node import Node
 
+from hasel_bringup.hidden_truth.hidden import hidden_values, with_hidden
 from hasel_bringup.virtual_rig.body_parameters import PARAMETERS
 from hasel_bringup.virtual_rig.camera_noise import CameraNoise
-from hasel_bringup.virtual_rig.hidden import with_hidden
 from hasel_bringup.virtual_rig.seen_body import SeenBody
 
 
@@ -28,7 +28,8 @@ class VirtualBodyNode(Node):
         self._warnings = RepeatedWarnings()
         model, warning = live_model(self._value("model"))
         self._warn(warning)
-        self._body = SeenBody(with_hidden(model, words(self, "hidden")), self._value("frame_rate"))
+        hidden = hidden_values(words(self, "hidden"), np.random.default_rng(self._value("seed")))
+        self._body = SeenBody(with_hidden(model, hidden), self._value("frame_rate"))
         noise = (self._value(name) for name in ("white_noise", "coloured_noise", "correlation", "seed"))
         self._noise, self._offset = CameraNoise(*noise), self._value("offset")
         self._angles = publisher(self, BendingAngle, MEASURED, Role.SAMPLES)
