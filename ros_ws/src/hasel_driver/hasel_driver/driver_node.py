@@ -37,7 +37,7 @@ from hasel_driver.parent import end_with_parent
 from hasel_driver.realtime import middleware_threads, request_realtime
 from hasel_driver.serial_port import check_not_in_use
 from hasel_driver.status import SupplyStatus
-from hasel_driver.supervisor import Supervisor
+from hasel_driver.supervisor import COMMAND_TIMEOUT_S, Supervisor
 from hasel_driver.supply_history import SupplyHistory
 from hasel_driver.supply_thread import SupplyThread
 from hasel_driver.surroundings import HostSurroundings
@@ -64,6 +64,7 @@ class DriverNode(LifecycleNode):
         self._last_limits: Limits | None = None
         self._claim = Claim(time.monotonic)
         self._refused_s: dict[str, float] = {}  # when it was last said, by the other commander's name
+        self._command_age_s = math.nan  # of the last command, by its stamp
         self.end_reason: str | None = None  # why the process must end
         check_files(self.get_name(), self.get_fully_qualified_name(), sys.argv)
         declare(self, lambda: self._thread is not None, self._lower_maximum)
@@ -222,16 +223,26 @@ class DriverNode(LifecycleNode):
             return
         obeyed, new = self._claim.take(publisher, name) if thread.supervisor.armed else (True, False)
         if not obeyed:
-            said_s = self._refused_s.get(name, -math.inf)
-            if time.monotonic() - said_s > REFUSED_LOG_S:
-                self._refused_s[name] = time.monotonic()
-                self.get_logger().warning(
-                    f"Commands of {name} are refused: {self._claim.holder} holds the claim. End that one, or arm anew."
-                )
+            self._say_refused(
+                name, f"are refused: {self._claim.holder} holds the claim. End that one, or arm anew."
+            )
             return
+        self._command_age_s = age_s
+        if not abs(age_s) < COMMAND_TIMEOUT_S:
+            when = f"{age_s:.2f} s ago" if age_s > 0 else f"in {-age_s:.2f} s"
+            self._say_refused(
+                name,
+                f"are ignored: by their stamps they were made {when}, {COMMAND_TIMEOUT_S} s is the most. "
+                "Synchronise the clocks of the two machines (chrony, NTP), or look for what holds the network up.",
+            )
         if new:
             thread.call(thread.supervisor.await_zero)
         thread.call(lambda: thread.supervisor.command(voltage_v, age_s))
+
+    def _say_refused(self, name: str, why: str) -> None:
+        if time.monotonic() - self._refused_s.get(name, -math.inf) > REFUSED_LOG_S:
+            self._refused_s[name] = time.monotonic()
+            self.get_logger().warning(f"Commands of {name} {why}")
 
     def _on_stop_topic(self, asserted: bool, who: str) -> None:
         if asserted:
@@ -300,6 +311,7 @@ class DriverNode(LifecycleNode):
                 "device": supervisor.name,
                 "maximum_voltage_v": supervisor.maximum_voltage_v,
                 "rejected_commands": supervisor.rejected_commands,
+                "command_age_s": self._command_age_s,
                 "garbled_lines": supervisor.garbled_lines,
                 "interlock_closed": status.interlock_closed,
                 "grounds_itself_without_host": supervisor.capabilities.deadman,
