@@ -16,7 +16,7 @@ def limits_of(parameters: Mapping[str, Any]) -> Limits:
     """The limits that the parameters set. Raises LimitError where together they make no sense."""
     limits = Limits(
         maximum_voltage_v=parameters["maximum_voltage"],
-        slew_v_per_ms=parameters["slew_rate"],
+        slew_v_per_ms=1e-3 * parameters["slew_rate"],
         trip_current_a=parameters["trip_current"],
         heartbeat_s=parameters["heartbeat_timeout"],
         dead_time_s=parameters["dead_time"],

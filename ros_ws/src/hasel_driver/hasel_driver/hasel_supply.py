@@ -211,7 +211,7 @@ class HaselSupply(Supply):
             slew, trip_ua = limits.slew_v_per_ms, limits.trip_current_a * 1e6
             return Fault(
                 code,
-                f"charging at slew_rate {slew:g} V/ms takes {slew:g} µA for each nF, so {trip_ua / slew:.2g} nF"
+                f"charging at slew_rate {1e3 * slew:g} V/s takes {slew:g} µA for each nF, so {trip_ua / slew:.2g} nF"
                 f" reach the {trip_ua:g} µA of trip_current; lower slew_rate for more, else look for a breakdown",
             )
         if code is FaultCode.INTERLOCK:

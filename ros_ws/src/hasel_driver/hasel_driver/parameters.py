@@ -59,7 +59,9 @@ PARAMETERS: tuple[DriverParameter, ...] = (
         0.0,
         9800.0,
     ),
-    DriverParameter("slew_rate", 250.0, "steepest change of the set point", "V/ms", 1.0, 2000.0),
+    DriverParameter(
+        "slew_rate", 250e3, "steepest change of the set point (before 0.2.0 in V/ms)", "V/s", 1e3, 2e6
+    ),
     DriverParameter(
         "trip_current", 450e-6, "converter current at which the board latches a fault", "A", 1e-6, 9.8e-4
     ),

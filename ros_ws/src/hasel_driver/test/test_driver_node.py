@@ -222,7 +222,7 @@ def test_parameters_are_checked(driver, ros):
     ros.await_mode(STANDBY, 10.0)
     assert "maximum_voltage" in change("maximum_voltage", 20_000.0)
     assert change("maximum_voltage", 20_000.0) != "accepted"
-    assert "in use" in change("slew_rate", 100.0)
+    assert "in use" in change("slew_rate", 100e3)
     assert change("maximum_voltage", 5000.0) == "accepted"
     assert "only be lowered" in change("maximum_voltage", 6000.0)
     ros.wait(lambda: ros.state.maximum_voltage == 5000.0)

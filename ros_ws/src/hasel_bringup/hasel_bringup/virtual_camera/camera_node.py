@@ -51,10 +51,10 @@ class VirtualCameraNode(Node):
         generator = np.random.default_rng(None if seed < 0 else seed)
         self._secret = draw_secret(words(self, "hidden"), generator)
         self._swimmer = FilmedSwimmer(
-            self._secret.model(), self._value("frame_rate"), 1e-3 * self._value("ripple"), generator
+            self._secret.model(), self._value("frame_rate"), self._value("ripple"), generator
         )
         self._drawing = Drawing(
-            self._value("width"), self._value("height"), 1e3 * self._value("scale"), self._value("noise")
+            self._value("width"), self._value("height"), self._value("scale"), self._value("noise")
         )
         self._frame_id = frame_of(self, "camera")
         self._images = publisher(self, CompressedImage, IMAGES, Role.SAMPLES)
