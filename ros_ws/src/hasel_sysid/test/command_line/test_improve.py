@@ -1,12 +1,14 @@
 """The commands `improve` and `diagnose` from end to end, on a coarse model with a hidden effect."""
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from hasel_sim.model import load_model
 from hasel_sysid.command_line import diagnose, improve
 
+PAGE = (Path(__file__).resolve().parents[5] / "docs" / "reference" / "json.md").read_text(encoding="utf-8")
 OWN = '''
 import numpy as np
 from hasel_sim.effects.base import EffectParameter, ForceEffect
@@ -34,6 +36,17 @@ def improved(laboratory, output: Path, rivals: str) -> dict:
     written = ["--output", str(output), "--json", str(output / "i.json")]
     assert improve.main([*laboratory.arguments(rivals), *unseen, *written]) == 0
     return json.loads((output / "i.json").read_text())
+
+
+def keys(content: object) -> Iterator[str]:
+    """Every key, however deep, but names of parameters, channels and kinds of failures."""
+    if isinstance(content, dict):
+        for key, value in content.items():
+            yield key
+            yield from () if key in ("parameters", "expected", "drive", "suspects", "detail") else keys(value)
+    elif isinstance(content, list):
+        for each in content:
+            yield from keys(each)
 
 
 @pytest.fixture(scope="module")
@@ -68,6 +81,7 @@ def test_improve_adds_the_hidden_effect(with_drag, tmp_path, capsys):
     assert "quadratic_drag.coefficient = 0.2" in said and "(95 % interval 0.2" in said
     assert "on fitted runs: 0." in said and "on unseen runs: 0." in said and " before, 0.00" in said
     assert "muscle_asymmetry is" not in said and "--all" in said
+    assert {key for key in keys(content) if f"`{key}`" not in PAGE} == set()
 
 
 def test_improve_adds_an_effect_of_the_users_own(with_waves, tmp_path):
