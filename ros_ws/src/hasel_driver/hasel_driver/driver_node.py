@@ -10,6 +10,7 @@ import time
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_common.endpoints import Role, frame_of, publisher
+from hasel_common.parent import end_with_parent
 from hasel_common.spinning import quiet_at_shutdown, spin
 from hasel_common.topics import DIAGNOSTICS, NAMESPACE, STATE
 from hasel_interfaces.msg import SupplyState
@@ -33,7 +34,6 @@ from hasel_driver.messages import to_diagnostics, to_supply_state
 from hasel_driver.middleware import prepare, reach
 from hasel_driver.node_parameters import declare, values
 from hasel_driver.parameter_files import check_files
-from hasel_driver.parent import end_with_parent
 from hasel_driver.realtime import middleware_threads, request_realtime
 from hasel_driver.serial_port import check_not_in_use
 from hasel_driver.status import SupplyStatus
@@ -379,7 +379,7 @@ def main() -> int:
     sys.setswitchinterval(THREAD_SWITCH_S)
     prepare()
     signals = catch_signals()
-    end_with_parent()
+    end_with_parent(though_nohup=True)
     try:
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         node = DriverNode()

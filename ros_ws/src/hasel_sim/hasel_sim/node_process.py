@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable
 
 import rclpy
+from hasel_common.parent import end_with_parent
 from hasel_common.spinning import quiet_at_shutdown
 from rclpy.exceptions import InvalidParameterValueException
 from rclpy.node import Node
@@ -18,10 +19,11 @@ def run_node(
     spin: Callable[[Node], None] = rclpy.spin,
     errors: tuple[type[Exception], ...] = (HaselSimError,),
 ) -> int:
-    """Make a node and spin it until it is interrupted; returns the exit code.
+    """Make a node and spin it until it is interrupted or its parent ends; returns the exit code.
 
     errors: told in one sentence, as a parameter out of range is.
     """
+    end_with_parent()
     rclpy.init()
     node = None
     try:

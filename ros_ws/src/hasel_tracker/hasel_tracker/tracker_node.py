@@ -14,6 +14,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from hasel_common.declared_parameters import declare
 from hasel_common.endpoints import STEADY, Role, frame_of, publisher
 from hasel_common.managed_node import ManagedNode, start_and_spin
+from hasel_common.parent import end_with_parent
 from hasel_common.topics import DIAGNOSTICS, MEASURED, NAMESPACE
 from hasel_interfaces.msg import BendingAngle
 from rcl_interfaces.msg import SetParametersResult
@@ -250,6 +251,7 @@ def main() -> int:
     # ROS must stay up until the tracking thread has stopped, so the signals are ours.
     rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
+    end_with_parent()
     node = None
     try:
         node = TrackerNode()
