@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[4]
-PAGE = (ROOT / "docs" / "how_to/reading_the_answer.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "reference/python.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.timeout(600)
 def test_the_program_names_the_drag():
     """The same effects stage by stage, and the same errors but for the last digits."""
-    program, printed = re.search(r"```python\n(.*?)```\s+```\n(.*?)```", PAGE, re.DOTALL).groups()
+    program, printed = re.search(r"```python\n((?:(?!```).)*)```\s+```\n(.*?)```", PAGE, re.DOTALL).groups()
     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
     done = subprocess.run(
         [sys.executable, "-c", program], cwd=ROOT, env=environment, capture_output=True, text=True

@@ -71,7 +71,7 @@ def _add_results(parser: argparse.ArgumentParser, json: bool) -> None:
         metavar="DIR",
         type=Path,
         default=Path(),
-        help="folder for what is written (default: here)",
+        help="folder for what is written (default: %(default)s)",
     )
     if json:
         parser.add_argument("--json", metavar="FILE", type=Path, help="write the results for other programs")
