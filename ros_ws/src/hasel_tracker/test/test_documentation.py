@@ -12,7 +12,9 @@ from hasel_tracker.node_parameters import PARAMETERS
 
 PACKAGE = Path(__file__).resolve().parents[1]
 DOCS = Path(__file__).resolve().parents[4] / "docs"
-PAGE = (DOCS / "how_to/camera.md").read_text(encoding="utf-8")
+PAGE = "\n".join(
+    (DOCS / page).read_text(encoding="utf-8") for page in ("how_to/camera.md", "results/tracker.md")
+)
 NODE = (PACKAGE / "hasel_tracker" / "tracker_node.py").read_text(encoding="utf-8")
 
 
