@@ -17,10 +17,10 @@ from hasel_sysid.policy import POLICY, Policy
 from hasel_sysid.problem import Problem
 from hasel_sysid.reading import recorded_or_read
 from hasel_sysid.result import Improvement, Stage, Status, WrongConstant
-from hasel_sysid.selection.choose import is_better
+from hasel_sysid.selection.choose import best_of, is_better
 from hasel_sysid.selection.likelihood import NOTHING, FittedSet, Likelihood
 from hasel_sysid.selection.search import IsLaw, Search, Searched
-from hasel_sysid.verdict import diagnosis, near_noise, share_left, status_with
+from hasel_sysid.verdict import diagnosis, share_left, status_with
 
 OnStage = Callable[[Stage], None]
 
@@ -277,14 +277,21 @@ def _why_here(found: Searched, policy: Policy, first: Stage) -> tuple[str, bool]
     chance, order = found.last.chance, found.choice.in_order
     nothing_else = chance >= policy.level
     looked_at = "effects that were tried" if first.diagnosis.not_tried else "listed effects"
-    near = near_noise(first.mae_fit, first.diagnosis.noise)
-    if not order and nothing_else and near:
-        return f"Nothing is missing: noise alone looks like this in {chance:.0%} of cases.", True
-    if not order and nothing_else:
-        return f"None of the {looked_at} stands out from what is left.", False
     if not order:
-        what = "Nothing that matters is missing: none" if near else "Something is missing, but none"
-        return f"{what} of the {looked_at} predicts left-out runs better than no effect does.", near
+        described = goodness_of_fit(first.fit.evaluation, first.diagnosis.noise).adequate
+        if nothing_else and described:
+            return f"Nothing is missing: noise alone looks like this in {chance:.0%} of cases.", True
+        if nothing_else:
+            return f"None of the {looked_at} stands out from what is left.", False
+        best = best_of(found.models)
+        why = f"none of the {looked_at} predicts left-out runs better than no effect does."
+        if is_better(found.models, best, NOTHING, policy):
+            why = (
+                f"of the {looked_at} {listed(sorted(best))} would predict left-out runs better, but changes them by no "
+                "more than noise may, or what no model has."
+            )
+        said = "Nothing that matters is missing: " if described else "Something is missing, but "
+        return said + why, described
     if nothing_else:
         return f"What is left after adding {listed(order)} looks like no other effect.", True
     if len(order) >= policy.most_effects:

@@ -14,13 +14,16 @@ DENSITY = "material.density_kg_per_m3"
 TOGETHER = "payload", "pre_bend"
 
 
-def improved(hidden, stranger=0.0, most_evaluations=math.inf, **options) -> Improvement:
+def improved(hidden, stranger=0.0, most_evaluations=math.inf, strange_at=None, **options) -> Improvement:
     """What is found when these effects, of typical size, and a stranger of so much rms are hidden."""
     world = MadeUpWorld(1, shared=16)
-    truth = world.with_typical(*hidden)
-    return improve(
-        world.measured(truth, stranger=stranger, most_evaluations=most_evaluations), world.model, **options
+    measured = world.measured(
+        world.with_typical(*hidden),
+        stranger=stranger,
+        most_evaluations=most_evaluations,
+        strange_at=strange_at,
     )
+    return improve(measured, world.model, **options)
 
 
 @pytest.mark.parametrize(
@@ -37,6 +40,13 @@ def test_what_is_hidden_is_named(hidden):
     assert [stage.effects for stage in written] == [stage.effects for stage in found.stages]
     assert [len(stage.effects) for stage in found.stages] == list(range(len(hidden) + 1))
     assert "The search ended" not in found.reason and found.not_tried == []
+
+
+@pytest.mark.parametrize("stranger", [0.0, 0.003, 0.005, 0.006])
+def test_nothing_is_said_to_be_missing_only_where_the_model_describes_its_runs(stranger):
+    """The reason and the status say the same, however large what no effect does at one of three voltages."""
+    found = improved((), stranger=stranger, strange_at=4500.0, only=("payload", "pre_bend", "linear_drag"))
+    assert found.reason.startswith("Nothing ") == (found.status is Status.NOTHING_MISSING)
 
 
 def test_the_models_go_into_json_as_arviz_compares_them():

@@ -100,13 +100,14 @@ class MadeUpWorld:
         noise: float = NOISE,
         stranger: float = 0.0,
         most_evaluations: float = math.inf,
+        strange_at: float | None = None,
     ) -> "MadeUpProblem":
         """Runs as they would be measured if the model were the truth, but for a stranger of so much rms.
 
-        most_evaluations: after which the time of a search is over.
+        most_evaluations: after which the time of a search is over; strange_at: the only voltage [V] with the stranger.
         """
         series = self._with_noise(self.sin_theta(model), noise)
-        self._add(series, "stranger", stranger)
+        self._add(series, "stranger", stranger, strange_at)
         return MadeUpProblem(self, series, most_evaluations)
 
     def measured_of_each(self, truths: Mapping[float, Model]) -> "MadeUpProblem":
