@@ -28,6 +28,8 @@ class Judged:
 
 
 Models = Mapping[Names, Judged]
+Excused = Callable[[Names, np.ndarray], bool]
+"""Of a set, and how a larger one changes its residual [frames]."""
 
 
 @dataclass(frozen=True)
@@ -62,18 +64,18 @@ def choose(
     models: Models,
     policy: Policy,
     threshold: float,
-    discrepancy: float,
+    excused: Excused,
     likeness: Callable[[str, str], float],
     is_law: Callable[[Names], bool],
 ) -> Choice:
-    """threshold: of log-likelihood, that noise alone makes of the best of all candidates; discrepancy: rms of what no
-    model has; likeness: of two candidates,
-    0 to 1; is_law: whether what a set adds has one value in every run.
+    """threshold: of log-likelihood, that noise alone makes of the best of all candidates; excused: whether what no
+    model has may be all that a set lacks; likeness: of two candidates, 0 to 1; is_law: whether what a set adds has one
+    value in every run.
 
     Of models that cannot be told apart the first that is a law stands in the place of the others; where none is, the
     best stays.
     """
-    best = smallest(models, policy, threshold, discrepancy)
+    best = smallest(models, policy, threshold, excused)
     rivals = confidence_set(models, best, policy)
     no_laws = tuple(takewhile(lambda names: not is_law(names), rivals))
     if len(no_laws) == len(rivals):
@@ -99,10 +101,9 @@ def best_of(models: Models) -> Names:
     return max(plausible(models), key=lambda names: models[names].elpd.total)
 
 
-def smallest(models: Models, policy: Policy, threshold: float, discrepancy: float) -> Names:
+def smallest(models: Models, policy: Policy, threshold: float, excused: Excused) -> Names:
     """The smallest set within one standard error of the best; and no candidate stays whose removal, refitted, costs
-    less than that, or less than noise alone makes of the best of all candidates, or changes less than what no model
-    has (backward check).
+    less than that, or less than noise alone makes of the best of all candidates, or is excused (backward check).
     """
     best = best_of(models)
     as_good = [n for n in plausible(models) if not is_better(models, best, n, policy)]
@@ -110,7 +111,7 @@ def smallest(models: Models, policy: Policy, threshold: float, discrepancy: floa
     while parts := [
         part
         for part in _parts(models, found)
-        if not _is_needed(models, found, part, policy, threshold, discrepancy)
+        if not _is_needed(models, found, part, policy, threshold, excused)
     ]:
         found = max(parts, key=lambda names: models[names].elpd.total)
     return found
@@ -123,15 +124,15 @@ def is_better(models: Models, one: Names, other: Names, policy: Policy) -> bool:
 
 
 def _is_needed(
-    models: Models, whole: Names, part: Names, policy: Policy, threshold: float, discrepancy: float
+    models: Models, whole: Names, part: Names, policy: Policy, threshold: float, excused: Excused
 ) -> bool:
-    """Whether it is likelier, predicts better, and changes the series by more than what no model has: the discrepancy
-    is the same in every run, where a likelihood takes it for independent.
+    """Whether it is likelier, predicts better, and the part alone is not excused: what no model has is the same in
+    every run, where a likelihood takes it for independent.
     """
     gain = models[whole].whitened.logarithm - models[part].whitened.logarithm
+    better = gain > threshold * len(whole - part) and is_better(models, whole, part, policy)
     change = models[whole].fitted.residual - models[part].fitted.residual
-    beyond = float(np.sqrt(np.mean(change**2))) > discrepancy
-    return beyond and gain > threshold * len(whole - part) and is_better(models, whole, part, policy)
+    return better and not excused(part, change)
 
 
 def _parts(models: Models, names: Names) -> list[Names]:

@@ -22,6 +22,7 @@ from hasel_sysid.estimation.covariance import changes_by_refinement
 from hasel_sysid.estimation.fit import FittedModel, Progress, fit, fitted_model, mapped
 from hasel_sysid.estimation.growing_horizon import in_phase
 from hasel_sysid.estimation.starts import Screened
+from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
 from hasel_sysid.model_checking.nothing_missing import ScoreTest, score_test
 from hasel_sysid.noise.bounds import known_noise
 from hasel_sysid.policy import Policy
@@ -189,10 +190,16 @@ class Search:
             self.models,
             self.policy,
             self.threshold,
-            self.problem.discrepancy,
+            self._excused,
             self._likeness,
             lambda names: self._is_law(self.fits[names], self.likelihood),
         )
+
+    def _excused(self, names: Names, change: np.ndarray) -> bool:
+        """Whether what no model has may be all that a set lacks: it describes its runs, and that is no larger."""
+        if float(np.sqrt(np.mean(change**2))) > self.problem.discrepancy:
+            return False
+        return goodness_of_fit(self.fits[names].fit.evaluation, self.likelihood.allowed).adequate
 
     def _likeness(self, one: str, other: str) -> float:
         """Cosine of the angle between what two candidates do beside the baseline."""
