@@ -11,7 +11,7 @@ from hasel_bringup.live_demo.rig import Rig
 from hasel_workbench.bench.browser import Browser, find_browser
 from hasel_workbench.bench.browser_page import BrowserPage
 
-pytest.importorskip("nicegui", reason="NiceGUI is not installed: the extra `workbench`")
+pytest.importorskip("nicegui", reason="NiceGUI is not installed: the extra `page` of hasel_workbench")
 pytestmark = pytest.mark.skipif(
     find_browser() is None, reason="no browser is installed: apt install chromium"
 )
@@ -126,7 +126,7 @@ def desk(tmp_path, environment, domain, monkeypatch) -> Iterator[Desk]:
         hidden = "hidden:=[quadratic_drag.coefficient=0.25]"
         processes.start("hasel_bringup", "virtual_rig", "--ros-args", "-p", hidden)
         effects = ("--effects", "quadratic_drag,linear_drag", "--output", str(tmp_path / "workbench"))
-        processes.start("hasel_sysid", "workbench", "--no-browser", "--port", "0", *effects)
+        processes.start("hasel_workbench", "workbench", "--no-browser", "--port", "0", *effects)
         rig = Rig(processes.check, domain)
         try:
             with Browser() as browser:

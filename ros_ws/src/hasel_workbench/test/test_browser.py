@@ -16,7 +16,7 @@ import pytest
 from hasel_workbench.bench.browser import Browser, find_browser
 from hasel_workbench.bench.browser_page import BrowserPage
 
-pytest.importorskip("nicegui", reason="NiceGUI is not installed: the extra `workbench`")
+pytest.importorskip("nicegui", reason="NiceGUI is not installed: the extra `page` of hasel_workbench")
 pytestmark = [
     pytest.mark.skipif(find_browser() is None, reason="no browser is installed: apt install chromium"),
     pytest.mark.timeout(500),

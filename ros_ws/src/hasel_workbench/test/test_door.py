@@ -3,7 +3,7 @@
 import pytest
 from hasel_sysid.errors import SysidError
 
-pytest.importorskip("nicegui", reason="NiceGUI is not installed: the extra `workbench`")
+pytest.importorskip("nicegui", reason="NiceGUI is not installed: the extra `page` of hasel_workbench")
 from fastapi import FastAPI, Request, WebSocket, WebSocketDisconnect
 from fastapi.responses import PlainTextResponse
 from fastapi.testclient import TestClient
