@@ -4,17 +4,30 @@ import ctypes
 import os
 import signal
 import sys
+import threading
+import time
 
+_PERIOD_S = 0.5
 _PR_SET_PDEATHSIG = 1
 
 
-def end_with_parent(though_nohup: bool = False) -> None:
-    """From here on SIGTERM comes when the parent ends, however; on Linux only.
+def end_with_parent() -> None:
+    """From here on SIGTERM comes soon after the parent has ended, however; not to what was started with `nohup`."""
+    if signal.getsignal(signal.SIGHUP) == signal.SIG_IGN:
+        return
+    parent = os.getppid()
 
-    though_nohup: also for a process that was started to outlive its parent (`nohup`), as nothing armed may.
-    """
-    meant_to_stay = signal.getsignal(signal.SIGHUP) == signal.SIG_IGN and not though_nohup
-    if not sys.platform.startswith("linux") or meant_to_stay:
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(_PERIOD_S)
+        os.kill(os.getpid(), signal.SIGTERM)
+
+    threading.Thread(target=watch, name="parent", daemon=True).start()
+
+
+def end_at_once_with_parent() -> None:
+    """The same at once, `nohup` or not, for what may be armed; also where only the parent's thread ends. Linux only."""
+    if not sys.platform.startswith("linux"):
         return
     parent = os.getppid()
     ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)

@@ -11,16 +11,24 @@ import pytest
 
 CHILD = """
 import signal, time
-from hasel_common.parent import end_with_parent
-end_with_parent(though_nohup={though})
+from hasel_common.parent import {function}
+{function}()
 print("ready", flush=True)
 time.sleep(60)
 """
 PARENT = """
-import signal, subprocess, sys, time
+import signal, subprocess, sys, threading, time
 if {nohup}: signal.signal(signal.SIGHUP, signal.SIG_IGN)
-child = subprocess.Popen([sys.executable, "-c", sys.argv[1]], stdout=subprocess.PIPE, text=True)
-child.stdout.readline()
+def start():
+    global child
+    child = subprocess.Popen([sys.executable, "-c", sys.argv[1]], stdout=subprocess.PIPE, text=True)
+    child.stdout.readline()
+if {thread}:
+    thread = threading.Thread(target=start)
+    thread.start()
+    thread.join()
+else:
+    start()
 print(child.pid, flush=True)
 time.sleep(60)
 """
@@ -35,22 +43,46 @@ def is_alive(process_id: int) -> bool:
         return False
 
 
-@pytest.mark.parametrize(
-    ("nohup", "though", "ends"), [(False, False, True), (True, False, False), (True, True, True)]
-)
-def test_it_ends_however_its_parent_ends(nohup, though, ends):
-    """Also where that is killed; with nohup it stays, unless nothing may."""
+def started(function: str, nohup: bool = False, thread: bool = False) -> tuple[subprocess.Popen, int]:
+    """A parent, and the process that it has started, from a thread that has ended or from its main one."""
     parent = subprocess.Popen(
-        [sys.executable, "-c", PARENT.format(nohup=nohup), CHILD.format(though=though)],
+        [sys.executable, "-c", PARENT.format(nohup=nohup, thread=thread), CHILD.format(function=function)],
         stdout=subprocess.PIPE,
         text=True,
     )
-    child = int(parent.stdout.readline())
+    return parent, int(parent.stdout.readline())
+
+
+def ends(process_id: int, within_s: float) -> bool:
+    """Whether it ends in time."""
+    deadline_s = time.monotonic() + within_s
+    while is_alive(process_id) and time.monotonic() < deadline_s:
+        time.sleep(0.02)
+    return not is_alive(process_id)
+
+
+@pytest.mark.parametrize(
+    ("function", "nohup", "expected"),
+    [
+        ("end_with_parent", False, True),
+        ("end_with_parent", True, False),
+        ("end_at_once_with_parent", True, True),
+    ],
+)
+def test_it_ends_however_its_parent_ends(function, nohup, expected):
+    """Also where that is killed; with nohup it stays, unless it may be armed."""
+    parent, child = started(function, nohup)
     parent.kill()
     parent.wait()
-    deadline_s = time.monotonic() + (10.0 if ends else 1.0)
-    while is_alive(child) and time.monotonic() < deadline_s:
-        time.sleep(0.02)
-    assert is_alive(child) != ends
-    if not ends:
+    assert ends(child, 10.0 if expected else 1.5) == expected
+    if not expected:
         os.kill(child, signal.SIGKILL)
+
+
+def test_it_goes_on_where_only_a_thread_of_its_parent_ends():
+    """As the simulator does that the workbench starts."""
+    parent, child = started("end_with_parent", thread=True)
+    assert not ends(child, 1.5)
+    parent.kill()
+    parent.wait()
+    assert ends(child, 10.0)

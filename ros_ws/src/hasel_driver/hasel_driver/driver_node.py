@@ -10,7 +10,7 @@ import time
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_common.endpoints import Role, frame_of, publisher
-from hasel_common.parent import end_with_parent
+from hasel_common.parent import end_at_once_with_parent
 from hasel_common.spinning import quiet_at_shutdown, spin
 from hasel_common.topics import DIAGNOSTICS, NAMESPACE, STATE
 from hasel_interfaces.msg import SupplyState
@@ -379,7 +379,7 @@ def main() -> int:
     sys.setswitchinterval(THREAD_SWITCH_S)
     prepare()
     signals = catch_signals()
-    end_with_parent(though_nohup=True)
+    end_at_once_with_parent()
     try:
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         node = DriverNode()
