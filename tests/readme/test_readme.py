@@ -95,9 +95,7 @@ def _links(page: Path) -> list[str]:
 
 def test_figures_of_hidden_effects_are_the_benchmarks():
     """Every row of the table stands in the page that the benchmark wrote."""
-    page = (
-        (ROOT / "docs" / "results" / "hidden_effects_fresh.md").read_text(encoding="utf-8").splitlines()
-    )
+    page = (ROOT / "docs" / "results" / "hidden_effects_fresh.md").read_text(encoding="utf-8").splitlines()
     results = (ROOT / "docs" / "results" / "index.md").read_text(encoding="utf-8")
     section = results.split("## Is the right effect named?")[1].split("\n## ")[0]
     assert "(hidden_effects_fresh.md)" in section

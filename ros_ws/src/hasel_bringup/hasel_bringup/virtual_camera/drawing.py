@@ -15,7 +15,7 @@ class Drawing:
     """width, height [px]; scale [px/m]; noise: standard deviation in grey levels."""
 
     def __init__(self, width: int, height: int, scale: float, noise: float) -> None:
-        self._body = _Body()
+        self._body = _DrawnBody()
         view = CameraView(width, height, scale)
         self._renderer = Renderer(self._body, view, degradation=Degradation(noise_levels=noise))
         self._count = 0
@@ -28,7 +28,7 @@ class Drawing:
         return cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, _JPEG_QUALITY])[1].tobytes()
 
 
-class _Body:
+class _DrawnBody:
     """A motion for the renderer, of which only this moment is known."""
 
     duration_s = np.inf

@@ -28,7 +28,7 @@ _SAME = 0.02
 
 
 @dataclass(frozen=True)
-class Beat:
+class SineBeat:
     """Mean, peak to peak, and amplitudes at the frequency and at half of it, of a contraction [m]."""
 
     mean: float
@@ -37,7 +37,7 @@ class Beat:
     half: float
 
     @staticmethod
-    def of(time: np.ndarray, x: np.ndarray, frequency: float) -> "Beat":
+    def of(time: np.ndarray, x: np.ndarray, frequency: float) -> "SineBeat":
         """That of a series; what was not seen (NaN) counts as the mean."""
         mean = float(np.nanmean(x))
         away = np.nan_to_num(x - mean)
@@ -46,17 +46,17 @@ class Beat:
         def at(f: float) -> float:
             return float(2 * abs(np.sum(window * away * np.exp(-2j * np.pi * f * time))) / window.sum())
 
-        return Beat(mean, float(np.ptp(away)), at(frequency), at(frequency / 2))
+        return SineBeat(mean, float(np.ptp(away)), at(frequency), at(frequency / 2))
 
 
 @dataclass(frozen=True)
-class Stretch:
+class SineStretch:
     """A steady sine in a recording: frequency [Hz], highest voltage [V], what was measured and what the law says."""
 
     frequency: float
     highest: float
-    measured: Beat
-    simulated: Beat
+    measured: SineBeat
+    simulated: SineBeat
 
     def __str__(self) -> str:
         pairs = [
@@ -67,7 +67,7 @@ class Stretch:
         return f"{self.frequency:5.1f} Hz to {self.highest:4.0f} V{told}"
 
 
-def stretches(recording: BenchRecording, muscle: Muscle, swing: dict[str, float]) -> list[Stretch]:
+def stretches(recording: BenchRecording, muscle: Muscle, swing: dict[str, float]) -> list[SineStretch]:
     """All steady sines of a recording; swing: damping, slowness and lag as of `HangingLoad`."""
     load, largest = float(np.nanmedian(recording.load)), float(np.abs(recording.voltage).max())
     x = HangingLoad(muscle, load, largest, **swing).contraction(recording.time, recording.voltage)
@@ -76,8 +76,8 @@ def stretches(recording: BenchRecording, muscle: Muscle, swing: dict[str, float]
     out = []
     for frequency, highest, frames in _steady(recording):
         time = recording.time[frames]
-        beats = (Beat.of(time, series[frames], frequency) for series in (measured, x))
-        out.append(Stretch(frequency, highest, *beats))
+        beats = (SineBeat.of(time, series[frames], frequency) for series in (measured, x))
+        out.append(SineStretch(frequency, highest, *beats))
     return out
 
 
