@@ -70,7 +70,7 @@ def test_a_dead_tick_is_noticed_by_the_watchdog(board, rig):
         if not rig.live:
             break
     assert rig.await_live(False) - dead_s < 0.5
-    board.until(lambda: any(event.words[-1] == "reset=watchdog" for event in board.events))
+    board.until(lambda: any(event.words[-1] == "reset=watchdog" for event in board.events), cut_off=True)
 
 
 def test_boots_with_a_maximum_of_nothing(rig, converse):

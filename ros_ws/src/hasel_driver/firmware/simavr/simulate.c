@@ -240,7 +240,7 @@ static void print_output(void) {
 static void bounce(void) {
   interlock_open[0] = interlock_open[1] = true;
   set_interlock();
-  run_until(avr->cycle + 2 * TICK_CYCLES);
+  run_until(avr->cycle + 2 * TICK_CYCLES - TICK_CYCLES / 10);  // of 2 ms to the cycle, three ticks might see both ends
   interlock_open[0] = interlock_open[1] = false;
   set_interlock();
 }
