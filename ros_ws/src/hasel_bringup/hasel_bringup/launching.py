@@ -34,6 +34,11 @@ def described(
     return LaunchDescription([*SHARED, *arguments, OpaqueFunction(function=made)])
 
 
+def words(text: str) -> list[str]:
+    """Of an argument that is one word, or several with commas, in brackets or not."""
+    return [word.strip() for word in text.strip("[]").split(",")]
+
+
 def node(
     values: Values, package: str, executable: str, *parameters: str | Mapping[str, Any], **options: Any
 ) -> Node:

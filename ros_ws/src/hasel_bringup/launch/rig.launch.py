@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from hasel_bringup.launching import Values, described, node
+from hasel_bringup.launching import Values, described, node, words
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import PathJoinSubstitution
@@ -57,7 +57,7 @@ def generate_launch_description() -> LaunchDescription:
 def _nodes(given: Values) -> list[Any]:
     model = {"model": given["model"], "use_sim_time": given["use_sim_time"] == "true"}
     if given["virtual"] == "true":
-        body = [node(given, "hasel_bringup", "virtual_rig", {"hidden": _words(given["hidden"])})]
+        body = [node(given, "hasel_bringup", "virtual_rig", {"hidden": words(given["hidden"])})]
     else:
         body = [
             node(given, "hasel_driver", "driver_node", given["rig"], {"port": given["port"]}),
@@ -76,7 +76,3 @@ def _nodes(given: Values) -> list[Any]:
         node(given, "hasel_sysid", "sysid", given["config"], model),
         *([gathered] if given["diagnostics"] == "true" else []),
     ]
-
-
-def _words(hidden: str) -> list[str]:
-    return [word.strip() for word in hidden.strip("[]").split(",")]

@@ -5,7 +5,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from hasel_bringup.launching import Values, described, node
+from hasel_bringup.launching import Values, described, node, words
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, EmitEvent, RegisterEventHandler
 from launch.event_handlers import OnProcessExit
@@ -53,7 +53,7 @@ def _nodes(given: Values) -> list[Any]:
         "state_folder": f"{port}_state",
         "recording_directory": beside,
     }
-    hidden = {"hidden": [word.strip() for word in given["hidden"].strip("[]").split(",")]}
+    hidden = {"hidden": words(given["hidden"])}
     nodes = [
         node(given, "hasel_driver", "virtual_supply", arguments=["--link", port]),
         node(given, "hasel_driver", "driver_node", config, supply),

@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from hasel_recording.reading_options import RecordingsParser, add_map_option
+from hasel_sysid.command_line.specimen_parsers import names, numbers
 
 
 def bench_muscle_parser() -> argparse.ArgumentParser:
@@ -27,12 +28,12 @@ def bench_muscle_parser() -> argparse.ArgumentParser:
     add(
         "--unseen-voltages",
         metavar="V,V",
-        type=_numbers,
+        type=numbers,
         default=(),
         help="lifts at these voltages are never fitted, and judged",
     )
     add("--muscle", metavar="NAME|FILE", help="the muscle (default: as described beside the recordings)")
-    add("--effects", metavar="A,B", type=_names, default=(), help="consider only these effects of a muscle")
+    add("--effects", metavar="A,B", type=names, default=(), help="consider only these effects of a muscle")
     add(
         "--fit-only",
         action="store_true",
@@ -55,17 +56,6 @@ def bench_muscle_parser() -> argparse.ArgumentParser:
     )
     add("--json", metavar="FILE", type=Path, help="write the results for other programs")
     return options
-
-
-def _names(text: str) -> tuple[str, ...]:
-    return tuple(name.strip() for name in text.split(",") if name.strip())
-
-
-def _numbers(text: str) -> tuple[float, ...]:
-    try:
-        return tuple(float(number) for number in _names(text))
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no list of voltages, such as 2000,4000") from None
 
 
 def _seconds(text: str) -> float:

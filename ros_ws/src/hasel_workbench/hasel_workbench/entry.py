@@ -1,8 +1,7 @@
 """Where the executable begins: options are read before anything heavy is imported, so that --help answers at once."""
 
-from importlib import import_module
-
 from hasel_common.command_entry import command
+from hasel_sysid.command_line.entry import run_module
 
 from hasel_workbench.options import workbench_parser
 
@@ -10,5 +9,4 @@ from hasel_workbench.options import workbench_parser
 @command
 def workbench() -> int:
     """`workbench [RECORDING…]`."""
-    options = workbench_parser().parse_args()
-    return import_module("hasel_workbench.command").run(options)
+    return run_module(workbench_parser, "hasel_workbench.command")

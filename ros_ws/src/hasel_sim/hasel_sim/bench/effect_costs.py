@@ -5,11 +5,12 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
 import numpy as np
+from hasel_common.measured_bar import MeasuredBar
 from rich.console import Console
 from rich.table import Table
 
 from hasel_sim.bench.cases import box_run, fitted_swimmer
-from hasel_sim.bench.speed_report import SpeedBar, bars_table
+from hasel_sim.bench.speed_report import bars_table
 from hasel_sim.bench.timing import processor_seconds
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.errors import SimulationError
@@ -43,14 +44,14 @@ class EffectsReport:
     baseline_sensitivities: float
     effects: list[EffectCost]
 
-    def bars(self) -> list[SpeedBar]:
+    def bars(self) -> list[MeasuredBar]:
         """The figures that have a bar."""
         forward = [effect.forward for effect in self.effects]
         sensitivities = [self.baseline_sensitivities, *(effect.sensitivities for effect in self.effects)]
         return [
-            SpeedBar("dearest effect / without", max(forward), FORWARD_BAR),
-            SpeedBar("effect in the middle / without", float(np.median(forward)), MEDIAN_BAR),
-            SpeedBar("all sensitivities / forward, dearest", max(sensitivities), SENSITIVITIES_BAR),
+            MeasuredBar("dearest effect / without", max(forward), FORWARD_BAR),
+            MeasuredBar("effect in the middle / without", float(np.median(forward)), MEDIAN_BAR),
+            MeasuredBar("all sensitivities / forward, dearest", max(sensitivities), SENSITIVITIES_BAR),
         ]
 
     def values(self) -> dict:

@@ -2,26 +2,12 @@
 
 from dataclasses import asdict, dataclass
 
+from hasel_common.measured_bar import MeasuredBar
 from rich.console import Console
 from rich.table import Table
 
 from hasel_sim.bench.convergence import MeshError, StepError
 from hasel_sim.bench.speed import SideBySide, Speed
-
-
-@dataclass(frozen=True)
-class SpeedBar:
-    """What was measured, what it must reach, and whether it does."""
-
-    what: str
-    measured: float
-    limit: float
-    at_least: bool = False
-
-    @property
-    def met(self) -> bool:
-        """Whether the bar is met."""
-        return self.measured >= self.limit if self.at_least else self.measured <= self.limit
 
 
 @dataclass(frozen=True)
@@ -41,30 +27,30 @@ class SpeedReport:
     profile: list[tuple[str, float]]
     free_swim: float
 
-    def bars(self) -> list[SpeedBar]:
+    def bars(self) -> list[MeasuredBar]:
         """The figures that have a bar."""
         named = (("default mesh", self.default), (f"{self.large.nodes} nodes", self.large))
         return [
-            SpeedBar(f"real-time factor, {named[0][0]}", self.default.real_time_factor, 5, at_least=True),
-            SpeedBar(f"real-time factor, {named[1][0]}", self.large.real_time_factor, 2, at_least=True),
-            SpeedBar(
+            MeasuredBar(f"real-time factor, {named[0][0]}", self.default.real_time_factor, 5, at_least=True),
+            MeasuredBar(f"real-time factor, {named[1][0]}", self.large.real_time_factor, 2, at_least=True),
+            MeasuredBar(
                 "real-time factor, free swim of 10 s with every force of the fluid",
                 self.free_swim,
                 5,
                 at_least=True,
             ),
             *(
-                SpeedBar(f"all sensitivities / forward, {name}", s.sensitivities / s.forward, 2)
+                MeasuredBar(f"all sensitivities / forward, {name}", s.sensitivities / s.forward, 2)
                 for name, s in named
             ),
-            *(SpeedBar(f"adjoint sweep / forward, {name}", s.adjoint / s.forward, 2) for name, s in named),
-            SpeedBar(
+            *(MeasuredBar(f"adjoint sweep / forward, {name}", s.adjoint / s.forward, 2) for name, s in named),
+            MeasuredBar(
                 f"{self.lanes.runs} runs side by side / one after the other",
                 self.lanes.forward_ratio,
                 4,
                 at_least=True,
             ),
-            SpeedBar("first run, compiling (s)", self.first_run, 30),
+            MeasuredBar("first run, compiling (s)", self.first_run, 30),
         ]
 
     def values(self) -> dict:
@@ -157,7 +143,7 @@ class ConvergenceReport:
         console.print(table, steps)
 
 
-def bars_table(bars: list[SpeedBar]) -> Table:
+def bars_table(bars: list[MeasuredBar]) -> Table:
     """Measured values beside their bars."""
     table = Table("what", "measured", "bar", "met", title="Bars")
     for bar in bars:

@@ -5,10 +5,11 @@ import time
 from dataclasses import asdict, dataclass
 
 import numpy as np
+from hasel_common.measured_bar import MeasuredBar
 from rich.console import Console
 
 from hasel_sim.bench.speed import free_swim_factor
-from hasel_sim.bench.speed_report import SpeedBar, bars_table
+from hasel_sim.bench.speed_report import bars_table
 from hasel_sim.model import load_model
 from hasel_sim.parallel import executor
 from hasel_sim.swimming.boxes import Boxes
@@ -31,16 +32,16 @@ class SwimmingReport:
     sweep: float
     load: float
 
-    def bars(self) -> list[SpeedBar]:
+    def bars(self) -> list[MeasuredBar]:
         """The figures that have a bar."""
         return [
-            SpeedBar(
+            MeasuredBar(
                 f"real-time factor, free swim of {DURATION_S:g} s with every force of the fluid",
                 self.free_swim,
                 5,
                 True,
             ),
-            SpeedBar(
+            MeasuredBar(
                 f"sweep of {self.swims} swims of {DURATION_S:g} s, {JOBS} processes (s)", self.sweep, 300
             ),
         ]

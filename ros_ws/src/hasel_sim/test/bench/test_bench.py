@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hasel_common.measured_bar import MeasuredBar
 from hasel_sim.bench import reference
 from hasel_sim.bench.cases import (
     box_run,
@@ -22,7 +23,7 @@ from hasel_sim.bench.speed import (
     measure_side_by_side,
     measure_speed,
 )
-from hasel_sim.bench.speed_report import SpeedBar, SpeedReport
+from hasel_sim.bench.speed_report import SpeedReport
 from hasel_sim.bench.swimming import measure_swimming
 from hasel_sim.bench.timing import first_run_seconds, processor_seconds
 from hasel_sim.bench.where_time_goes import shares
@@ -119,9 +120,9 @@ def test_the_profile_accounts_for_all_time():
 
 def test_a_missed_bar_is_not_met():
     """In either direction."""
-    assert not SpeedBar("speed", 4.0, 5.0, at_least=True).met
-    assert not SpeedBar("cost", 3.0, 2.0).met
-    assert SpeedBar("cost", 1.0, 2.0).met
+    assert not MeasuredBar("speed", 4.0, 5.0, at_least=True).met
+    assert not MeasuredBar("cost", 3.0, 2.0).met
+    assert MeasuredBar("cost", 1.0, 2.0).met
 
 
 @pytest.mark.slow

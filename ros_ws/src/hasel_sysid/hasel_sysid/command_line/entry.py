@@ -14,59 +14,60 @@ from hasel_sysid.command_line import parsers, specimen_parsers
 @command
 def check() -> int:
     """`check RECORDING…`."""
-    return _run(parsers.check_parser, "check")
+    return run_module(parsers.check_parser, "hasel_sysid.command_line.check")
 
 
 @command
 def compare() -> int:
     """`compare RECORDING…`."""
-    return _run(parsers.compare_parser, "compare")
+    return run_module(parsers.compare_parser, "hasel_sysid.command_line.compare")
 
 
 @command
 def fit() -> int:
     """`fit RECORDING…`."""
-    return _run(parsers.fit_parser, "fit")
+    return run_module(parsers.fit_parser, "hasel_sysid.command_line.fit")
 
 
 @command
 def diagnose() -> int:
     """`diagnose RECORDING…`."""
-    return _run(parsers.diagnose_parser, "diagnose")
+    return run_module(parsers.diagnose_parser, "hasel_sysid.command_line.diagnose")
 
 
 @command
 def improve() -> int:
     """`improve RECORDING…`."""
-    return _run(parsers.improve_parser, "improve")
+    return run_module(parsers.improve_parser, "hasel_sysid.command_line.improve")
 
 
 @command
 def suggest() -> int:
     """`suggest RECORDING…`."""
-    return _run(parsers.suggest_parser, "suggest")
+    return run_module(parsers.suggest_parser, "hasel_sysid.command_line.suggest")
 
 
 @command
 def measured_fish() -> int:
     """`measured_fish DIR`."""
-    return _run(specimen_parsers.measured_fish_parser, "measured_fish")
+    return run_module(specimen_parsers.measured_fish_parser, "hasel_sysid.command_line.measured_fish")
 
 
 @command
 def add() -> int:
     """`add EFFECT…`."""
-    return _run(parsers.add_parser, "effects", "run_add")
+    return run_module(parsers.add_parser, "hasel_sysid.command_line.effects", "run_add")
 
 
 @command
 def remove() -> int:
     """`remove EFFECT…`."""
-    return _run(parsers.remove_parser, "effects", "run_remove")
+    return run_module(parsers.remove_parser, "hasel_sysid.command_line.effects", "run_remove")
 
 
-def _run(parser: Callable[[], argparse.ArgumentParser], module: str, function: str = "run") -> int:
+def run_module(parser: Callable[[], argparse.ArgumentParser], module: str, function: str = "run") -> int:
+    """Read the options, then import the command's module and run it."""
     options = parser().parse_args(sys.argv[1:])
-    code = getattr(import_module(f"hasel_sysid.command_line.{module}"), function)(options)
+    code = getattr(import_module(module), function)(options)
     gc.freeze()  # the process ends: looking once more for what could be collected takes 0.3 s
     return code

@@ -16,7 +16,7 @@ def measured_fish_parser() -> argparse.ArgumentParser:
     add(
         "--fitted",
         metavar="HZ,HZ",
-        type=_numbers,
+        type=numbers,
         default=(1.0, 1.75),
         help="films, by the frequency in their name, that the drag of the head is fitted to (default: 1,1.75)",
     )
@@ -31,12 +31,14 @@ def measured_fish_parser() -> argparse.ArgumentParser:
     return options
 
 
-def _names(text: str) -> tuple[str, ...]:
+def names(text: str) -> tuple[str, ...]:
+    """Words with commas between them."""
     return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
-def _numbers(text: str) -> tuple[float, ...]:
+def numbers(text: str) -> tuple[float, ...]:
+    """Numbers with commas between them. Raises ArgumentTypeError for another text."""
     try:
-        return tuple(float(number) for number in _names(text))
+        return tuple(float(number) for number in names(text))
     except ValueError:
         raise argparse.ArgumentTypeError(f"{text!r} is no list of voltages, such as 2000,4000") from None

@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
+from hasel_common.measured_bar import MeasuredBar
 from rich.console import Console
 from rich.table import Table
 
@@ -22,21 +23,6 @@ LAB_SEEDS, DRAWN_SEEDS, DECEIVING_SEEDS = 10, 3, 20
 
 
 @dataclass(frozen=True)
-class TrackerBar:
-    """What was measured, what it must reach, and whether it does."""
-
-    what: str
-    measured: float
-    limit: float
-    at_least: bool = False
-
-    @property
-    def met(self) -> bool:
-        """Whether the bar is met."""
-        return self.measured >= self.limit if self.at_least else self.measured <= self.limit
-
-
-@dataclass(frozen=True)
 class BenchReport:
     """All results of the benchmark."""
 
@@ -48,27 +34,27 @@ class BenchReport:
     speed: TrackerSpeed
     latency: Latency
 
-    def bars(self) -> list[TrackerBar]:
+    def bars(self) -> list[MeasuredBar]:
         """The figures that have a bar."""
         by_name = {each.condition: each for each in self.accuracies}
         worst = {name: float(each.marker_rms_px.max()) for name, each in by_name.items()}
         rest = by_name["at rest, MJPEG 75"]
         return [
-            TrackerBar("clean: worst marker (px rms)", worst["clean"], 0.02),
-            TrackerBar("MJPEG quality 75: worst marker (px rms)", worst["MJPEG quality 75"], 0.05),
-            TrackerBar("noise of sin θ at rest", rest.sin_theta_spread, 0.001),
-            TrackerBar("frames/s, one core, without decoding", self.speed.tracking_hz, 300.0, at_least=True),
-            TrackerBar(
+            MeasuredBar("clean: worst marker (px rms)", worst["clean"], 0.02),
+            MeasuredBar("MJPEG quality 75: worst marker (px rms)", worst["MJPEG quality 75"], 0.05),
+            MeasuredBar("noise of sin θ at rest", rest.sin_theta_spread, 0.001),
+            MeasuredBar("frames/s, one core, without decoding", self.speed.tracking_hz, 300.0, at_least=True),
+            MeasuredBar(
                 "false angles in the robustness cases", sum(each.false_angles for each in self.robustness), 0
             ),
-            TrackerBar(
+            MeasuredBar(
                 "wrong while valid in the laboratory's scenes", sum(each.wrong for each in self.honesty), 0
             ),
-            TrackerBar(
+            MeasuredBar(
                 "wrong while valid in the scenes that deceive", sum(each.wrong for each in self.deceiving), 0
             ),
-            TrackerBar("latency from capture to angle (ms, median)", 1e3 * self.latency.median_s, 50.0),
-            TrackerBar("frames late to recover", sum(each.late_frames for each in self.robustness), 0),
+            MeasuredBar("latency from capture to angle (ms, median)", 1e3 * self.latency.median_s, 50.0),
+            MeasuredBar("frames late to recover", sum(each.late_frames for each in self.robustness), 0),
         ]
 
     def print(self, console: Console) -> None:
