@@ -190,12 +190,12 @@ class Search:
             self.models,
             self.policy,
             self.threshold,
-            self._excused,
+            self.excused,
             self._likeness,
             lambda names: self._is_law(self.fits[names], self.likelihood),
         )
 
-    def _excused(self, names: Names, change: np.ndarray) -> bool:
+    def excused(self, names: Names, change: np.ndarray) -> bool:
         """Whether what no model has may be all that a set lacks: it describes its runs, and that is no larger."""
         if float(np.sqrt(np.mean(change**2))) > self.problem.discrepancy:
             return False
