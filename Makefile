@@ -50,7 +50,7 @@ fuzz: build ## readers and parameters against 22,000 damaged inputs (FUZZ_SHARE=
 docs: build ## write the site, build/site/index.html, and the reference from the docstrings, build/site/code/index.html
 	@$(ENVIRONMENT) && python -m pip install --quiet --disable-pip-version-check -r docs/requirements.txt
 	@$(ENVIRONMENT) && NO_MKDOCS_2_WARNING=1 python -m mkdocs build --strict --quiet
-	@$(ENVIRONMENT) && python -m pdoc --no-show-source -o build/site/code $(PACKAGES)
+	@$(ENVIRONMENT) && python -m pdoc --no-show-source -o build/site/code $(PACKAGES) '!hasel_bringup.launching' # ROS 2 from apt brings launch
 	@echo "Written: build/site/index.html and build/site/code/index.html"
 
 demo: build ## fit the swimmer, compare on unseen runs, replay one, write report.html (BODY=DIR, MUSCLE=DIR, FISHSIM=DIR: measured ones too)
