@@ -2,10 +2,10 @@
 
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 import rclpy
-from rclpy._rclpy_pybind11 import RCLError
+from rclpy._rclpy_pybind11 import InvalidHandle, RCLError
 from rclpy.context import Context
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
@@ -53,7 +53,10 @@ class BackgroundSpin:
             self._begin()
         with quiet_at_shutdown(self._node.context):
             while not self._ending and self._node.context.ok():
-                self._executor.spin_once()
+                with suppress(
+                    InvalidHandle
+                ):  # another thread has just destroyed a publisher: without it, then
+                    self._executor.spin_once()
 
 
 def node_alone(name: str, namespace: str | None = None, domain: int | None = None) -> Node:

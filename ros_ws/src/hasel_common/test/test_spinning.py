@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
 
 from hasel_common import spinning
-from rclpy._rclpy_pybind11 import RCLError
+from rclpy._rclpy_pybind11 import InvalidHandle, RCLError
 from rclpy.executors import ExternalShutdownException
 
 ILLEGAL = RCLError("Failed to trigger lifecycle state machine transition: Transition is not registered.")
@@ -137,3 +137,22 @@ def test_a_context_that_was_shut_down_ends_the_thread_quietly(failures):
     node.context.try_shutdown()
     spun.close()
     assert failures == []
+
+
+def test_a_publisher_that_another_thread_destroys_does_not_end_the_spinning(monkeypatch):
+    """The executor finds a handle that is gone in its wait set now and then; the spin goes on without it."""
+    spin_once, gone = spinning.SingleThreadedExecutor.spin_once, [InvalidHandle("destruction was requested")]
+    monkeypatch.setattr(
+        spinning.SingleThreadedExecutor,
+        "spin_once",
+        lambda self: (_ for _ in ()).throw(gone.pop()) if gone else spin_once(self),
+    )
+    node = spinning.node_alone("spun")
+    beats = []
+    node.create_timer(0.01, lambda: beats.append(time.monotonic()))
+    spun = spinning.BackgroundSpin(node, "spun", owns_context=True)
+    try:
+        time.sleep(0.3)
+    finally:
+        spun.close()
+    assert (gone, len(beats) > 3) == ([], True)

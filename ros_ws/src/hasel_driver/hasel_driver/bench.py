@@ -1,9 +1,11 @@
-"""`ros2 run hasel_driver bench`: how fast a command reaches the wire, and how fast a dead node is grounded."""
+"""`ros2 run hasel_driver bench`: how fast a command, and the grounding of a dead node; what a busy machine ends."""
 
 import argparse
+import os
 import sys
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,6 +20,9 @@ GROUNDED_BAR_S = 0.5
 RATE_BAR_HZ = 250.0
 PACE_HZ = 100.0
 FLAT_OUT_S = 3.0
+EXPERIMENT_S = 3.0
+SURVIVAL_BAR = 0.98
+BOARD_LATE_S = 0.1  # half of what its telemetry may be silent
 
 
 def latencies(client: RosClient, rig: Rig, count: int) -> np.ndarray:
@@ -60,6 +65,54 @@ def grounding_times(client: RosClient, rig: Rig, count: int) -> list[float]:
         times_s.append(rig.await_live(False) - killed_s)
         driver.close()
     return times_s
+
+
+@dataclass(frozen=True)
+class EndedEarly:
+    """An experiment that ended by a fault: its sentence, and by how much the simulated supply itself was late [s]."""
+
+    fault: str
+    supply_late_s: float
+
+
+def ended_early(
+    client: RosClient, driver: DriverProcess, late: list[tuple[float, float]], count: int
+) -> list[EndedEarly]:
+    """Of `count` experiments of 3 s, into which nothing is injected; `late`: when and how late the supply was [s]."""
+    ended = []
+    for _ in range(count):
+        driver.to_standby()
+        driver.arm()
+        begin_s = time.monotonic()
+        with client.commanding((1500.0, 0.0)):
+            while time.monotonic() - begin_s < EXPERIMENT_S and not client.state.fault_code:
+                time.sleep(0.02)
+        if client.state.fault_code:
+            worst_s = max((late_s for when_s, late_s in late if when_s >= begin_s), default=0.0)
+            ended.append(EndedEarly(client.state.fault_text.split(". ")[0], worst_s))
+    return ended
+
+
+def count_experiments(
+    client: RosClient, rig: Rig, late: list[tuple[float, float]], count: int, what: str
+) -> bool:
+    """Run them and print; whether nearly all came to their end, but for what a real board would not have ended."""
+    driver = DriverProcess(client, rig.port)
+    try:
+        ended = ended_early(client, driver, late, count)
+    finally:
+        driver.close()
+    board_late = [one for one in ended if one.supply_late_s > BOARD_LATE_S]
+    met = len(ended) - len(board_late) <= (1 - SURVIVAL_BAR) * count
+    load = os.getloadavg()[0]
+    print(
+        f"{what}, experiments ended by a fault: {len(ended)} of {count} at a load of {load:.0f}, {len(board_late)} of"
+        f" them because the simulated board was late (bar for the others {1 - SURVIVAL_BAR:.0%}:"
+        f" {'met' if met else 'MISSED'})"
+    )
+    for one in ended:
+        print(f"  {one.fault}; the simulated board was {one.supply_late_s:.2f} s late")
+    return met
 
 
 def report(
@@ -113,9 +166,15 @@ def run(options: argparse.Namespace) -> int:
     command, what = VIRTUAL_SUPPLY, "driver"
     if options.firmware is not None:
         command, what = list(map(str, firmware_files(options.firmware))), "driver and firmware"
-    client, rig = RosClient(), Rig(command)
+    late: list[tuple[float, float]] = []
+    client, rig = RosClient(), Rig(command, lambda late_s: late.append((time.monotonic(), late_s)))
     try:
-        return int(not measure(client, rig, options.commands, options.kills, what))
+        met = True
+        if options.commands:
+            met = measure(client, rig, options.commands, options.kills, what)
+        if options.experiments:
+            met = count_experiments(client, rig, late, options.experiments, what) and met
+        return int(not met)
     except AssertionError as failure:
         print(f"The measurement failed: {failure}; try again on a machine with less to do.", file=sys.stderr)
         return 1

@@ -8,10 +8,13 @@ from pathlib import Path
 def options_from(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     """What the command line says; leaves with exit code 2 where it cannot be done."""
     parser = argparse.ArgumentParser(
-        prog="bench", description="How fast a command reaches the wire, and how fast a dead node is grounded."
+        prog="bench",
+        description="How fast a command reaches the wire, how fast a dead node is grounded, and how many experiments"
+        " end by a fault although nothing is wrong but that the machine is busy.",
     )
     parser.add_argument("--commands", type=int, default=1000, help="commands for the latency")
     parser.add_argument("--kills", type=int, default=5, help="nodes to be killed")
+    parser.add_argument("--experiments", type=int, default=0, help="of three seconds each, to be counted")
     parser.add_argument(
         "--firmware",
         type=Path,

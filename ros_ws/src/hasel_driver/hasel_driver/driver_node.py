@@ -1,4 +1,4 @@
-"""`ros2 run hasel_driver driver_node`: lifecycle node on top of the supply's thread."""
+"""`ros2 run hasel_driver driver_node`: lifecycle node, whose safety process talks to the supply."""
 
 import math
 import os
@@ -22,28 +22,25 @@ from rclpy.executors import MultiThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.signals import SignalHandlerOptions
 
-from hasel_driver.backends import make_supply
 from hasel_driver.claim import Claim
 from hasel_driver.driver_services import SERVICES, DriverServices
 from hasel_driver.errors import DriverError, PortError, PortInUseError, RefusedError
 from hasel_driver.experiment_server import ExperimentServer
-from hasel_driver.fault_store import FaultStore
 from hasel_driver.faults import Fault, FaultCode
-from hasel_driver.limits import Limits
 from hasel_driver.messages import to_diagnostics, to_supply_state
 from hasel_driver.middleware import prepare, reach
 from hasel_driver.node_parameters import declare, values
 from hasel_driver.parameter_files import check_files
 from hasel_driver.realtime import middleware_threads, request_realtime
+from hasel_driver.safety_messages import Snapshot
 from hasel_driver.serial_port import check_not_in_use
-from hasel_driver.status import SupplyStatus
-from hasel_driver.supervisor import COMMAND_TIMEOUT_S, Supervisor
+from hasel_driver.supervisor import COMMAND_TIMEOUT_S
 from hasel_driver.supply_history import SupplyHistory
-from hasel_driver.supply_thread import SupplyThread
+from hasel_driver.supply_link import SupplyLink
 from hasel_driver.surroundings import HostSurroundings
 from hasel_driver.urgent_inputs import ALIVE_PERIOD_S, STEADY, UrgentInputs
 
-THREAD_SWITCH_S = 0.0005  # Python's 5 ms would let the executor hold up the supply's thread
+THREAD_SWITCH_S = 0.0005  # Python's 5 ms would let the executor hold up commands and stops
 RETRY_PERIOD_S = 2.0  # between attempts to open a port that could not be opened at the start
 REFUSED_LOG_S = 2.0
 LAST_STATE_S = 0.2  # for which the end waits until the last state has been heard
@@ -54,20 +51,21 @@ class DriverNode(LifecycleNode):
 
     def __init__(self, **options) -> None:
         super().__init__("hasel_driver", **{"namespace": NAMESPACE, **options})
-        self._thread: SupplyThread | None = None
+        self._link: SupplyLink | None = None
         self._lifecycle_active = False
+        self._changing = (
+            threading.Lock()
+        )  # held while the lifecycle's state, on which arming depends, changes
         self._retrying = self._port_missing = False
-        self._store: FaultStore | None = None
         self._last_problem = ""
         self._silent = False  # the supply, at rest
         self._configured_s = 0.0
-        self._last_limits: Limits | None = None
         self._claim = Claim(time.monotonic)
         self._refused_s: dict[str, float] = {}  # when it was last said, by the other commander's name
         self._command_age_s = math.nan  # of the last command, by its stamp
         self.end_reason: str | None = None  # why the process must end
         check_files(self.get_name(), self.get_fully_qualified_name(), sys.argv)
-        declare(self, lambda: self._thread is not None, self._lower_maximum)
+        declare(self, lambda: self._link is not None, self._lower_maximum)
         check_not_in_use(
             values(self)["port"]
         )  # before anything of this node answers to the names of the other
@@ -88,7 +86,8 @@ class DriverNode(LifecycleNode):
         self._trigger_services = DriverServices(
             self,
             slow,
-            lambda: self._thread,
+            lambda: self._link,
+            self._changing,
             self._check_arming,
             self._surroundings.check_clearing,
             self._inputs.holders.release,
@@ -99,7 +98,7 @@ class DriverNode(LifecycleNode):
         self.create_timer(ALIVE_PERIOD_S, self._on_heartbeat, callback_group=alone(), clock=STEADY)
         self.create_timer(1.0, self._on_diagnostics, callback_group=slow, clock=STEADY)
         self.create_timer(RETRY_PERIOD_S, self._retry, callback_group=alone(), clock=STEADY)
-        self.experiments = ExperimentServer(self, lambda: self._thread, slow)
+        self.experiments = ExperimentServer(self, lambda: self._link, slow)
 
     # Lifecycle
 
@@ -107,11 +106,7 @@ class DriverNode(LifecycleNode):
         """Open the port and prove the board; disarmed."""
         chosen = values(self)
         try:
-            supply = make_supply(chosen)
-            store = FaultStore(chosen["state_folder"], chosen["port"])
-            supervisor = Supervisor(supply, time.monotonic, chosen["idle_disarm"])
-            supervisor.fault = store.load()
-            supervisor.connect()
+            link = SupplyLink(chosen, self._take)
         except PortInUseError as error:
             self.end_reason = str(error)
             rclpy.try_shutdown()
@@ -127,24 +122,16 @@ class DriverNode(LifecycleNode):
             self._last_problem = str(error)
             return TransitionCallbackReturn.FAILURE
         self._last_problem = ""
-        self._store = store
-        self._thread = SupplyThread(
-            supervisor,
-            supply,
-            self._publish,
-            self.experiments.step,
-            lambda: self._begin_realtime(chosen["realtime_priority"]),
-        )
-        self._thread.start()
+        self._link = link
+        self._say_priority(chosen["realtime_priority"], link.now.without_realtime)
         if self._inputs.holders:
             self.fail(Fault(FaultCode.EMERGENCY_STOP, "by topic, before the port was opened"))
         self._configured_s = time.monotonic()
         self.experiments.watch_topics(chosen["recorded_topics"])
-        self.get_logger().info(f"{supervisor.name} on {chosen['port']}, disarmed; commanded by {reach()}.")
+        self.get_logger().info(f"{link.now.name} on {chosen['port']}, disarmed; commanded by {reach()}.")
         return TransitionCallbackReturn.SUCCESS
 
-    def _begin_realtime(self, priority: int) -> None:
-        problem = request_realtime(priority)
+    def _say_priority(self, priority: int, problem: str | None) -> None:
         for thread in middleware_threads():
             request_realtime(priority, thread)
         if problem is None:
@@ -165,7 +152,7 @@ class DriverNode(LifecycleNode):
             rclpy.try_shutdown()
 
     def _retry(self) -> None:
-        if self._retrying and self._thread is None and self.end_reason is None:
+        if self._retrying and self._link is None and self.end_reason is None:
             self.begin()
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -175,8 +162,9 @@ class DriverNode(LifecycleNode):
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Disarm; without proof of it, FAULT."""
-        self._lifecycle_active = False
-        if self._thread is not None:
+        with self._changing:
+            self._lifecycle_active = False
+        if self._link is not None:
             try:
                 self._trigger_services.disarm()
             except DriverError as error:
@@ -201,12 +189,11 @@ class DriverNode(LifecycleNode):
 
     def close(self) -> None:
         """Disarm, publish what became of it, and close the port, from whatever state."""
-        self._lifecycle_active = self._retrying = False
-        thread, self._thread = self._thread, None
-        if thread is not None:
-            self._last_limits = thread.supervisor.limits
-            thread.come_to_rest()
-            thread.stop()
+        with self._changing:
+            self._lifecycle_active = self._retrying = False
+            link, self._link = self._link, None
+        if link is not None:
+            link.stop()
             with quiet_at_shutdown():
                 self._state.wait_for_all_acked(Duration(seconds=LAST_STATE_S))
 
@@ -218,10 +205,10 @@ class DriverNode(LifecycleNode):
     # Topics
 
     def _on_command(self, publisher: bytes, name: str, voltage_v: tuple[float, ...], age_s: float) -> None:
-        thread = self._thread
-        if thread is None or not self._lifecycle_active:
+        link = self._link
+        if link is None or not self._lifecycle_active:
             return
-        obeyed, new = self._claim.take(publisher, name) if thread.supervisor.armed else (True, False)
+        obeyed, new = self._claim.take(publisher, name) if link.now.armed else (True, False)
         if not obeyed:
             self._say_refused(
                 name, f"are refused: {self._claim.holder} holds the claim. End that one, or arm anew."
@@ -236,8 +223,8 @@ class DriverNode(LifecycleNode):
                 "Synchronise the clocks of the two machines (chrony, NTP), or look for what holds the network up.",
             )
         if new:
-            thread.call(thread.supervisor.await_zero)
-        thread.call(lambda: thread.supervisor.command(voltage_v, age_s))
+            link.tell("await_zero")
+        link.tell("command", voltage_v, age_s)
 
     def _say_refused(self, name: str, why: str) -> None:
         if time.monotonic() - self._refused_s.get(name, -math.inf) > REFUSED_LOG_S:
@@ -249,21 +236,19 @@ class DriverNode(LifecycleNode):
             self.fail(Fault(FaultCode.EMERGENCY_STOP, f"by topic, from {who}"))
 
     def _on_inputs_alive(self) -> None:
-        thread = self._thread
-        if thread is not None:
-            thread.host_is_alive("inputs")
+        link = self._link
+        if link is not None:
+            link.tell("host_is_alive", "inputs")
 
-    def _publish(self, status: SupplyStatus) -> None:
-        inputs, thread = self._inputs, self._thread
+    def _take(self, now: Snapshot) -> None:
+        inputs, status = self._inputs, now.status
         with quiet_at_shutdown():
             holders = inputs.holders.names(inputs.stop_topic.present()) if inputs.holders else []
-            limits = thread.supervisor.limits if thread is not None else self._last_limits
-            commander = self._claim.holder if thread is not None and thread.supervisor.armed else ""
-            message = to_supply_state(status, limits, holders, self._frame_id, commander)
+            commander = self._claim.holder if now.armed else ""
+            message = to_supply_state(status, now.limits, holders, self._frame_id, commander)
             self._state.publish(message)
             self.experiments.record_state(message)
         self.history.take(status)
-        self._keep(status.fault)
         if bool(status.silent_s) != self._silent:
             self._silent = not self._silent
             self.get_logger().warning(
@@ -272,59 +257,50 @@ class DriverNode(LifecycleNode):
                 else "The supply reports again."
             )
 
-    def _keep(self, fault: Fault | None) -> None:
-        store = self._store
-        try:
-            if store is not None:
-                store.keep(fault)
-        except (OSError, DriverError) as error:
-            self.get_logger().error(f"A restarted node will not know of {fault}: {error}")
-
     def _lower_maximum(self, voltage_v: float) -> None:
-        thread = self._thread
-        if thread is not None:
-            thread.call(lambda: thread.supervisor.lower_maximum(voltage_v)).result(timeout=5.0)
+        link = self._link
+        if link is not None:
+            link.ask("lower_maximum", voltage_v)
 
     def _on_heartbeat(self) -> None:
-        thread = self._thread
-        if thread is None:
+        link = self._link
+        if link is None:
             return
-        if not thread.is_alive():
-            self._publish(thread.supervisor.status())
-        thread.host_is_alive("services")
-        if not thread.supervisor.armed:
+        if not link.is_alive():
+            self._take(link.now)
+        link.tell("host_is_alive", "services")
+        if not link.now.armed:
             self._surroundings.calm()
         elif (threat := self._surroundings.threat()) is not None:
             self.fail(threat)
 
     def _on_diagnostics(self) -> None:
-        thread = self._thread
-        inputs = self._inputs
+        link, inputs = self._link, self._inputs
         holders = inputs.holders.names(inputs.stop_topic.present())
-        status: SupplyStatus | None = None
+        now = link.now if link is not None else None
         details: dict[str, object] = {"emergency_stop_held_by": ", ".join(holders) or "nobody"}
         details |= self.history.summary()
-        if thread is not None:
-            supervisor = thread.supervisor
-            status = supervisor.status()
+        if link is not None and now is not None:
             details |= {
-                "device": supervisor.name,
-                "maximum_voltage_v": supervisor.maximum_voltage_v,
-                "rejected_commands": supervisor.rejected_commands,
+                "device": now.name,
+                "maximum_voltage_v": now.limits.maximum_voltage_v,
+                "rejected_commands": now.rejected_commands,
                 "command_age_s": self._command_age_s,
-                "garbled_lines": supervisor.garbled_lines,
-                "interlock_closed": status.interlock_closed,
-                "grounds_itself_without_host": supervisor.capabilities.deadman,
-                "thread_alive": thread.is_alive(),
+                "garbled_lines": now.garbled_lines,
+                "interlock_closed": now.status.interlock_closed,
+                "grounds_itself_without_host": now.capabilities.deadman,
+                "safety_process_alive": link.is_alive(),
             }
         name = self.get_fully_qualified_name().lstrip("/")
-        self._diagnostics.publish(to_diagnostics(name, status, self.get_clock().now().to_msg(), details))
+        self._diagnostics.publish(
+            to_diagnostics(name, now.status if now else None, self.get_clock().now().to_msg(), details)
+        )
 
     # What the services ask for
 
     def _check_arming(self) -> None:
-        thread = self._thread
-        if not self._lifecycle_active or thread is None:
+        link = self._link
+        if not self._lifecycle_active or link is None:
             raise RefusedError("The node is not active: activate it (lifecycle) first.")
         self._surroundings.check_arming()
         waited_s = time.monotonic() - self._configured_s
@@ -334,7 +310,7 @@ class DriverNode(LifecycleNode):
                 "An emergency stop sent before may still arrive:"
                 f" wait {discovery_s - waited_s:.1f} s and arm again."
             )
-        if not thread.supervisor.capabilities.deadman and not self.get_parameter("accept_no_deadman").value:
+        if not link.now.capabilities.deadman and not self.get_parameter("accept_no_deadman").value:
             raise RefusedError(
                 "This supply stays live when its host dies:"
                 " set the parameter accept_no_deadman if that is acceptable."
@@ -344,16 +320,16 @@ class DriverNode(LifecycleNode):
 
     def fail(self, fault: Fault) -> None:
         """Ground the output and latch `fault`."""
-        thread = self._thread
-        if thread is not None:
+        link = self._link
+        if link is not None:
+            link.tell("fail", fault)
             self.get_logger().error(f"{fault}: grounding the output.")
-            thread.call(lambda: thread.supervisor.fail(fault))
 
     def report_illegal_transition(self, error: Exception) -> None:
         """Rclpy lets an illegal transition escape from spin: ground what is armed, and live on."""
         self.get_logger().error(f"Illegal lifecycle transition, ignored: {error}")
-        thread = self._thread
-        if thread is not None and thread.supervisor.armed:
+        link = self._link
+        if link is not None and link.now.armed:
             self.fail(Fault(FaultCode.ILLEGAL_TRANSITION))
 
 
@@ -387,9 +363,9 @@ def main() -> int:
         print(f"hasel_driver: {' '.join(str(error).split())}", file=sys.stderr)
         rclpy.try_shutdown()
         return 1
-    threading.Thread(target=end_at_signal, args=(node, signals), name="signals", daemon=True).start()
     executor = MultiThreadedExecutor(num_threads=4)
     executor.add_node(node)
+    threading.Thread(target=end_at_signal, args=(node, signals), name="signals", daemon=True).start()
     try:
         with quiet_at_shutdown():
             if node.get_parameter("autostart").value:
@@ -398,6 +374,7 @@ def main() -> int:
     finally:
         node.close()
         node.leave()
+        executor.shutdown()
         rclpy.try_shutdown()
     if node.end_reason is not None:
         print(f"hasel_driver: {node.end_reason}", file=sys.stderr)

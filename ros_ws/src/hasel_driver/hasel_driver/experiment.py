@@ -1,4 +1,4 @@
-"""One run: rest, waveform, rest; advanced step by step by the supply's thread."""
+"""One run: rest, waveform, rest; advanced step by step in the safety process."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,8 +7,7 @@ from hasel_driver.errors import LimitError
 from hasel_driver.limits import Voltages
 from hasel_driver.mode import Mode
 from hasel_driver.supervisor import Supervisor
-from hasel_driver.waveform import Waveform
-from hasel_driver.waveform_file import LONGEST_S, FileWaveform
+from hasel_driver.waveform import LONGEST_S, FileWaveform, Waveform
 
 LONGEST_REST_S = 600.0
 
@@ -46,6 +45,16 @@ class ExperimentPlan:
             )
 
 
+@dataclass(frozen=True)
+class ExperimentProgress:
+    """Of a run: time since its begin [s], voltage [V], and why it ended early, or None."""
+
+    elapsed_s: float
+    voltage_v: Voltages
+    finished: bool
+    failure: str | None
+
+
 class DrivenExperiment:
     """Runs a plan on a supervisor. `step` is called often; `failure` tells why it ended early."""
 
@@ -72,6 +81,10 @@ class DrivenExperiment:
     def elapsed_s(self) -> float:
         """Time since the begin [s]."""
         return (self._clock() if self.ended_s is None else self.ended_s) - self.began_s
+
+    def progress(self) -> ExperimentProgress:
+        """How far it is."""
+        return ExperimentProgress(self.elapsed_s, self.voltage_v, self.finished, self.failure)
 
     def begin(self) -> None:
         """Raises LimitError or RefusedError; then nothing has happened."""

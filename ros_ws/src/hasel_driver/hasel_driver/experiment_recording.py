@@ -14,8 +14,7 @@ from hasel_recording.mcap_file import McapFile, read_file
 from hasel_recording.mcap_recorder import McapRecorder
 
 from hasel_driver.experiment import ExperimentPlan
-from hasel_driver.waveform import MUSCLES, Waveform
-from hasel_driver.waveform_file import FileWaveform
+from hasel_driver.waveform import MUSCLES, FileWaveform, Waveform
 
 MOST_STATE_GAP_S = 0.2
 MOST_TOPIC_GAP_S = 1.0

@@ -1,10 +1,10 @@
 """The action `run_experiment`: runs a plan, records it, and vouches for the recording."""
 
+import contextlib
 import importlib
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from functools import partial
 from pathlib import Path
 
 from hasel_common.endpoints import Role
@@ -20,13 +20,13 @@ from rclpy.node import Node
 
 from hasel_driver.client_watch import ClientWatch
 from hasel_driver.errors import DriverError, LimitError, RefusedError
-from hasel_driver.experiment import DrivenExperiment, ExperimentPlan
+from hasel_driver.experiment import ExperimentPlan, ExperimentProgress
 from hasel_driver.experiment_recording import ExperimentRecording
 from hasel_driver.node_parameters import values
 from hasel_driver.one_at_a_time import OneAtATime
 from hasel_driver.presets import preset
 from hasel_driver.recording_path import below, chosen_path, reserve, reserve_unique
-from hasel_driver.supply_thread import SupplyThread
+from hasel_driver.supply_link import SupplyLink
 from hasel_driver.waveform import Waveform
 from hasel_driver.waveform_file import read_waveform
 
@@ -34,12 +34,11 @@ FEEDBACK_PERIOD_S = 0.1
 
 
 class ExperimentServer:
-    """One experiment at a time, on the node's supply thread."""
+    """One experiment at a time, run by the safety process."""
 
-    def __init__(self, node: Node, thread: Callable[[], SupplyThread | None], group: CallbackGroup) -> None:
-        self._node, self._thread, self._group = node, thread, group
+    def __init__(self, node: Node, link: Callable[[], SupplyLink | None], group: CallbackGroup) -> None:
+        self._node, self._link, self._group = node, link, group
         self._state_topic = node.resolve_topic_name(relative(STATE))
-        self._experiment: DrivenExperiment | None = None
         self._recording: ExperimentRecording | None = None
         self._watched: list = []
         self._place = OneAtATime()
@@ -72,13 +71,8 @@ class ExperimentServer:
             for topic, kind in known.items()
         ]
 
-    def step(self) -> None:
-        """Called in the supply's thread."""
-        if self._experiment is not None:
-            self._experiment.step()
-
     def record_state(self, message: SupplyState) -> None:
-        """Called in the supply's thread; a state that does not know the voltage is not a sample of it."""
+        """Called with each state that is published; a state that does not know the voltage is not a sample of it."""
         recording = self._recording
         if recording is not None and message.commanded_voltage[0] == message.commanded_voltage[0]:
             recording.write(self._state_topic, message)
@@ -116,46 +110,52 @@ class ExperimentServer:
         try:
             yield
         finally:
-            self._experiment = None
             recording, self._recording = self._recording, None
             if recording is not None:
                 recording.close()
 
     def _run(self, plan: ExperimentPlan, goal_handle, result: RunExperiment.Result) -> list[str]:
         """What went wrong, in words; nothing if the run and its recording are complete."""
-        thread = self._thread()
-        if thread is None:
+        link = self._link()
+        if link is None:
             raise RefusedError("The port is closed: configure the node (lifecycle) first.")
         topics = tuple(s.topic_name for s in self._watched if self._node.count_publishers(s.topic_name))
-        experiment = DrivenExperiment(plan, thread.supervisor, time.monotonic)
-        thread.call(experiment.begin).result(timeout=5.0)
-        try:
+        link.ask("begin_experiment", plan)
+        with contextlib.ExitStack() as on_failure:
+            on_failure.callback(link.tell, "cancel_experiment", "its recording failed")
             path = self._reserve(goal_handle.request, plan)
             recording = self._recording = ExperimentRecording(
-                path, plan, topics, self._state_topic, self._made_by(thread.supervisor.name)
+                path, plan, topics, self._state_topic, self._made_by(link.now.name or "")
             )
-        except (OSError, RecordingError, DriverError):
-            thread.call(experiment.cancel)
-            raise
-        result.recording = str(path)
-        self._experiment = experiment
-        client = ClientWatch(self._node)
-        while not experiment.finished:
-            if goal_handle.is_cancel_requested or recording.problem:
-                thread.call(experiment.cancel)
-            elif (name := client.gone()) is not None:
-                thread.call(partial(experiment.cancel, f"its client {name} has gone"))
-            if not thread.is_alive():
-                raise RefusedError("The supply's thread has ended; the board grounds itself.")
-            with quiet_at_shutdown():
-                goal_handle.publish_feedback(_feedback(experiment))
-            time.sleep(FEEDBACK_PERIOD_S)
+            result.recording = str(path)
+            link.ask("run_experiment")
+            progress = self._follow(link, goal_handle, plan, recording)
+            on_failure.pop_all()
         if recording.problem:
             raise RecordingError(recording.problem)
         recording.close()
-        if experiment.failure:
-            return [experiment.failure]
-        return [f"the recording lacks: {text}" for text in recording.missing(experiment.elapsed_s)]
+        if progress.failure:
+            return [progress.failure]
+        return [f"the recording lacks: {text}" for text in recording.missing(progress.elapsed_s)]
+
+    def _follow(
+        self, link: SupplyLink, goal_handle, plan: ExperimentPlan, recording: ExperimentRecording
+    ) -> ExperimentProgress:
+        """Until the run is over; cancelled where its client asks, or is gone, or nothing more can be recorded."""
+        client = ClientWatch(self._node)
+        while True:
+            if not link.is_alive():
+                raise RefusedError("The safety process has ended; the board grounds itself.")
+            progress = link.now.experiment
+            if progress is None or progress.finished:
+                return progress or ExperimentProgress(0.0, (0.0, 0.0), True, "it was not begun")
+            if goal_handle.is_cancel_requested or recording.problem:
+                link.tell("cancel_experiment", "it was cancelled")
+            elif (name := client.gone()) is not None:
+                link.tell("cancel_experiment", f"its client {name} has gone")
+            with quiet_at_shutdown():
+                goal_handle.publish_feedback(_feedback(progress, plan.duration_s))
+            time.sleep(FEEDBACK_PERIOD_S)
 
     def _made_by(self, supply: str) -> dict[str, str]:
         """The supply, this package's version, and the node's parameters: its limits among them."""
@@ -210,12 +210,11 @@ def plan_of(goal: RunExperiment.Goal, waveforms: Path) -> ExperimentPlan:
     return ExperimentPlan(waveform, goal.rest_time)
 
 
-def _feedback(experiment: DrivenExperiment) -> RunExperiment.Feedback:
-    duration_s = experiment.plan.duration_s
-    elapsed_s = min(experiment.elapsed_s, duration_s)
+def _feedback(progress: ExperimentProgress, duration_s: float) -> RunExperiment.Feedback:
+    elapsed_s = min(progress.elapsed_s, duration_s)
     return RunExperiment.Feedback(
         progress=elapsed_s / duration_s,
         elapsed=elapsed_s,
         remaining=duration_s - elapsed_s,
-        voltage=list(experiment.voltage_v),
+        voltage=list(progress.voltage_v),
     )

@@ -58,7 +58,7 @@ class UrgentInputs:
         self._names: dict[bytes, str] = {}  # of the nodes that command
         self.stop_topic = StopTopic(self._node, self.holders, on_stop)
         self._node.create_timer(ALIVE_PERIOD_S, on_alive, clock=STEADY)
-        # whether the priority was granted, the supply's thread tells
+        # whether the priority was granted, the safety process tells
         self._spin = BackgroundSpin(self._node, "inputs", begin=partial(request_realtime, realtime_priority))
 
     @property

@@ -1,11 +1,16 @@
-"""Voltage waveforms of two antagonistic muscles, as the board generates them (`firmware/PROTOCOL.md`)."""
+"""Voltage waveforms of two antagonistic muscles: as the board generates them (`firmware/PROTOCOL.md`), or in rows."""
 
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
 
 from hasel_driver.errors import LimitError
+from hasel_driver.limits import Voltages
+
+if TYPE_CHECKING:  # the safety process does without it, but for the arrays it is sent
+    import numpy as np
 
 SHAPES: dict[str, Callable[[float], float]] = {
     "box": lambda s: 1.0,
@@ -13,6 +18,7 @@ SHAPES: dict[str, Callable[[float], float]] = {
     "sine": lambda s: math.sin(math.pi * s),
     "triangle": lambda s: 1.0 - abs(2.0 * s - 1.0),
 }
+LONGEST_S = 3600.0
 POLARITIES = ("positive", "negative", "alternating")
 # Delay of the upper and lower muscle [periods]; None: not driven.
 MUSCLES: dict[str, tuple[float | None, float | None]] = {
@@ -94,3 +100,38 @@ class Waveform:
         if self.polarity == "alternating":
             return 1 if cycle % 2 == 0 else -1
         return 1 if self.polarity == "positive" else -1
+
+
+@dataclass(frozen=True)
+class FileWaveform:
+    """Rows [n] of time [s], from 0, and voltages [n, 2] [V]; the drive ends with the last row's time."""
+
+    path: Path
+    time_s: "np.ndarray"
+    voltages_v: "np.ndarray"
+
+    @property
+    def duration_s(self) -> float:
+        """Time from the first row to the last [s]."""
+        return float(self.time_s[-1])
+
+    @property
+    def voltage_v(self) -> float:
+        """Highest magnitude [V]."""
+        return float(abs(self.voltages_v).max())
+
+    @property
+    def polarity(self) -> str:
+        """`positive` where no voltage is below 0, else `mixed`."""
+        return "positive" if (self.voltages_v >= 0).all() else "mixed"
+
+    def voltage(self, time_s: float) -> Voltages:
+        """Voltage of the upper and lower muscle [V] at `time_s` after the start; 0 outside the drive."""
+        if not 0.0 <= time_s < self.duration_s:
+            return 0.0, 0.0
+        upper, lower = self.voltages_v[self.time_s.searchsorted(time_s, side="right") - 1]
+        return float(upper), float(lower)
+
+    def metadata(self) -> dict[str, str]:
+        """Header lines of the recording."""
+        return {"waveform": "file", "waveform_file": str(self.path), "voltage_v": f"{self.voltage_v:g}"}

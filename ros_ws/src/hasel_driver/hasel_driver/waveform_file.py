@@ -1,6 +1,5 @@
 """A drive given as a file: CSV with time_s, voltage_upper_v and voltage_lower_v, each row holding until the next."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -10,48 +9,12 @@ from hasel_recording.csv_reader import drive_columns
 from hasel_recording.csv_text import read_text
 from hasel_recording.drive_channel import HASEL_PAIR
 from hasel_recording.errors import RecordingError
-from hasel_recording.zero_order_hold import row_in_force
 
 from hasel_driver.errors import LimitError
-from hasel_driver.limits import HARDWARE_MAXIMUM_V, Voltages
+from hasel_driver.limits import HARDWARE_MAXIMUM_V
+from hasel_driver.waveform import LONGEST_S, FileWaveform
 
-LONGEST_S = 3600.0
 SHORTEST_ROW_S = 0.0099
-
-
-@dataclass(frozen=True)
-class FileWaveform:
-    """Rows [n] of time [s], from 0, and voltages [n, 2] [V]; the drive ends with the last row's time."""
-
-    path: Path
-    time_s: np.ndarray
-    voltages_v: np.ndarray
-
-    @property
-    def duration_s(self) -> float:
-        """Time from the first row to the last [s]."""
-        return float(self.time_s[-1])
-
-    @property
-    def voltage_v(self) -> float:
-        """Highest magnitude [V]."""
-        return float(np.abs(self.voltages_v).max())
-
-    @property
-    def polarity(self) -> str:
-        """`positive` where no voltage is below 0, else `mixed`."""
-        return "positive" if (self.voltages_v >= 0).all() else "mixed"
-
-    def voltage(self, time_s: float) -> Voltages:
-        """Voltage of the upper and lower muscle [V] at `time_s` after the start; 0 outside the drive."""
-        if not 0.0 <= time_s < self.duration_s:
-            return 0.0, 0.0
-        upper, lower = self.voltages_v[row_in_force(self.time_s, time_s)]
-        return float(upper), float(lower)
-
-    def metadata(self) -> dict[str, str]:
-        """Header lines of the recording."""
-        return {"waveform": "file", "waveform_file": str(self.path), "voltage_v": f"{self.voltage_v:g}"}
 
 
 def read_waveform(path: Path) -> FileWaveform:

@@ -36,6 +36,15 @@ def test_measures_latency_rate_and_grounding(capsys, monkeypatch, request, suppl
     assert "node killed to output grounded: median" in lines[2]
 
 
+def test_counts_the_experiments_that_a_busy_machine_ends(capsys, monkeypatch):
+    """How many were begun and how many ended by a fault, each by its sentence."""
+    monkeypatch.setattr(bench, "EXPERIMENT_S", 0.5)
+    bench.main(["--commands", "0", "--experiments", "2"])
+    lines = capsys.readouterr().out.splitlines()
+    ended = int(re.search(r"experiments ended by a fault: (\d) of 2 at a load of", lines[0])[1])
+    assert len(lines) == 1 + ended
+
+
 def test_a_folder_without_the_firmware_is_said(capsys, tmp_path):
     """One sentence, not a trace."""
     with pytest.raises(SystemExit):

@@ -35,7 +35,7 @@ def test_killed_node(start_driver, rig, ros, grounded_in_time, rounds):
 
 @pytest.mark.rounds(1, 20)
 def test_frozen_node(start_driver, virtual_rig, ros, grounded_in_time, rounds):
-    """A node that is stopped and goes on later finds itself in FAULT, though commands come."""
+    """A node that stands still for half a second and goes on finds itself in FAULT, though commands come."""
     driver = start_driver(virtual_rig.port)
     with ros.commanding():
         for _ in range(rounds):
@@ -44,6 +44,7 @@ def test_frozen_node(start_driver, virtual_rig, ros, grounded_in_time, rounds):
             frozen_s = time.monotonic()
             driver.process.send_signal(signal.SIGSTOP)
             grounded_in_time(virtual_rig, frozen_s)
+            time.sleep(max(0.0, frozen_s + 0.5 - time.monotonic()))
             driver.process.send_signal(signal.SIGCONT)
             ros.await_mode(FAULT)
             assert not virtual_rig.live

@@ -1,0 +1,176 @@
+"""The process that alone talks to the supply: `python -m hasel_driver.safety_process DESCRIPTOR`.
+
+It shares no interpreter lock with ROS, so that nothing the node does can hold up the heartbeat, a check or a stop.
+Over a socket that only the two hold, the node sends its parameters and then `Request`s, each a method of
+`SafetyProcess`; it is told a `Snapshot` with every report of the supply, and an `Answer` to each request. The end of
+the socket is the end of the node: the supply is disarmed, and this process ends.
+"""
+
+import os
+import queue
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Mapping
+from concurrent.futures import Future
+from multiprocessing.connection import Connection
+from typing import Any
+
+from hasel_driver.backends import make_supply
+from hasel_driver.errors import DriverError
+from hasel_driver.experiment import DrivenExperiment, ExperimentPlan
+from hasel_driver.fault_store import FaultStore
+from hasel_driver.faults import Fault
+from hasel_driver.realtime import request_realtime
+from hasel_driver.safety_messages import Answer, Request, Snapshot
+from hasel_driver.status import SupplyStatus
+from hasel_driver.supervisor import Supervisor
+from hasel_driver.supply_thread import SupplyThread
+
+MOST_UNSENT = (
+    1000  # snapshots; more are dropped, for a node that does not take them in must not hold up the supply
+)
+
+
+class SafetyProcess:
+    """Opens the supply; `tell` gets snapshots and answers. Raises DriverError where it cannot be opened."""
+
+    def __init__(self, parameters: Mapping[str, Any], tell: Callable[[Snapshot | Answer], None]) -> None:
+        self._tell = tell
+        self._without_realtime = request_realtime(parameters["realtime_priority"])
+        supply = make_supply(parameters)
+        self._store = FaultStore(parameters["state_folder"], parameters["port"])
+        self._supervisor = Supervisor(supply, time.monotonic, parameters["idle_disarm"])
+        self._supervisor.fault = self._store.load()
+        self._supervisor.connect()
+        self._experiment: DrivenExperiment | None = None
+        self._running = False  # the experiment's clock
+        self.thread = SupplyThread(self._supervisor, supply, self._on_status, self._step)
+        supervisor = self._supervisor
+        self._methods: dict[str, Callable[..., Any]] = {
+            "arm": supervisor.arm,
+            "disarm": supervisor.disarm,
+            "fail": supervisor.fail,
+            "clear_fault": supervisor.clear_fault,
+            "command": supervisor.command,
+            "await_zero": supervisor.await_zero,
+            "lower_maximum": supervisor.lower_maximum,
+            "begin_experiment": self._begin_experiment,
+            "run_experiment": self._run_experiment,
+            "cancel_experiment": self._cancel_experiment,
+            "come_to_rest": lambda: None,
+        }
+
+    def serve(self, request: Request) -> None:
+        """Do what is asked, in the supply's thread but for `host_is_alive` and `come_to_rest`, and answer."""
+        if request.method == "host_is_alive":
+            self.thread.host_is_alive(*request.arguments)
+            return
+        if request.method == "come_to_rest":
+            self.thread.come_to_rest()
+        method = self._methods[request.method]
+        future = self.thread.call(lambda: method(*request.arguments))
+        if request.number is not None:
+            future.add_done_callback(lambda done: self._tell(self._answer(request.number or 0, done)))
+
+    def snapshot(self) -> Snapshot:
+        """The present state."""
+        supervisor = self._supervisor
+        return Snapshot(
+            status=supervisor.status(),
+            armed=supervisor.armed,
+            connected=supervisor.connected,
+            name=supervisor.name,
+            limits=supervisor.limits,
+            capabilities=supervisor.capabilities,
+            refusal=supervisor.refusal,
+            rejected_commands=supervisor.rejected_commands,
+            garbled_lines=supervisor.garbled_lines,
+            experiment=self._experiment.progress() if self._experiment is not None else None,
+            without_realtime=self._without_realtime,
+        )
+
+    def _answer(self, number: int, done: Future) -> Answer:
+        error = done.exception()
+        if error is not None and not isinstance(error, Exception):
+            raise error
+        return Answer(number, None if error else done.result(), error, self.snapshot())
+
+    def _on_status(self, status: SupplyStatus) -> None:
+        self._keep(status.fault)
+        self._tell(self.snapshot())
+
+    def _keep(self, fault: Fault | None) -> None:
+        try:
+            self._store.keep(fault)
+        except (OSError, DriverError) as error:
+            print(f"hasel_driver: A restarted node will not know of {fault}: {error}", file=sys.stderr)
+
+    def _begin_experiment(self, plan: ExperimentPlan) -> None:
+        experiment = DrivenExperiment(plan, self._supervisor, time.monotonic)
+        experiment.begin()
+        self._experiment, self._running = experiment, False
+
+    def _run_experiment(self) -> None:
+        self._running = True
+
+    def _cancel_experiment(self, reason: str) -> None:
+        if self._experiment is not None:
+            self._experiment.cancel(reason)
+
+    def _step(self) -> None:
+        if self._experiment is not None and self._running:
+            self._experiment.step()
+
+
+def main() -> int:
+    """Serve the node at the other end of the socket until one of the two ends."""
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # a service manager's, to all: the node says how to end
+    node = Connection(int(sys.argv[1]))
+    outbox: queue.SimpleQueue[Snapshot | Answer | None] = queue.SimpleQueue()
+
+    def tell(message: Snapshot | Answer) -> None:
+        if isinstance(message, Answer) or outbox.qsize() < MOST_UNSENT:
+            outbox.put(message)
+
+    try:
+        safety = SafetyProcess(node.recv(), tell)
+    except DriverError as error:
+        node.send(error)
+        return 1
+    except EOFError:
+        return 1
+    node.send(safety.snapshot())
+    safety.thread.start()
+    sender = threading.Thread(target=_send, args=(node, outbox), name="sender", daemon=True)
+    sender.start()
+    threading.Thread(target=_receive, args=(node, safety), name="receiver", daemon=True).start()
+    safety.thread.join()
+    outbox.put(None)
+    sender.join(timeout=1.0)
+    return 0
+
+
+def _send(node: Connection, outbox: "queue.SimpleQueue[Snapshot | Answer | None]") -> None:
+    while (message := outbox.get()) is not None:
+        try:
+            node.send(message)
+        except OSError:
+            return  # the node has ended, which the receiver notices too
+
+
+def _receive(node: Connection, safety: SafetyProcess) -> None:
+    try:
+        while True:
+            safety.serve(node.recv())
+    except (EOFError, OSError):
+        safety.thread.come_to_rest()
+        safety.thread.stop()
+
+
+if __name__ == "__main__":
+    code = main()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(code)  # the receiver may still wait for the node
