@@ -15,6 +15,7 @@ def options_from(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--commands", type=int, default=1000, help="commands for the latency")
     parser.add_argument("--kills", type=int, default=5, help="nodes to be killed")
     parser.add_argument("--experiments", type=int, default=0, help="of three seconds each, to be counted")
+    parser.add_argument("--realtime-priority", type=int, default=40, help="the node's parameter; 0: none")
     parser.add_argument(
         "--firmware",
         type=Path,

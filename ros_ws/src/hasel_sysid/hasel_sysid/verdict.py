@@ -208,9 +208,14 @@ def _imitated(base: FittedModel, seen: Screened) -> float:
 
 
 def _error_removed(found: Searched, name: str, noise: NoiseModel) -> float:
-    """Share of the mean error above the noise that an effect removes alone, 0 to 1: as fitted, else as screened."""
+    """Share of the mean error above the noise that an effect removes alone, 0 to 1: as fitted, else as screened.
+
+    Of no error above the noise nobody removes a share.
+    """
     base = found.models[NOTHING].fitted.fit
     before = base.mean_absolute_error
+    if before <= noise.mean_absolute:
+        return 0.0
     if (names := frozenset({name})) in found.models:
         after = found.models[names].fitted.fit.mean_absolute_error
     elif name in found.alone:
