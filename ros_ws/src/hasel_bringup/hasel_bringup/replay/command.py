@@ -3,11 +3,12 @@
 import argparse
 import sys
 from collections.abc import Sequence
+from itertools import count
 
 import rclpy
+from hasel_common.progress import counted
 from hasel_common.spinning import quiet_at_shutdown
 from hasel_recording import RecordingError, read_recordings
-from rich.progress import Progress
 
 from hasel_bringup.errors import BringupError
 from hasel_bringup.replay.replay_node import ReplayNode
@@ -21,10 +22,10 @@ def replay(paths: Sequence[str], rate: float, expect: Sequence[str], wait: float
     node = ReplayNode(clock)
     try:
         node.wait_for_subscribers(expect, wait)
-        with Progress() as progress:
-            for recording, frames in zip(recordings, played, strict=True):
-                task = progress.add_task(recording.name, total=len(frames))
-                node.replay(frames, rate, lambda task=task: progress.advance(task))
+        for recording, frames in zip(recordings, played, strict=True):
+            numbers = count(1)
+            with counted(recording.name, "frames", len(frames)) as done:
+                node.replay(frames, rate, lambda done=done, numbers=numbers: done(next(numbers)))
         node.finish()
     finally:
         node.destroy_node()

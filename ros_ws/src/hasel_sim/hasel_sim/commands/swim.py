@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from hasel_common.progress import counted
 from rich.console import Console
 from rich.table import Table
 
 from hasel_sim.commands.parsers import swim_parser
-from hasel_sim.commands.progress import counted
 from hasel_sim.errors import HaselSimError
 from hasel_sim.mesh_picture import save_picture
 from hasel_sim.model import Model, load_model
@@ -82,7 +82,7 @@ def _sweep(pool, model: Model, options: argparse.Namespace, name: str) -> Swept:
     ledger = SweepLedger(options.output / f"{name}.csv", model, options.duration)
     drives = [Boxes(pair[0], pair[1], f) for pair in options.voltage for f in options.frequency]
     check_drives(model, drives, options.duration)
-    with counted(name, len(set(drives))) as done:
+    with counted(name, "swims", len(set(drives))) as done:
         swam = {one.drive: one for one in sweep(pool, model, drives, options.duration, ledger, done)}
     curves = {
         _label(pair): [swam[Boxes(pair[0], pair[1], f)] for f in options.frequency]

@@ -4,13 +4,13 @@ import argparse
 import sys
 from collections.abc import Sequence
 
+from hasel_common.progress import progress_bar
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
 from hasel_sysid.command_line.inputs import chosen_model, load_all
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import compare_parser
-from hasel_sysid.command_line.progress import progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import code_after, show
 from hasel_sysid.command_line.workers import workers

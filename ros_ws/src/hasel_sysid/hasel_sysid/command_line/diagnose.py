@@ -4,10 +4,11 @@ import argparse
 import sys
 from collections.abc import Sequence
 
+from hasel_common.progress import part, progress_bar
+
 from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import diagnose_parser
-from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import code_after, show, summarise, tell
 from hasel_sysid.command_line.summary import diagnosis_lines

@@ -5,13 +5,13 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from hasel_common.progress import part, progress_bar
 from hasel_sim.model import Model, save_model
 
 from hasel_sysid.command_line.best_so_far import BestSoFar
 from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import fit_parser
-from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.shown import code_after, show
 from hasel_sysid.command_line.workers import workers

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 
+from hasel_common.progress import part, progress_bar
 from hasel_sim.model import Model, save_model
 from hasel_sim.parallel import simulate_all
 
 from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import improve_parser
-from hasel_sysid.command_line.progress import part, progress_bar
 from hasel_sysid.command_line.running import MISLEADING, run_command
 from hasel_sysid.command_line.shown import code_after, show, summarise, tell
 from hasel_sysid.command_line.summary import improvement_lines

@@ -5,6 +5,7 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 
+from hasel_common.progress import progress_bar
 from hasel_recording import HASEL_PAIR
 from hasel_sim.model import Model
 from ruamel.yaml import YAML
@@ -12,7 +13,6 @@ from ruamel.yaml import YAML
 from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import suggest_parser
-from hasel_sysid.command_line.progress import progress_bar
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.workers import workers
 from hasel_sysid.errors import SysidError

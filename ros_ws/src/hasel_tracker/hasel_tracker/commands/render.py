@@ -3,11 +3,13 @@
 import argparse
 import sys
 from collections.abc import Sequence
+from itertools import count
 from pathlib import Path
 
 import numpy as np
+from hasel_common.progress import counted
 
-from hasel_tracker.commands.command import progress_bar, run_command
+from hasel_tracker.commands.command import run_command
 from hasel_tracker.commands.parsers import render_parser
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.render.background import photograph
@@ -48,12 +50,17 @@ def _render(options: argparse.Namespace) -> None:
     )
     quality = USUAL_QUALITY[options.codec] if options.quality is None else options.quality
     total = max(round(renderer.motion.duration_s * options.frame_rate), 1)
-    with progress_bar() as progress:
-        task = progress.add_task("rendering", total=total)
+    numbers = count(1)
+    with counted("rendering", "frames", total) as done:
         truth = write_frames(
-            renderer, options.output, options.frame_rate, options.codec, quality,
-            lambda _: progress.advance(task), total,
-        )  # fmt: skip
+            renderer,
+            options.output,
+            options.frame_rate,
+            options.codec,
+            quality,
+            lambda _: done(next(numbers)),
+            total,
+        )
     path = options.truth or options.output.with_name(f"{options.output.stem}_truth.csv")
     write_truth(truth, path)
     print(f"Wrote {total} frames to {options.output} and the truth to {path}.")

@@ -4,13 +4,15 @@ import argparse
 import sys
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
 
 import numpy as np
+from hasel_common.progress import counted
 
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
 from hasel_tracker.calibration.settings_file import load_settings
-from hasel_tracker.commands.command import progress_bar, run_command
+from hasel_tracker.commands.command import run_command
 from hasel_tracker.commands.parsers import track_parser
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.offline.drive import (
@@ -96,8 +98,8 @@ def _follow(
     lamp: list[float],
 ) -> TrackedRun:
     video = None if annotated is None else H264Writer(annotated, source.frame_rate_hz)
-    with progress_bar() as progress:
-        task = progress.add_task("tracking", total=source.frame_count or None)
+    with counted("tracking", "frames", source.frame_count or None) as done:
+        numbers = count(1)
 
         def seen(frame: Frame, tracked: TrackedFrame) -> None:
             if video is not None:
@@ -105,7 +107,7 @@ def _follow(
             if led is not None:
                 x, y, width, height = led
                 lamp.append(float(frame.image[y : y + height, x : x + width].mean()))
-            progress.advance(task)
+            done(next(numbers))
 
         try:
             return track_frames(source, tracker, seen, source.start_stamp_ns, placed)

@@ -1,7 +1,7 @@
 """The bar on the terminal."""
 
 import pytest
-from hasel_sysid.command_line import progress
+from hasel_common import progress
 from rich.progress import Progress
 
 
@@ -33,8 +33,8 @@ def test_the_bar_never_goes_back():
 
 
 def test_a_log_has_a_line_for_every_stage(capsys):
-    """With the time so far and what is left; within a stage one a minute."""
-    clock = iter([0.0, 10.0, 11.0, 30.0, 40.0, 95.0])
+    """With the time so far and what is left; within a stage one each ten seconds."""
+    clock = iter([0.0, 10.0, 11.0, 30.0, 39.0, 95.0])
     show = progress.log_lines("improve", lambda: next(clock))
     for text, share in (
         ("start: simulated run_1", 0.01),
@@ -56,3 +56,26 @@ def test_what_is_no_terminal_gets_lines(capsys):
     with progress.progress_bar("fit") as show:
         show("low-fidelity model", 0.2)
     assert capsys.readouterr().err.startswith("fit: low-fidelity model (20%, 0:00:00 so far")
+
+
+def test_counted_steps_are_said_each_ten_seconds_only(capsys):
+    """How many of how many, and how long the rest takes; nothing of what is soon done."""
+    clock = iter([0.0, 0.1, 9.0, 10.5, 15.0, 21.0])
+    show = progress.log_lines("tracking", lambda: next(clock))
+    for frame in (1, 90, 105, 150, 210):
+        show(f"tracking: {frame} of 400 frames", frame / 400)
+    assert capsys.readouterr().err.splitlines() == [
+        "tracking: 105 of 400 frames (26%, 0:00:10 so far, about 0:00:30 left)",
+        "tracking: 210 of 400 frames (52%, 0:00:21 so far, about 0:00:19 left)",
+    ]
+
+
+@pytest.mark.parametrize(("total", "shown"), [(3, "3 of 3 frames"), (None, "3 frames")])
+def test_a_bar_counts_its_steps(monkeypatch, total, shown):
+    """Also where nobody knows how many there are."""
+    seen = []
+    monkeypatch.setattr(progress, "log_lines", lambda title: lambda text, share: seen.append((text, share)))
+    with progress.counted("tracking", "frames", total) as done:
+        for number in (1, 2, 3):
+            done(number)
+    assert seen[-1] == (f"tracking: {shown}", 1.0 if total else 0.0)

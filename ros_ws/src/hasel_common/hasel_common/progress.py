@@ -24,7 +24,7 @@ Show = Callable[[str, float], None]
 
 _ENOUGH_TO_TELL = 0.02
 """Share done before which what is left is not told."""
-_LINE_EVERY_S = 60.0
+_LINE_EVERY_S = 10.0
 """In a log a line says that it goes on, also where no new stage begins."""
 
 
@@ -65,13 +65,25 @@ def progress_bar(title: str) -> Iterator[Show]:
         yield never_back(lambda text, share: bar.update(task, description=text, completed=share))
 
 
-def log_lines(title: str, clock: Callable[[], float] = time.monotonic) -> Show:
-    """A line on stderr for every stage, and one a minute within it: what is done, for how long so far, how long still.
+@contextmanager
+def counted(title: str, units: str, total: int | None) -> Iterator[Callable[[int], None]]:
+    """The same over `total` steps, such as frames (None: not known how many); call it with how many are done.
 
-    A stage is named by what stands before a text's first colon, else by its first word.
+    In a log nothing is said of what takes less than ten seconds.
+    """
+    of = f" of {total}" if total else ""
+    with progress_bar(title) as show:
+        yield lambda done: show(f"{title}: {done}{of} {units}", done / total if total else 0.0)
+
+
+def log_lines(title: str, clock: Callable[[], float] = time.monotonic) -> Show:
+    """A line on stderr for every stage, and one each 10 s within it: what is done, how long so far, how long still.
+
+    A stage is named by what stands before a text's first colon, else by its first word; one of the title's own name
+    has no line at its begin.
     """
     begun = clock()
-    last, said_at = "", begun
+    last, said_at = title, begun
 
     def show(text: str, share: float) -> None:
         nonlocal last, said_at
@@ -82,7 +94,8 @@ def log_lines(title: str, clock: Callable[[], float] = time.monotonic) -> Show:
         last, said_at = stage, now
         left = time_left(now - begun, share)
         times = f"{timedelta(seconds=round(now - begun))} so far{f', {left}' if left else ''}"
-        print(f"{title}: {text} ({share:.0%}, {times})", file=sys.stderr, flush=True)
+        what = text if stage == title else f"{title}: {text}"
+        print(f"{what} ({f'{share:.0%}, ' if share else ''}{times})", file=sys.stderr, flush=True)
 
     return show
 
