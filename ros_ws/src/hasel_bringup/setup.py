@@ -34,6 +34,7 @@ setup(
         "console_scripts": [
             "bench = hasel_bringup.bench:main",
             "demo = hasel_bringup.entry:demo",
+            "lifecycle_manager = hasel_bringup.entry:lifecycle_manager",
             "live_demo = hasel_bringup.entry:live_demo",
             "recorder = hasel_bringup.entry:recorder",
             "replay = hasel_bringup.entry:replay",

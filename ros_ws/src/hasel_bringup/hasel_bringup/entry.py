@@ -23,6 +23,22 @@ def live_demo() -> int:
 
 
 @command
+def lifecycle_manager() -> int:
+    """`lifecycle_manager`, a node."""
+    from hasel_bringup.lifecycle_manager.manager_parameters import PARAMETERS
+
+    answer_help(
+        "lifecycle_manager",
+        "Brings the nodes up in order, and the driver down, grounded, when one of them ends "
+        "(/hasel/lifecycle_manager/startup, /hasel/lifecycle_manager/shutdown).",
+        [parameter.usage for parameter in PARAMETERS],
+    )
+    from hasel_bringup.lifecycle_manager.manager_node import main
+
+    return main()
+
+
+@command
 def recorder() -> int:
     """`recorder`, a node."""
     from hasel_bringup.recorder.recorder_parameters import PARAMETERS

@@ -39,6 +39,18 @@ def words(text: str) -> list[str]:
     return [word.strip() for word in text.strip("[]").split(",")]
 
 
+def managed(values: Values, *names: str) -> list[Node]:
+    """The manager of the nodes of these names, the driver first, where the argument asks for one; see `autostart`."""
+    if values["lifecycle_manager"] != "true":
+        return []
+    return [node(values, "hasel_bringup", "lifecycle_manager", {"nodes": list(names)})]
+
+
+def autostart(values: Values) -> dict[str, bool]:
+    """The parameter of nodes that a manager brings up, or that start by themselves."""
+    return {"autostart": values["lifecycle_manager"] != "true"}
+
+
 def node(
     values: Values, package: str, executable: str, *parameters: str | Mapping[str, Any], **options: Any
 ) -> Node:

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from hasel_bringup.launching import Values, described, node, words
+from hasel_bringup.launching import Values, autostart, described, managed, node, words
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import PathJoinSubstitution
@@ -11,6 +11,11 @@ from launch_ros.substitutions import FindPackageShare
 
 CONFIG = [FindPackageShare("hasel_bringup"), "config"]
 ARGUMENTS = (
+    DeclareLaunchArgument(
+        "lifecycle_manager",
+        default_value="true",
+        description="true: nodes go up in order, and the driver down when another ends; false: each by itself",
+    ),
     DeclareLaunchArgument(
         "virtual", default_value="false", description="true: without hardware, a virtual supply and swimmer"
     ),
@@ -55,13 +60,16 @@ def generate_launch_description() -> LaunchDescription:
 
 
 def _nodes(given: Values) -> list[Any]:
+    start = autostart(given)
     model = {"model": given["model"], "use_sim_time": given["use_sim_time"] == "true"}
     if given["virtual"] == "true":
+        names = ["hasel_driver"]  # which the virtual rig starts itself
         body = [node(given, "hasel_bringup", "virtual_rig", {"hidden": words(given["hidden"])})]
     else:
+        names = ["hasel_driver", "hasel_tracker"]
         body = [
-            node(given, "hasel_driver", "driver_node", given["rig"], {"port": given["port"]}),
-            node(given, "hasel_tracker", "tracker_node", given["rig"], {"source": given["source"]}),
+            node(given, "hasel_driver", "driver_node", given["rig"], {"port": given["port"], **start}),
+            node(given, "hasel_tracker", "tracker_node", given["rig"], {"source": given["source"], **start}),
         ]
     gathered = Node(
         package="diagnostic_aggregator",
@@ -72,7 +80,8 @@ def _nodes(given: Values) -> list[Any]:
     )
     return [
         *body,
-        node(given, "hasel_sim", "simulator", given["config"], model),
+        node(given, "hasel_sim", "simulator", given["config"], model | start),
         node(given, "hasel_sysid", "sysid", given["config"], model),
+        *managed(given, *names, "hasel_simulator"),
         *([gathered] if given["diagnostics"] == "true" else []),
     ]

@@ -5,7 +5,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from hasel_bringup.launching import Values, described, node, words
+from hasel_bringup.launching import Values, autostart, described, managed, node, words
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument, EmitEvent, RegisterEventHandler
 from launch.event_handlers import OnProcessExit
@@ -15,6 +15,11 @@ from launch_ros.substitutions import FindPackageShare
 
 _LATER = "nice -n 5"  # supply and driver stop themselves when they are held up
 ARGUMENTS = (
+    DeclareLaunchArgument(
+        "lifecycle_manager",
+        default_value="true",
+        description="true: nodes go up in order, and the driver down when another ends; false: each by itself",
+    ),
     DeclareLaunchArgument(
         "hidden",
         default_value="random",
@@ -53,15 +58,19 @@ def _nodes(given: Values) -> list[Any]:
         "state_folder": f"{port}_state",
         "recording_directory": beside,
     }
+    start = autostart(given)
     hidden = {"hidden": words(given["hidden"])}
     nodes = [
         node(given, "hasel_driver", "virtual_supply", arguments=["--link", port]),
-        node(given, "hasel_driver", "driver_node", config, supply),
+        node(given, "hasel_driver", "driver_node", config, supply | start),
         node(given, "hasel_bringup", "virtual_camera", config, hidden, prefix=_LATER),
-        node(given, "hasel_tracker", "tracker_node", config, prefix=_LATER),
-        node(given, "hasel_sim", "simulator", config, {"own_files": beside}, prefix=_LATER),
+        node(given, "hasel_tracker", "tracker_node", config, start, prefix=_LATER),
+        node(given, "hasel_sim", "simulator", config, {"own_files": beside} | start, prefix=_LATER),
         node(given, "hasel_sysid", "sysid", config, prefix=_LATER),
-        node(given, "hasel_bringup", "recorder", {"folder": str(output / "recordings")}, prefix=_LATER),
+        node(
+            given, "hasel_bringup", "recorder", {"folder": str(output / "recordings")} | start, prefix=_LATER
+        ),
+        *managed(given, "hasel_driver", "hasel_tracker", "hasel_simulator", "hasel_recorder"),
     ]
     if given["experiment"] == "true":
         experimenter = node(

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from hasel_common.declared_parameters import declare
 from hasel_common.endpoints import Role, subscription
+from hasel_common.managed_node import ManagedNode, start_and_spin
 from hasel_common.provenance import provenance
 from hasel_common.topics import ERROR, MEASURED, NAMESPACE, SIMULATED, STATE, relative
 from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
@@ -17,7 +18,6 @@ from hasel_recording import RecordingError
 from hasel_recording.mcap_recorder import McapRecorder
 from hasel_recording.message_fields import nanoseconds
 from hasel_sim.node_process import run_node
-from rclpy.node import Node
 from std_srvs.srv import Trigger
 
 from hasel_bringup.errors import BringupError
@@ -28,8 +28,8 @@ RECORDED = {STATE: SupplyState, MEASURED: BendingAngle, SIMULATED: BendingAngle,
 PACKAGES = ("hasel_recording", "hasel_driver", "hasel_tracker", "hasel_sim", "hasel_sysid", "hasel_bringup")
 
 
-class RecorderNode(Node):
-    """Records from the service recorder/start to recorder/stop."""
+class RecorderNode(ManagedNode):
+    """Active, it records from the service recorder/start to recorder/stop."""
 
     def __init__(self) -> None:
         super().__init__("hasel_recorder", namespace=NAMESPACE)
@@ -57,6 +57,8 @@ class RecorderNode(Node):
             self._recorder.write(name, message, stamp_ns)
 
     def _start(self) -> str:
+        if not self.active:
+            raise BringupError("The recorder is not active: activate it (lifecycle) first.")
         if self._recorder is not None:
             raise BringupError(f"{self._path} is being recorded: stop that first (recorder/stop).")
         folder = Path(self._value("folder")).expanduser()
@@ -90,6 +92,10 @@ class RecorderNode(Node):
         recorder.close()
         self._part.rename(path)
 
+    def deactivate(self) -> None:
+        """Finish what is being recorded, as interrupted."""
+        self._interrupt()
+
     def _interrupt(self) -> None:
         if self._recorder is not None:
             self._finish(self._path.with_name(f"{self._path.stem}_interrupted.mcap"))
@@ -117,4 +123,4 @@ def _is_unknown(message) -> bool:
 
 def main() -> int:
     """Run the node until it is interrupted; returns the exit code."""
-    return run_node(RecorderNode, errors=(BringupError, RecordingError))
+    return run_node(RecorderNode, start_and_spin, errors=(BringupError, RecordingError))

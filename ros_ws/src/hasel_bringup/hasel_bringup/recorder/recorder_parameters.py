@@ -1,8 +1,9 @@
 """Parameters of the recorder."""
 
-from hasel_common.node_parameter import NodeParameter
+from hasel_common.node_parameter import AUTOSTART, NodeParameter
 
 PARAMETERS = (
     NodeParameter("folder", "recordings", "into which recordings are written", changeable=True),
     NodeParameter("name", "run", "of the next recording, without .mcap", changeable=True),
+    NodeParameter(*AUTOSTART),
 )
