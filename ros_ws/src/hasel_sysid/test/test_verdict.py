@@ -94,3 +94,13 @@ def test_what_the_fitted_parameters_imitate_is_said():
     found = diagnose(problem, fit_baseline(problem, world.model), only=("payload", "pre_bend"))
     assert found.finding("payload").swallowed > 0.1
     assert found.finding("pre_bend").swallowed < found.finding("payload").swallowed
+
+
+def test_of_no_error_above_the_noise_no_effect_removes_a_share():
+    """Where nothing is hidden and the baseline leaves less than the noise, a removed share would be of nothing."""
+    world = MadeUpWorld(3)
+    problem = world.measured(world.model)
+    baseline = fit_baseline(problem, world.model)
+    found = diagnose(problem, baseline, only=("payload", "linear_drag", "pre_bend"))
+    assert baseline.mean_absolute_error <= found.noise.mean_absolute
+    assert {finding.error_removed for finding in found.findings} == {0.0}
