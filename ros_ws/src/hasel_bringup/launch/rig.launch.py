@@ -81,7 +81,7 @@ def _nodes(given: Values) -> list[Any]:
     return [
         *body,
         node(given, "hasel_sim", "simulator", given["config"], model | start),
-        node(given, "hasel_sysid", "sysid", given["config"], model),
-        *managed(given, *names, "hasel_simulator"),
+        node(given, "hasel_sysid", "sysid", given["config"], model | start),
+        *managed(given, *names, "hasel_simulator", "hasel_sysid"),
         *([gathered] if given["diagnostics"] == "true" else []),
     ]

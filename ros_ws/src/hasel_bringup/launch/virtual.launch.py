@@ -66,11 +66,11 @@ def _nodes(given: Values) -> list[Any]:
         node(given, "hasel_bringup", "virtual_camera", config, hidden, prefix=_LATER),
         node(given, "hasel_tracker", "tracker_node", config, start, prefix=_LATER),
         node(given, "hasel_sim", "simulator", config, {"own_files": beside} | start, prefix=_LATER),
-        node(given, "hasel_sysid", "sysid", config, prefix=_LATER),
+        node(given, "hasel_sysid", "sysid", config, start, prefix=_LATER),
         node(
             given, "hasel_bringup", "recorder", {"folder": str(output / "recordings")} | start, prefix=_LATER
         ),
-        *managed(given, "hasel_driver", "hasel_tracker", "hasel_simulator", "hasel_recorder"),
+        *managed(given, "hasel_driver", "hasel_tracker", "hasel_simulator", "hasel_sysid", "hasel_recorder"),
     ]
     if given["experiment"] == "true":
         experimenter = node(

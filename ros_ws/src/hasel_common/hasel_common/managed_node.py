@@ -1,6 +1,6 @@
 """A node with ROS's lifecycle, whose transitions fail with a sentence."""
 
-from rclpy.executors import SingleThreadedExecutor
+from rclpy.executors import Executor, SingleThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 
 from hasel_common.node_parameter import AUTOSTART
@@ -91,13 +91,13 @@ class ManagedNode(LifecycleNode):
         return Return.SUCCESS
 
 
-def start_and_spin(node: ManagedNode) -> None:
-    """Begin, unless the parameter `autostart` says otherwise, and spin until shut down.
+def start_and_spin(node: ManagedNode, executor: Executor | None = None) -> None:
+    """Begin, unless the parameter `autostart` says otherwise, and spin until shut down (None: in one thread).
 
     A transition that the lifecycle does not allow is said and ignored.
     """
     if node.get_parameter(AUTOSTART[0]).value:
         node.begin()
-    executor = SingleThreadedExecutor()
+    executor = executor or SingleThreadedExecutor()
     executor.add_node(node)
     spin(executor, lambda error: node.get_logger().error(f"Illegal lifecycle transition, ignored: {error}"))

@@ -2,11 +2,14 @@
 
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_common.declared_parameters import declare, words
 from hasel_common.endpoints import STEADY, Role, frame_of, publisher, subscription
+from hasel_common.managed_node import ManagedNode, start_and_spin
 from hasel_common.topics import DIAGNOSIS, DIAGNOSTICS, ERROR, FIT, MEASURED, NAMESPACE, SIMULATED, STATE
 from hasel_interfaces.msg import BendingAngle, Diagnosis, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
@@ -18,7 +21,6 @@ from hasel_sim.node_process import end_at_once, run_node
 from hasel_sim.simulator_messages import rig_voltage, to_nanoseconds
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
-from rclpy.node import Node
 from std_msgs.msg import Header
 
 from hasel_sysid.errors import SysidError
@@ -32,8 +34,11 @@ from hasel_sysid.sysid_messages import diagnosis_message, diagnostics, error_mes
 from hasel_sysid.sysid_parameters import PARAMETERS
 
 
-class SysidNode(Node):
-    """Thin: pairs and sums up what it hears, and hands it to the fit in a thread of the service's own."""
+class SysidNode(ManagedNode):
+    """Thin: pairs and sums up what it hears, and hands it to the fit in a thread of the service's own.
+
+    Inactive, it hears nothing and fits nothing.
+    """
 
     def __init__(self) -> None:
         super().__init__("hasel_sysid", namespace=NAMESPACE)
@@ -54,16 +59,26 @@ class SysidNode(Node):
         self._inputs = {
             topic: subscription(self, kind, topic, handler, Role.EVERY_SAMPLE, callback_group=hearing)
             for kind, topic, handler in (
-                (SupplyState, STATE, self._on_state),
-                (BendingAngle, MEASURED, self._on_measured),
-                (BendingAngle, SIMULATED, self._on_simulated),
+                (SupplyState, STATE, self._while_active(self._on_state)),
+                (BendingAngle, MEASURED, self._while_active(self._on_measured)),
+                (BendingAngle, SIMULATED, self._while_active(self._on_simulated)),
             )
         }
         self.create_timer(1.0, self._report, callback_group=hearing, clock=STEADY)
         self.create_service(FitModel, "fit", self._serve_fit, callback_group=working)
         self.create_service(Diagnose, "diagnose", self._serve_diagnosis, callback_group=working)
+
+    def activate(self) -> None:
+        """Say what is compared from now on."""
         simulated, measured = (self._inputs[topic].topic_name for topic in (SIMULATED, MEASURED))
         self.get_logger().info(f"Ready to compare {simulated} with {measured}.")
+
+    def _while_active(self, handler: Callable[[Any], None]) -> Callable[[Any], None]:
+        def hear(message: Any) -> None:
+            if self.active:
+                handler(message)
+
+        return hear
 
     @property
     def doing(self) -> str:
@@ -150,6 +165,12 @@ class SysidNode(Node):
 
     def _serve(self, action, response):
         """Answer with what `action` returns, one at a time; errors become sentences."""
+        if not self.active:
+            response.success, response.message = (
+                False,
+                "The node is not active: activate it (lifecycle) first.",
+            )
+            return response
         if not self._busy.acquire(blocking=False):
             response.success, response.message = False, f"busy ({self._doing}); ask again when that is done"
             return response
@@ -172,10 +193,8 @@ def main() -> None:
 
 
 def _spin(node: SysidNode) -> None:
-    executor = MultiThreadedExecutor(num_threads=3)
-    executor.add_node(node)
     try:
-        executor.spin()
+        start_and_spin(node, MultiThreadedExecutor(num_threads=3))
     finally:
         if node.doing:
             print(f"given up: {node.doing}", file=sys.stderr)

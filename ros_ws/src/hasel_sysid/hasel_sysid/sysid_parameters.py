@@ -1,8 +1,9 @@
 """The identification node's parameters."""
 
-from hasel_common.node_parameter import NodeParameter
+from hasel_common.node_parameter import AUTOSTART, NodeParameter
 
 PARAMETERS = (
+    NodeParameter(*AUTOSTART),
     NodeParameter("model", "swimmer", "model that is fitted: its name or file", changeable=True),
     NodeParameter("effects", [""], "effects added to it: ids, or path/to/file.py:ClassName", changeable=True),
     NodeParameter("output", ".", "folder into which fitted models are written", changeable=True),

@@ -11,8 +11,9 @@ from hasel_sysid.where_it_fails.noise import high_frequency_noise
 _MANY_LOST = 0.2
 _FROZEN_S = 0.2
 _JUMP_IN_NOISE = 12.0
-_JUMP_IN_USUAL = 8.0
-"""A jump stands out from how far frames usually are from their neighbours' median: a fast swing is no jump."""
+_JUMP_IN_STEPS = 1.2
+_USUAL_STEPS = 0.9
+"""A jump goes further than nine tenths of the steps between frames: a fast swing, or a slow camera, is no jump."""
 _SMALLEST_JUMP = 0.05
 _LEAST_MOTION_IN_NOISE = 10.0
 _FRAMES_PER_CYCLE = 8
@@ -64,8 +65,8 @@ def _frozen(recording: Recording) -> list[DataFinding]:
 def _jumps(sin_theta: np.ndarray) -> list[DataFinding]:
     usual = median_filter(sin_theta, size=5, mode="nearest")
     apart = np.abs(sin_theta - usual)
-    noise = high_frequency_noise(sin_theta)
-    limit = max(_JUMP_IN_NOISE * noise, _JUMP_IN_USUAL * float(np.median(apart)), _SMALLEST_JUMP)
+    step = float(np.quantile(np.abs(np.diff(sin_theta)), _USUAL_STEPS))
+    limit = max(_JUMP_IN_NOISE * high_frequency_noise(sin_theta), _JUMP_IN_STEPS * step, _SMALLEST_JUMP)
     jumps = int(np.count_nonzero(apart > limit))
     if jumps == 0:
         return []

@@ -292,6 +292,23 @@ def test_a_fast_swing_is_in_order():
     assert check_recording(Recording("fast", time, swing, drive)) == []
 
 
+def test_a_swing_before_a_slow_camera_is_no_jump():
+    """At 30 frames/s a swing at 2 Hz has peaks far from their neighbours; what goes further is a jump."""
+    time = np.arange(0, 2, 1 / 30)
+    phase = np.mod(2 * time + 1e-9, 1.0)
+    noise = 0.002 * np.random.default_rng(0).normal(size=len(time))
+    swing = 0.8 * np.sin(2 * np.pi * phase) + noise
+    drive = 5000.0 * np.column_stack([phase < 0.5, phase >= 0.5])
+    assert "jumping marker" not in {
+        found.fault for found in check_recording(Recording("slow", time, swing, drive))
+    }
+    swing[18] -= 0.8
+    (jump,) = (
+        f for f in check_recording(Recording("slow", time, swing, drive)) if f.fault == "jumping marker"
+    )
+    assert "in 1 frames" in jump.evidence
+
+
 def test_jitter_is_not_taken_for_missing_frames(made_recording):
     """A late stamp makes one long and one short step: no frame is missing."""
     faults = {finding.fault for finding in check_recording(_jittered(made_recording()))}

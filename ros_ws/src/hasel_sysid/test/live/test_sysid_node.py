@@ -56,11 +56,12 @@ def talk(tmp_path, swimmer):
             Parameter("jobs", value=1),
         ]
     )
+    node.begin()
     executor = MultiThreadedExecutor(num_threads=3)
     executor.add_node(node)
     thread = threading.Thread(target=executor.spin, daemon=True)
     thread.start()
-    yield Talk(user)
+    yield Talk(user, node)
     executor.shutdown()
     thread.join(timeout=10)
     node.destroy_node()
@@ -71,8 +72,8 @@ def talk(tmp_path, swimmer):
 class Talk:
     """Publishes the three topics and listens to what the node says."""
 
-    def __init__(self, user) -> None:
-        self.user, self.errors, self.fits = user, [], []
+    def __init__(self, user, node: SysidNode) -> None:
+        self.user, self.node, self.errors, self.fits = user, node, [], []
         self.executor = SingleThreadedExecutor()
         self.executor.add_node(user)
         self.states = user.create_publisher(SupplyState, STATE, Role.EVERY_SAMPLE.value)
@@ -221,3 +222,19 @@ def test_an_unknown_method_is_answered_by_the_nearest_known(talk, recording):
     future = talk.fit(method="least_square")
     talk.until(future.done)
     assert (future.result().success, "least_squares" in future.result().message) == (False, True)
+
+
+def test_an_inactive_node_neither_hears_nor_fits(talk, recording):
+    """Deactivated, it publishes no error and refuses a fit with a sentence; active again, it hears."""
+    talk.node.trigger_deactivate()
+    talk.say(recording, recording.sin_theta)
+    answer = talk.fit()
+    talk.until(answer.done)
+    assert (answer.result().success, "not active" in answer.result().message, talk.errors) == (
+        False,
+        True,
+        [],
+    )
+    talk.node.trigger_activate()
+    talk.say(recording, recording.sin_theta)
+    talk.until(lambda: len(talk.errors) > 0)
