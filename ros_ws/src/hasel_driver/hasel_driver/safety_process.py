@@ -6,6 +6,7 @@ Over a socket that only the two hold, the node sends its parameters and then `Re
 the socket is the end of the node: the supply is disarmed, and this process ends.
 """
 
+import contextlib
 import os
 import queue
 import signal
@@ -71,8 +72,9 @@ class SafetyProcess:
             self.thread.come_to_rest()
         method = self._methods[request.method]
         future = self.thread.call(lambda: method(*request.arguments))
-        if request.number is not None:
-            future.add_done_callback(lambda done: self._tell(self._answer(request.number or 0, done)))
+        number = request.number
+        if number is not None:
+            future.add_done_callback(lambda done: self._tell(self._answer(number, done)))
 
     def snapshot(self) -> Snapshot:
         """The present state."""
@@ -162,9 +164,10 @@ def _send(node: Connection, outbox: "queue.SimpleQueue[Snapshot | Answer | None]
 
 def _receive(node: Connection, safety: SafetyProcess) -> None:
     try:
-        while True:
-            safety.serve(node.recv())
-    except (EOFError, OSError):
+        with contextlib.suppress(EOFError, OSError):  # the node has ended
+            while True:
+                safety.serve(node.recv())
+    finally:  # also where a request made no sense
         safety.thread.come_to_rest()
         safety.thread.stop()
 

@@ -172,6 +172,10 @@ class VirtualBoard:
             self._telemetry_ms = 0
             self._report()
 
+    def stand_still(self, duration_ms: int) -> None:
+        """Let the clock go on, and nothing else: this machine was late, which a board of its own is not."""
+        self._time_ms += duration_ms
+
     def _control(self) -> None:
         self._time_ms += 1
         self.heartbeat_ms += 1

@@ -117,6 +117,7 @@ class VirtualSupply:
         self._ticked_s += due_ms * 1e-3
         if due_ms > LATE_MS:
             self._tell(f"late {due_ms * 1e-3:.3f}")
+        self.board.stand_still(max(due_ms - MOST_CATCH_UP_MS, 0))
         for _ in range(min(due_ms, MOST_CATCH_UP_MS)):
             self.board.tick()
             self._watch_output()

@@ -32,9 +32,14 @@ class Rig:
         threading.Thread(target=self._listen, daemon=True).start()
         self.port = self._ports.get(timeout=10)
 
+    @property
+    def process_id(self) -> int:
+        """Of the supply's process."""
+        return self._process.pid
+
     def keep_time(self) -> str | None:
         """From here on let no other process hold it up, as none holds up a board of its own; why not, or None."""
-        threads = [int(task.name) for task in Path(f"/proc/{self._process.pid}/task").iterdir()]
+        threads = [int(task.name) for task in Path(f"/proc/{self.process_id}/task").iterdir()]
         return next(filter(None, [request_realtime(PRIORITY, thread) for thread in threads]), None)
 
     def _listen(self) -> None:
