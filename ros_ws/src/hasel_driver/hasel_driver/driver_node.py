@@ -224,7 +224,7 @@ class DriverNode(LifecycleNode):
             )
         if new:
             link.tell("await_zero")
-        link.tell("command", voltage_v, age_s)
+        link.tell("command", voltage_v, time.monotonic() - age_s)
 
     def _say_refused(self, name: str, why: str) -> None:
         if time.monotonic() - self._refused_s.get(name, -math.inf) > REFUSED_LOG_S:

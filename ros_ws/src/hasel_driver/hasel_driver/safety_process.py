@@ -13,7 +13,7 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
 from multiprocessing.connection import Connection
 from typing import Any
@@ -54,7 +54,7 @@ class SafetyProcess:
             "disarm": supervisor.disarm,
             "fail": supervisor.fail,
             "clear_fault": supervisor.clear_fault,
-            "command": supervisor.command,
+            "command": self._command,
             "await_zero": supervisor.await_zero,
             "lower_maximum": supervisor.lower_maximum,
             "begin_experiment": self._begin_experiment,
@@ -108,6 +108,10 @@ class SafetyProcess:
             self._store.keep(fault)
         except (OSError, DriverError) as error:
             print(f"hasel_driver: A restarted node will not know of {fault}: {error}", file=sys.stderr)
+
+    def _command(self, voltage_v: Sequence[float], made_s: float) -> None:
+        """As the supervisor's, `made_s` (monotonic) [s]: on its way here it has become older, too."""
+        self._supervisor.command(voltage_v, time.monotonic() - made_s)
 
     def _begin_experiment(self, plan: ExperimentPlan) -> None:
         experiment = DrivenExperiment(plan, self._supervisor, time.monotonic)

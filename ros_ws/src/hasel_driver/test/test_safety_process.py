@@ -44,7 +44,7 @@ def drive(link: SupplyLink, rig) -> None:
     voltage_v = (0.0, 0.0)
     while not rig.live and time.monotonic() < end_s:
         link.tell("host_is_alive", "test")
-        link.tell("command", voltage_v)
+        link.tell("command", voltage_v, time.monotonic())
         voltage_v = DRIVE_V
         time.sleep(0.01)
     assert rig.live
@@ -70,6 +70,21 @@ def test_a_held_interpreter_lock_does_not_hold_up_the_heartbeat(open_link, virtu
     link.tell("host_is_alive", "test")
     assert link.wait_for(lambda now: not now.status.mode.may_be_live or now.status.mode is Mode.ARMED, 1.0)
     assert (link.now.status.fault, link.now.status.mode) == (None, Mode.ARMED)
+
+
+def test_a_command_that_was_held_up_on_its_way_is_too_old(open_link, virtual_rig):
+    """What lay before a process that stood still for a quarter of a second is not obeyed when it goes on."""
+    link = open_link(heartbeat_timeout=0.45)
+    link.ask("arm")
+    assert link.wait_for(lambda now: now.status.mode is Mode.ARMED, 2.0), link.now.status
+    link.tell("command", (0.0, 0.0), time.monotonic())
+    rejected = link.now.rejected_commands
+    os.kill(link.process_id, signal.SIGSTOP)
+    link.tell("command", DRIVE_V, time.monotonic())
+    time.sleep(0.3)
+    os.kill(link.process_id, signal.SIGCONT)
+    assert link.wait_for(lambda now: now.rejected_commands == rejected + 1, 1.0), link.now
+    assert not virtual_rig.live
 
 
 @pytest.mark.rounds(3, 30)
@@ -114,7 +129,7 @@ link.wait_for(lambda now: now.status.mode.name == "ARMED", 2.0)
 voltage_v = (0.0, 0.0)
 while True:
     link.tell("host_is_alive", "test")
-    link.tell("command", voltage_v)
+    link.tell("command", voltage_v, time.monotonic())
     voltage_v = {DRIVE_V!r}
     time.sleep(0.01)
 """
