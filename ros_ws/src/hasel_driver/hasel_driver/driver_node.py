@@ -53,9 +53,7 @@ class DriverNode(LifecycleNode):
         super().__init__("hasel_driver", **{"namespace": NAMESPACE, **options})
         self._link: SupplyLink | None = None
         self._lifecycle_active = False
-        self._changing = (
-            threading.Lock()
-        )  # held while the lifecycle's state, on which arming depends, changes
+        self._changing = threading.Lock()  # held while the state on which arming depends changes
         self._retrying = self._port_missing = False
         self._last_problem = ""
         self._silent = False  # the supply, at rest

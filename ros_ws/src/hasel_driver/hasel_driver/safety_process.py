@@ -29,9 +29,7 @@ from hasel_driver.status import SupplyStatus
 from hasel_driver.supervisor import Supervisor
 from hasel_driver.supply_thread import SupplyThread
 
-MOST_UNSENT = (
-    1000  # snapshots; more are dropped, for a node that does not take them in must not hold up the supply
-)
+MOST_UNSENT = 1000  # snapshots; a node that takes no more in must not hold up the supply
 
 
 class SafetyProcess:

@@ -53,8 +53,7 @@ class SupplyLink:
         ours.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, struct.pack("ll", MOST_WAIT_S, 0))
         self._socket, self._connection = ours, Connection(os.dup(ours.fileno()))
         self._latest, self._heard_s = self._begin(parameters), time.monotonic()
-        self._reader = threading.Thread(target=self._read, name="supply", daemon=True)
-        self._reader.start()
+        threading.Thread(target=self._read, name="supply", daemon=True).start()
 
     @property
     def process_id(self) -> int:

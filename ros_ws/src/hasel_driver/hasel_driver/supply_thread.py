@@ -33,9 +33,7 @@ class _Expectation:
 
 
 class SupplyThread(threading.Thread):
-    """All are called in this thread: `on_begin` first, `on_status` for each reading, or every 100 ms, `on_step` once
-    per loop.
-    """
+    """Both are called in this thread: `on_status` for each reading, or every 100 ms, `on_step` once per loop."""
 
     def __init__(
         self,
@@ -43,12 +41,11 @@ class SupplyThread(threading.Thread):
         supply: Supply,
         on_status: Callable[[SupplyStatus], None],
         on_step: Callable[[], None] = lambda: None,
-        on_begin: Callable[[], None] = lambda: None,
     ) -> None:
         super().__init__(name="supply", daemon=True)
         self.supervisor = supervisor
         self._supply = supply
-        self._on_status, self._on_step, self._on_begin = on_status, on_step, on_begin
+        self._on_status, self._on_step = on_status, on_step
         self._requests: queue.SimpleQueue[tuple[Callable[[], Any], Future]] = queue.SimpleQueue()
         self._expectations: list[_Expectation] = []
         self._wake_reader, self._wake_writer = os.pipe()
@@ -108,7 +105,6 @@ class SupplyThread(threading.Thread):
 
     def run(self) -> None:
         """The loop; however it ends, the supply is disarmed and its heartbeat ends."""
-        self._on_begin()
         try:
             while not self._stopping:
                 self._wait()

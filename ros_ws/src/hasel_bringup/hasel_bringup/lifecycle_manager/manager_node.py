@@ -2,7 +2,7 @@
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from hasel_common.declared_parameters import declare
@@ -13,6 +13,7 @@ from lifecycle_msgs.msg import State, Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 from rclpy.client import Client
 from rclpy.node import Node
+from rclpy.task import Future
 from std_srvs.srv import Trigger
 
 from hasel_bringup.errors import BringupError
@@ -20,6 +21,7 @@ from hasel_bringup.lifecycle_manager.bring_up import BringUp, Change, Lifecycle
 from hasel_bringup.lifecycle_manager.manager_parameters import PARAMETERS
 
 PERIOD_S = 0.5
+CONFIGURE_S = 60.0  # a model is compiled, a camera opened
 RETRY_S = 2.0  # after a transition that failed
 SAID_AGAIN_S = 10.0
 STATES = {
@@ -103,10 +105,7 @@ class LifecycleManager(Node):
         asked = {
             name: c.call_async(GetState.Request()) for name, c in self._ask.items() if c.service_is_ready()
         }
-        end_s = time.monotonic() + self._answer_s
-        while not all(future.done() for future in asked.values()) and time.monotonic() < end_s:
-            if self._ended.wait(0.005):
-                break
+        self._await(asked.values(), self._answer_s)
         states = dict.fromkeys(self._names, Lifecycle.ABSENT)
         for name, future in asked.items():
             if future.done() and (answer := future.result()) is not None:
@@ -120,13 +119,17 @@ class LifecycleManager(Node):
         request.transition.id = TRANSITIONS[change]
         client: Client = self._change[name]
         future = client.call_async(request)
-        end_s = time.monotonic() + max(self._answer_s, 60.0 if change is Change.CONFIGURE else 0.0)
-        while not future.done() and time.monotonic() < end_s:
-            if self._ended.wait(0.005):
-                break
+        self._await([future], max(self._answer_s, CONFIGURE_S if change is Change.CONFIGURE else 0.0))
         if not future.done():
             client.remove_pending_request(future)
         return future.done() and bool(future.result().success)
+
+    def _await(self, futures: Collection[Future], seconds: float) -> None:
+        """Until all have their answers, the time is over, or this node ends."""
+        end_s = time.monotonic() + seconds
+        while not all(future.done() for future in futures) and time.monotonic() < end_s:
+            if self._ended.wait(0.005):
+                return
 
     def _say(self, what: str) -> None:
         if what != self._said or (
