@@ -49,8 +49,8 @@ def bounded_change(
 
 
 class GaussNewton:
-    """at: the best model so far, evaluated with its derivatives; predicted: sum of squares expected after the next
-    step; converged: whether a step that nothing held back gave, or would give, next to nothing.
+    """at: the best model so far, evaluated with its derivatives; predicted: sum of squares expected after a step of all
+    parameters; converged: whether a step that nothing held back gave, or would give, next to nothing.
     """
 
     def __init__(self, at: Evaluation, tolerance: float, first: Sequence[str] = ()) -> None:
@@ -70,9 +70,15 @@ class GaussNewton:
     def _propose(self, only: Sequence[str] = ()) -> None:
         here = self.at
         value, lower, upper = values_and_bounds(here.model, here.names)
-        reach = self._radius * self._scale * np.array([not only or name in only for name in here.names])
+        reach = self._radius * self._scale
         down, up = np.maximum(lower - value, -reach), np.minimum(upper - value, reach)
         self._change, self.predicted = bounded_change(here.residual, here.jacobian, down, up)
+        self._expected = self.predicted
+        if only:
+            moves = np.array([name in only for name in here.names])
+            self._change, self._expected = bounded_change(
+                here.residual, here.jacobian, down * moves, up * moves
+            )
         _, anywhere = bounded_change(here.residual, here.jacobian, lower - value, upper - value)
         small = here.sum_of_squares - anywhere <= self.tolerance * here.sum_of_squares
         self.converged = bool(small or self._radius < _SMALLEST_RADIUS)
@@ -92,7 +98,7 @@ class GaussNewton:
 
     def take(self, new: Evaluation | SimulationError) -> None:
         """Go there, where that leaves less; otherwise be more careful. new: the proposal, evaluated."""
-        before, promised = self.at.sum_of_squares, self.at.sum_of_squares - self.predicted
+        before, promised = self.at.sum_of_squares, self.at.sum_of_squares - self._expected
         gain = -np.inf
         if not isinstance(new, SimulationError):
             gain = before - new.sum_of_squares

@@ -39,16 +39,6 @@ class Start:
         """The model with the candidate at this start. Raises ModelError where it does not fit in."""
         return self.candidate.added_to(beside).with_values(dict(self.values))
 
-    def scaled(self, amount: float) -> dict[str, float]:
-        """The values with the sizes so many times as far from their nulls, as far as their ranges allow."""
-        sizes = self.candidate.sizes
-        return {
-            name: float(np.clip(p.null + amount * (value - p.null), p.lower, p.upper))
-            if (p := sizes.get(name))
-            else value
-            for name, value in self.values.items()
-        }
-
 
 def starts(candidate: Candidate) -> list[Start]:
     """All starts of a candidate; those of typical size come first."""
@@ -69,18 +59,6 @@ def starts(candidate: Candidate) -> list[Start]:
 def _between(scan: Sequence[float]) -> list[float]:
     """Half way from one value to the next: a body that hardly moves at one place has a valley on either side."""
     return [0.5 * (one + other) for one, other in zip(scan, scan[1:], strict=False)]
-
-
-def from_typical(candidate: Candidate) -> list[list[Start]]:
-    """Other than typical sizes, going away from it: a list for every time or place, either side of the null, and either
-    way, towards the null and out to the end of the range.
-    """
-    chains: dict[tuple, list[Start]] = {}
-    for start in starts(candidate):
-        if not start.typical:
-            side = start.place, start.factor > 0, abs(start.factor) > 1
-            chains.setdefault(side, []).append(start)
-    return [sorted(chain, key=lambda start: abs(np.log(abs(start.factor)))) for chain in chains.values()]
 
 
 def _at(sizes: Mapping[str, EffectParameter], factor: float) -> dict[str, float]:
@@ -123,8 +101,17 @@ class Screened:
     strength: float
 
     def values(self) -> dict[str, float]:
-        """Of the candidate where a search from here begins: as it is, where its change alone promises nothing."""
-        return self.start.scaled(self.amount or 1.0)
+        """Of the candidate where a search from here begins: a typical size times what is best by first order, as far
+        as its range allows, or as it is where that is nothing; another size as it is.
+        """
+        amount = self.amount if self.start.typical and self.amount else 1.0
+        sizes = self.start.candidate.sizes
+        return {
+            name: float(np.clip(p.null + amount * (value - p.null), p.lower, p.upper))
+            if (p := sizes.get(name))
+            else value
+            for name, value in self.start.values.items()
+        }
 
 
 def screen(problem: Problem, about: Evaluation, every: Sequence[Start]) -> list[Screened]:

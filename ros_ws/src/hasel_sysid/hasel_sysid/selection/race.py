@@ -1,24 +1,29 @@
 """Every candidate alone, fitted by the low-fidelity model until it converged or can no longer win.
 
-Racing: Maron and Moore, Advances in Neural Information Processing Systems 6 (1994) 59.
+Racing: Maron and Moore, Advances in Neural Information Processing Systems 6 (1994) 59. Typical sizes take part first,
+about which first order tells what is worth it. Where none of them ends at the noise, all other sizes do.
 """
 
 from collections.abc import Sequence
 
 import numpy as np
 from hasel_sim.errors import SimulationError
+from hasel_sim.model import Model
 
 from hasel_sysid.candidates import Candidate
-from hasel_sysid.estimation.fit import TOLERANCE
+from hasel_sysid.estimation.fit import TOLERANCE, descend
 from hasel_sysid.estimation.least_squares import MOST_STEPS, OPTIMISM, GaussNewton
-from hasel_sysid.estimation.starts import MOST_FOLLOWED, Screened, Start, from_typical, screen, starts
+from hasel_sysid.estimation.starts import MOST_FOLLOWED, Screened, screen, starts
 from hasel_sysid.problem import Evaluation, LowFidelityProblem
 from hasel_sysid.selection.likelihood import Likelihood
 
 _RUNS = 4
-"""Runs on which other than typical sizes are screened: those of which most is left."""
+"""Runs on which other than typical sizes take part: those of which most is left."""
 _OF_EACH = 3
 """Starts of one candidate at most that take part."""
+
+Entries = Sequence[tuple[str, Model]]
+"""The name of a candidate, and the model with it where it begins."""
 
 
 def screen_typical(
@@ -33,75 +38,63 @@ def screen_typical(
     return found, left
 
 
-def race(
-    problem: LowFidelityProblem,
-    typical: Sequence[Screened],
-    likelihood: Likelihood,
-    reach: float,
-    to_beat: float = 1.0,
-) -> dict[str, Evaluation]:
-    """The best low-fidelity model with each of the candidates that took part, by name.
+def at_typical_size(problem: LowFidelityProblem, typical: Sequence[Screened], to_beat: float) -> Entries:
+    """Those of the candidates screened that may win, by twice what first order promises; the likeliest come first.
 
-    problem: corrected at the model without any of them; typical: what `screen_typical` found; reach: by how much of
-    log-likelihood a model may lie behind the best one and still be its equal; to_beat: share of the squares that
-    a model leaves which is known already.
+    to_beat: sum of squares that a model leaves which is known already.
+    """
+    about = problem.known.sum_of_squares
+    ranked = sorted(typical, key=lambda one: one.predicted)
+    best = min([to_beat, *(one.predicted for one in ranked)])
+    able = [one for one in ranked if about - OPTIMISM * (about - one.predicted) <= best]
+    return [_entry(problem, one) for one in _some_of_each(able)[:MOST_FOLLOWED]]
+
+
+def at_other_sizes(problem: LowFidelityProblem, typical: Sequence[Screened], most: int) -> Entries:
+    """The candidates that a fit from other than typical sizes brings furthest, at most so many, and where they came to.
+
+    typical: what `screen_typical` found. Every size is simulated, and the most promising of each candidate are fitted,
+    on the runs of which most is left: further from the null than the typical one, and nearer to it where that changes
+    more than what is to be explained.
     """
     about = problem.known
     worst = np.argsort(-np.bincount(about.runs, about.residual**2))[:_RUNS].tolist()
     few = problem.of_runs(worst)
-    entries = [(one.predicted / about.sum_of_squares, one) for one in typical]
-    entries += _other_sizes(few, typical)
-    entries.sort(key=lambda entry: entry[0])
-    best = min([to_beat, *(share for share, _ in entries)])
-    needed = (1.0 - best) / OPTIMISM
-    able: list[Screened] = []
-    for share, one in entries:
-        same = sum(other.start.candidate.name == one.start.candidate.name for other in able)
-        if 1.0 - share >= needed and same < _OF_EACH:
-            able.append(one)
-    return _run(problem, able[:MOST_FOLLOWED], likelihood, reach)
+    strong = {one.start.candidate.name for one in typical if one.strength > 1.0}
+    others = [
+        start
+        for candidate in {one.start.candidate.name: one.start.candidate for one in typical}.values()
+        for start in starts(candidate)
+        if not start.typical and (abs(start.factor) >= 1.0 or candidate.name in strong)
+    ]
+    screened: list[Screened] = []
+    for batch in problem.time_limit.in_batches(others):
+        screened += screen(few, few.known, batch)
+    entries = [_entry(few, one) for one in _some_of_each(sorted(screened, key=lambda one: one.predicted))]
+    names = {frozenset(model.free): name for name, model in entries}
+    ended: dict[str, Model] = {}
+    for one in (
+        [] if problem.time_limit.is_over() else descend(few, [model for _, model in entries], about.names)
+    ):
+        ended.setdefault(names[frozenset(one.model.free)], one.model)
+    return list(ended.items())[:most]
 
 
-def _other_sizes(problem: LowFidelityProblem, typical: Sequence[Screened]) -> list[tuple[float, Screened]]:
-    """Other sizes with the share that each promises to leave: outwards for as long as the best amount lies beyond,
-    and of what acts at a place to the end; towards the null as long as the change is more than what is to be explained.
-    """
-    going: list[tuple[Screened, list[Start]]] = []
-    for one in typical:
-        for chain in from_typical(one.start.candidate):
-            if chain[0].place == one.start.place:
-                going.append((one, chain))
-    found: list[tuple[float, Screened]] = []
-    while going := [(one, chain) for one, chain in going if chain and _leads_on(one, chain[0])]:
-        if problem.time_limit.is_over():
-            break
-        seen = screen(problem, problem.known, [chain[0] for _, chain in going])
-        found += [(one.predicted / problem.known.sum_of_squares, one) for one in seen]
-        of = {id(one.start): one for one in seen}
-        going = [(of[id(first)], rest) for _, (first, *rest) in going if id(first) in of]
-    return found
-
-
-def _leads_on(one: Screened, to: Start) -> bool:
-    if abs(to.factor) < abs(one.start.factor):
-        return one.strength > 1.0
-    return one.start.candidate.acts_at_a_place or one.amount * to.factor >= abs(to.factor)
-
-
-def _run(
-    problem: LowFidelityProblem,
-    entries: Sequence[Screened],
-    likelihood: Likelihood,
-    reach: float,
+def race(
+    problem: LowFidelityProblem, entries: Entries, likelihood: Likelihood, reach: float
 ) -> dict[str, Evaluation]:
-    """The race itself: one Gauss-Newton step each, of those that can still win."""
+    """The best low-fidelity model with each of the candidates, by name: one Gauss-Newton step each, of those that can
+    still win.
+
+    problem: corrected at the model without any of them; reach: by how much of log-likelihood a model may lie behind the
+    best one and still be its equal.
+    """
     about = problem.known
     base = likelihood.of(about.residual, about.jacobian).logarithm
-    models = [one.start.candidate.added_to(about.model).with_values(one.values()) for one in entries]
-    begun = problem.evaluate_each(models, [model.free for model in models])
+    begun = problem.evaluate_each([model for _, model in entries], [model.free for _, model in entries])
     searches = [
-        (one.start.candidate.name, GaussNewton(seen, TOLERANCE, _first(seen, about)))
-        for one, seen in zip(entries, begun, strict=True)
+        (name, GaussNewton(seen, TOLERANCE, _first(seen, about)))
+        for (name, _), seen in zip(entries, begun, strict=True)
         if not isinstance(seen, SimulationError)
     ]
     for _ in range(MOST_STEPS):
@@ -119,6 +112,19 @@ def _run(
     for name, search in sorted(searches, key=lambda one: one[1].at.sum_of_squares):
         ended.setdefault(name, search.at)
     return ended
+
+
+def _entry(problem: LowFidelityProblem, one: Screened) -> tuple[str, Model]:
+    candidate = one.start.candidate
+    return candidate.name, candidate.added_to(problem.known.model).with_values(one.values())
+
+
+def _some_of_each(ranked: Sequence[Screened]) -> list[Screened]:
+    taken: list[Screened] = []
+    for one in ranked:
+        if sum(other.start.candidate.name == one.start.candidate.name for other in taken) < _OF_EACH:
+            taken.append(one)
+    return taken
 
 
 def _first(begun: Evaluation, about: Evaluation) -> Sequence[str]:

@@ -33,7 +33,7 @@ from hasel_sysid.selection.choose import Choice, ComparedModel, Judged, choose, 
 from hasel_sysid.selection.cross_validation import leave_one_run_out
 from hasel_sysid.selection.likelihood import NOTHING, FittedSet, Likelihood, Names, Whitened
 from hasel_sysid.selection.linearise import CandidateColumns, linearise, secant
-from hasel_sysid.selection.race import race, screen_typical
+from hasel_sysid.selection.race import Entries, at_other_sizes, at_typical_size, race, screen_typical
 
 _LINEARISED = 12
 """Candidates that are simulated anew beside a model, those of most score there; the others keep their secants."""
@@ -107,11 +107,16 @@ class Search:
         self.first = self._tested(NOTHING)
         self.threshold = self.first.threshold
         if self.first.chance < self.policy.level:
-            self._alone(self.screened, 0.2)
-            if self._with_constants and self._tested(self._likeliest()).chance < self.policy.level:
-                self._say("numbers of the model file", 0.4)
+            self._say("each alone", 0.2)
+            self._race(at_typical_size(self._low, self.screened, self._least()))
+            if self._with_constants and self._something_is_missing():
+                self._say("numbers of the model file", 0.3)
                 self._constants, _ = screen_typical(self._low, constants_of(self.baseline.model))
-                self._alone(self._constants, 0.45)
+                self._race(at_typical_size(self._low, self._constants, self._least()))
+            if self._something_is_missing():
+                self._say("each alone, from all other sizes", 0.4)
+                typical = [*self.screened, *self._constants]
+                self._race(at_other_sizes(self._low, typical, self.policy.fits))
             self._rounds(0.5)
         choice = self._choose()
         return Searched(
@@ -219,26 +224,31 @@ class Search:
 
     # what is fitted
 
-    def _alone(self, screened: Sequence[Screened], share: float) -> None:
-        """Every candidate alone: raced by the low-fidelity model, those within reach of the best then by the model."""
-        self._say("each alone", share)
-        least = min(one.fit.evaluation.sum_of_squares for one in self.fits.values())
-        to_beat = least / self.baseline.evaluation.sum_of_squares
-        ended = race(self._low, screened, self.likelihood, self.policy.reach, to_beat)
-        self.alone |= ended
-        candidates = {one.start.candidate.name: one.start.candidate for one in screened}
-        value = {
-            name: self.likelihood.of(one.residual, one.jacobian).logarithm for name, one in ended.items()
-        }
+    def _race(self, entries: Entries) -> None:
+        """Candidates alone: raced by the low-fidelity model, those within reach of the best then by the model."""
+        for name, ended in race(self._low, entries, self.likelihood, self.policy.reach).items():
+            if name not in self.alone or ended.sum_of_squares < self.alone[name].sum_of_squares:
+                self.alone[name] = ended
+                self._tried.discard(frozenset({name}))
+        value = {n: self.likelihood.of(one.residual, one.jacobian).logarithm for n, one in self.alone.items()}
         ranked = sorted(value, key=lambda name: -value[name])
         near = [name for name in ranked if value[name] >= value[ranked[0]] - self.policy.reach]
-        chosen = near[: 2 * self.policy.fits]
-        self._keep(
-            {frozenset({name}): partial(self._mapped, candidates[name], ended[name]) for name in chosen}
-        )
+        chosen = [frozenset({name}) for name in near[: 2 * self.policy.fits]]
+        self._keep({names: partial(self._mapped, *names) for names in chosen if names not in self._tried})
 
-    def _mapped(self, candidate: Candidate, low: Evaluation) -> FittedSet:
-        return FittedSet({candidate.name: candidate}, fitted_model(mapped(self.problem, low)))
+    def _mapped(self, name: str) -> FittedSet:
+        candidate = self._candidates()[name]
+        return FittedSet({name: candidate}, fitted_model(mapped(self.problem, self.alone[name])))
+
+    def _candidates(self) -> dict[str, Candidate]:
+        return {one.start.candidate.name: one.start.candidate for one in (*self.screened, *self._constants)}
+
+    def _something_is_missing(self) -> bool:
+        """From the likeliest model so far."""
+        return self._tested(self._likeliest()).chance < self.policy.level
+
+    def _least(self) -> float:
+        return min(one.fit.evaluation.sum_of_squares for one in self.fits.values())
 
     def _rounds(self, share: float) -> None:
         """Propose and fit until nothing promises more."""
@@ -307,7 +317,7 @@ class Search:
 
     def _fitted(self, row: Row) -> FittedSet:
         """A set from where the table leads, and from what its candidates are alone."""
-        known = {one.start.candidate.name: one.start.candidate for one in (*self.screened, *self._constants)}
+        known = self._candidates()
         candidates = {name: known[name] for name in sorted(row.names)}
         model = self.baseline.model
         for candidate in candidates.values():

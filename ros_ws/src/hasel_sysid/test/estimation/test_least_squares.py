@@ -124,6 +124,15 @@ def test_what_follows_first_moves_alone():
     assert ahead.values[MASS] == 0.1 and ahead.values[DAMPING] != 0.1
 
 
+def test_what_a_search_may_reach_counts_the_parameters_that_follow_later():
+    """A start whose first step moves the damping alone is not given up for what the mass will do."""
+    problem = FormulaProblem(swing, TIME, swing(body(0.12, 0.1), TIME))
+    start = problem.evaluate(body(0.1, 0.1), (MASS, DAMPING))
+    both, first = GaussNewton(start, 1e-6), GaussNewton(start, 1e-6, (DAMPING,))
+    assert first.predicted == both.predicted < 0.1 * start.sum_of_squares
+    assert first.may_reach(0.1 * start.sum_of_squares)
+
+
 def ended(value: float, pull: float) -> Evaluation:
     """A fit that ended at a value, while the runs ask for so much more of it."""
     model = load_model("arm").with_values({RETARDATION: value})

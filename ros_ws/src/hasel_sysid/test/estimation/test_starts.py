@@ -5,7 +5,7 @@ import pytest
 from hasel_sim.effects.registry import catalogue
 from hasel_sysid.candidates import Candidate
 from hasel_sysid.estimation import fit_baseline
-from hasel_sysid.estimation.starts import from_typical, screen, starts
+from hasel_sysid.estimation.starts import screen, starts
 from hasel_sysid.testing.made_up_world import MadeUpWorld
 
 
@@ -52,18 +52,22 @@ def test_a_scale_is_begun_below_and_above_one_and_a_signed_size_to_either_side()
 
 
 @pytest.mark.parametrize("name", catalogue())
-def test_no_start_leaves_a_range_and_other_sizes_go_away_from_the_typical_one(name):
-    """A time or a place stays where it is meanwhile; every start is the typical one or in one of the chains."""
+def test_no_start_leaves_a_range(name):
+    """Whatever its size, time or place."""
     one = candidate(name)
     ranges = {one.path(p): p for p in one.parameters}
-    every = starts(one)
-    for start in every:
+    for start in starts(one):
         assert all(ranges[path].lower <= value <= ranges[path].upper for path, value in start.values.items())
-    chains = from_typical(one)
-    for chain in chains:
-        away = [abs(np.log(abs(start.factor))) for start in chain]
-        assert away == sorted(away) and len({start.place for start in chain}) == 1
-    assert sum(map(len, chains)) + sum(start.typical for start in every) == len(every)
+
+
+def test_a_fit_begins_at_another_size_as_it_is():
+    """First order about a model without it tells little of how much of a large size is best."""
+    world = MadeUpWorld(4)
+    problem = world.measured(world.with_typical("payload"))
+    about = fit_baseline(problem, world.model).evaluation
+    others = [start for start in starts(candidate("payload")) if not start.typical]
+    for one in screen(problem, about, others):
+        assert one.values() == one.start.values
 
 
 @pytest.mark.parametrize("times", [0.5, 1.8])

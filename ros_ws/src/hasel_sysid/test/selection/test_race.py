@@ -6,36 +6,64 @@ from hasel_sysid.estimation import fit_baseline
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.problem import LowFidelityProblem
 from hasel_sysid.selection.likelihood import Likelihood
-from hasel_sysid.selection.race import race, screen_typical
+from hasel_sysid.selection.race import at_other_sizes, at_typical_size, race, screen_typical
 from hasel_sysid.testing.made_up_world import NOISE, MadeUpWorld
 
 SOME = ("payload", "pre_bend", "linear_drag", "viscoelastic_creep", "tether")
 
 
+def laboratory(hidden, values, **limits):
+    """A fitted baseline by the low-fidelity model, its likelihood, and some candidates at their typical sizes."""
+    world = MadeUpWorld(3)
+    problem = world.measured(world.with_typical(hidden).with_values(values), **limits)
+    low = LowFidelityProblem(problem, fit_baseline(problem, world.model).evaluation)
+    screened, _ = screen_typical(low, effects_of(world.model, SOME))
+    return low, Likelihood(NoiseModel(NOISE**2, 0.0, 0.5), low.known.runs), screened
+
+
 @pytest.mark.parametrize(
     ("hidden", "values"),
     [
-        ("payload", {"payload.mass": 0.13}),
+        ("payload", {"payload.mass": 0.013}),
         ("pre_bend", {"pre_bend.curvature": -0.3}),
         ("viscoelastic_creep", {"viscoelastic_creep.relaxation_time": 1.6}),
     ],
-    ids=["ten times the typical size", "the other sign", "another time"],
+    ids=["a third more than the typical size", "the other sign", "another time"],
 )
 def test_what_is_hidden_wins_with_its_value(hidden, values):
-    """From standard starts, whatever its size, sign or time: it ends at the noise, and no other comes near."""
-    world = MadeUpWorld(3)
-    problem = world.measured(world.with_typical(hidden).with_values(values))
-    low = LowFidelityProblem(problem, fit_baseline(problem, world.model).evaluation)
-    likelihood = Likelihood(NoiseModel(NOISE**2, 0.0, 0.5), low.known.runs)
-    screened, untried = screen_typical(low, effects_of(world.model, SOME))
-    assert untried == []
-    ended = race(low, screened, likelihood, reach=8.0)
+    """From typical sizes, whatever its sign or time: it ends at the noise, and no other comes near."""
+    low, likelihood, screened = laboratory(hidden, values)
+    ended = race(low, at_typical_size(low, screened, low.known.sum_of_squares), likelihood, reach=8.0)
     best = min(ended, key=lambda name: ended[name].sum_of_squares)
     assert best == hidden
     assert ended[best].sum_of_squares == pytest.approx(NOISE**2 * len(low.known.residual), rel=0.1)
     for name, value in values.items():
         assert ended[best].model.values[name] == pytest.approx(value, rel=0.1)
     assert all(ended[name].sum_of_squares > 2 * ended[best].sum_of_squares for name in ended if name != best)
+
+
+@pytest.mark.parametrize(
+    ("hidden", "values"),
+    [
+        ("payload", {"payload.mass": 0.13}),
+        ("tether", {"tether.stiffness": 60.0, "tether.position": 0.12}),
+        ("linear_drag", {"linear_drag.rate": 0.15}),
+    ],
+    ids=["thirteen times the typical size", "twelve times, near the tail", "a seventh of it"],
+)
+def test_what_is_far_from_its_typical_size_is_followed_furthest_from_another_one(hidden, values):
+    """It is the first of those that are gone on with on all runs, and then ends at the noise."""
+    low, likelihood, screened = laboratory(hidden, values)
+    entries = at_other_sizes(low, screened, 3)
+    assert entries[0][0] == hidden and len(entries) <= 3
+    ended = race(low, entries, likelihood, reach=8.0)[hidden]
+    assert ended.sum_of_squares == pytest.approx(NOISE**2 * len(low.known.residual), rel=0.1)
+
+
+def test_where_time_is_over_no_other_size_is_tried():
+    """What is known from typical sizes stays."""
+    low, _, screened = laboratory("payload", {"payload.mass": 0.13}, most_evaluations=0)
+    assert list(at_other_sizes(low, screened, 3)) == []
 
 
 def test_beside_no_time_the_first_candidates_are_screened_all_the_same():
