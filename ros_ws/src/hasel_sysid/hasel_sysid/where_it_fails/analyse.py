@@ -78,4 +78,5 @@ def where_it_fails(runs: Sequence[RunSeries]) -> WhereItFails:
     if not profiles:
         return WhereItFails(analyses, tuple(failures), np.zeros(0), np.zeros(0))
     relative = [p.absolute / max(float(np.nanmean(p.absolute)), 1e-12) for p in profiles]
-    return WhereItFails(analyses, tuple(failures), profiles[0].phase, np.nanmean(relative, axis=0))
+    known = np.ma.masked_invalid(relative)  # at few frames a cycle there are phases without any
+    return WhereItFails(analyses, tuple(failures), profiles[0].phase, known.mean(axis=0).filled(np.nan))

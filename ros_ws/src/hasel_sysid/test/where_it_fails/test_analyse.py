@@ -1,11 +1,14 @@
 """What is said about many runs together."""
 
+import warnings
+
 import numpy as np
 import pytest
 from hasel_sysid.where_it_fails.analyse import where_it_fails
 from hasel_sysid.where_it_fails.by_condition import error_by_frequency, error_by_level
 from hasel_sysid.where_it_fails.component import Kind
 from hasel_sysid.where_it_fails.pooled import pool, trend
+from hasel_sysid.where_it_fails.run_series import RunSeries
 
 CONDITIONS = [(voltage, frequency) for voltage in (3500.0, 5500.0) for frequency in (0.5, 2.0, 3.5)]
 
@@ -93,3 +96,16 @@ def test_trend_needs_a_clear_difference():
     """A condition stands out only beyond its errors."""
     assert trend([1, 1, 2, 2], [1.0, 1.1, 3.0, 3.1], [0.1] * 4).condition == 2
     assert trend([1, 1, 2, 2], [1.0, 1.1, 1.2, 1.3], [0.3] * 4) is None
+
+
+def test_a_phase_without_any_frame_is_no_warning_and_no_worst_one(made_run):
+    """At 30 frames/s and 2 Hz a cycle has fifteen frames, which leave every fourth of twenty parts empty."""
+    run = made_run(lambda time, s, truth: s + 0.02 * np.sin(12 * np.pi * time))
+    every = slice(None, None, 4)
+    seldom = RunSeries(
+        run.name, run.time[every], run.measured[every], run.simulated[every], run.drive_time, run.drive_values
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = where_it_fails([seldom])
+    assert 0 < np.isfinite(found.profile).sum() < len(found.profile)
