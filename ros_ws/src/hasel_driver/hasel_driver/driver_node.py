@@ -8,11 +8,11 @@ import threading
 import time
 
 import rclpy
-from diagnostic_msgs.msg import DiagnosticArray
+from hasel_common.diagnostics import Diagnostics, Part
 from hasel_common.endpoints import Role, frame_of, publisher
 from hasel_common.parent import end_at_once_with_parent
 from hasel_common.spinning import quiet_at_shutdown, spin
-from hasel_common.topics import DIAGNOSTICS, NAMESPACE, STATE
+from hasel_common.topics import NAMESPACE, STATE
 from hasel_interfaces.msg import SupplyState
 from rclpy._rclpy_pybind11 import RCLError, RCLInvalidROSArgsError
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
@@ -27,7 +27,7 @@ from hasel_driver.driver_services import SERVICES, DriverServices
 from hasel_driver.errors import DriverError, PortError, PortInUseError, RefusedError
 from hasel_driver.experiment_server import ExperimentServer
 from hasel_driver.faults import Fault, FaultCode
-from hasel_driver.messages import to_diagnostics, to_supply_state
+from hasel_driver.messages import supply_health, to_supply_state
 from hasel_driver.middleware import prepare, reach
 from hasel_driver.node_parameters import declare, values
 from hasel_driver.parameter_files import check_files
@@ -70,7 +70,7 @@ class DriverNode(LifecycleNode):
         slow = ReentrantCallbackGroup()
         self._state = publisher(self, SupplyState, STATE, Role.SAMPLES)
         self._frame_id = frame_of(self, "supply")
-        self._diagnostics = publisher(self, DiagnosticArray, DIAGNOSTICS, Role.DIAGNOSTICS)
+        self._diagnostics = Diagnostics(self, Part.SUPPLY)
         self.history = SupplyHistory(values(self)["history_file"], self.get_logger().warning)
         self._inputs = UrgentInputs(
             self.get_namespace(),
@@ -289,10 +289,8 @@ class DriverNode(LifecycleNode):
                 "grounds_itself_without_host": now.capabilities.deadman,
                 "safety_process_alive": link.is_alive(),
             }
-        name = self.get_fully_qualified_name().lstrip("/")
-        self._diagnostics.publish(
-            to_diagnostics(name, now.status if now else None, self.get_clock().now().to_msg(), details)
-        )
+        level, sentence, known = supply_health(now.status if now else None)
+        self._diagnostics.tell(level, sentence, known | details, str(details.get("device", "")))
 
     # What the services ask for
 

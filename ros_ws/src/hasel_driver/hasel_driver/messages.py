@@ -5,7 +5,7 @@ import time
 from collections.abc import Sequence
 
 from builtin_interfaces.msg import Time
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from hasel_common.diagnostics import Level
 from hasel_interfaces.msg import SupplyState
 
 from hasel_driver.ground import Ground
@@ -64,19 +64,11 @@ def _interlock(closed: tuple[bool, bool] | None) -> list[int]:
     return [SupplyState.INTERLOCK_CLOSED if each else SupplyState.INTERLOCK_OPEN for each in closed]
 
 
-def to_diagnostics(
-    node: str, status: SupplyStatus | None, stamp: Time, details: dict[str, object]
-) -> DiagnosticArray:
-    """`/diagnostics` of a node; no status means that it is not configured."""
-    entry = DiagnosticStatus(name=f"{node}: supply", hardware_id=str(details.get("device", "")))
+def supply_health(status: SupplyStatus | None) -> tuple[Level, str, dict[str, object]]:
+    """What `/diagnostics` says of a supply: level, sentence, values; no status means that none is configured."""
     if status is None:
-        entry.level, entry.message = DiagnosticStatus.WARN, "not configured: the port is closed"
-    else:
-        entry.level = DiagnosticStatus.WARN if status.silent_s else DiagnosticStatus.OK
-        entry.level = DiagnosticStatus.ERROR if status.mode is Mode.FAULT else entry.level
-        entry.message = str(status) + (f", no report for {status.silent_s:.1f} s" if status.silent_s else "")
-        details = {"mode": status.mode.name, "output": status.output, **details}
-    entry.values = [KeyValue(key=key, value=str(value)) for key, value in details.items()]
-    array = DiagnosticArray(status=[entry])
-    array.header.stamp = stamp
-    return array
+        return Level.WARN, "not configured: the port is closed", {}
+    level = Level.WARN if status.silent_s else Level.OK
+    level = Level.ERROR if status.mode is Mode.FAULT else level
+    sentence = str(status) + (f", no report for {status.silent_s:.1f} s" if status.silent_s else "")
+    return level, sentence, {"mode": status.mode.name, "output": status.output}

@@ -1,9 +1,8 @@
 import numpy as np
-from builtin_interfaces.msg import Time
-from diagnostic_msgs.msg import DiagnosticStatus
+from hasel_common.diagnostics import Level
 from hasel_driver.faults import FaultCode
 from hasel_driver.ground import Ground
-from hasel_driver.messages import to_diagnostics, to_supply_state
+from hasel_driver.messages import supply_health, to_supply_state
 from hasel_driver.mode import Mode
 from hasel_driver.presets import PRESETS
 from hasel_driver.status import UNKNOWN, SupplyStatus
@@ -44,9 +43,6 @@ def test_state_names_muscles_and_frame():
 def test_a_supply_that_is_silent_at_rest_is_a_warning():
     """In the diagnostics, with the time; the state claims nothing of its output."""
     status = SupplyStatus(0.0, Mode.STANDBY, None, None, UNKNOWN, UNKNOWN, UNKNOWN, silent_s=1.2)
-    (entry,) = to_diagnostics("driver", status, Time(), {}).status
-    assert (entry.level, entry.message) == (
-        DiagnosticStatus.WARN,
-        "STANDBY, output unknown, no report for 1.2 s",
-    )
+    level, sentence, _ = supply_health(status)
+    assert (level, sentence) == (Level.WARN, "STANDBY, output unknown, no report for 1.2 s")
     assert (to_supply_state(status).grounded, to_supply_state(status).ground) == (False, Ground.NOT)

@@ -1,11 +1,9 @@
 """Results of the live simulation as ROS messages."""
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 from builtin_interfaces.msg import Time
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from geometry_msgs.msg import Point
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_recording.mcap_drive import muscles
@@ -77,12 +75,3 @@ class BodyMessage:
             for point, (x, y) in zip(marker.points, places, strict=True):
                 point.x, point.y = x, y
         return self._message
-
-
-def diagnostics(
-    node: str, level: bytes, sentence: str, values: Mapping[str, object], stamp: Time
-) -> DiagnosticArray:
-    """A simulator's entry in `/diagnostics`."""
-    status = DiagnosticStatus(level=level, name=f"{node}: simulation", message=sentence)
-    status.values = [KeyValue(key=key, value=str(value)) for key, value in values.items()]
-    return DiagnosticArray(header=Header(stamp=stamp), status=[status])

@@ -5,11 +5,11 @@ import time
 from collections import Counter
 
 import numpy as np
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from hasel_common.declared_parameters import declare, words
+from hasel_common.diagnostics import Diagnostics, Level, Part
 from hasel_common.endpoints import STEADY, Role, frame_of, publisher, subscription
 from hasel_common.managed_node import ManagedNode, start_and_spin
-from hasel_common.topics import DIAGNOSTICS, NAMESPACE, SIMULATED, STATE, SWIMMER
+from hasel_common.topics import NAMESPACE, SIMULATED, STATE, SWIMMER
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_interfaces.srv import AddEffect, LoadModel, RemoveEffect
 from rclpy.exceptions import InvalidParameterValueException
@@ -26,7 +26,7 @@ from hasel_sim.live.repeated_warnings import RepeatedWarnings
 from hasel_sim.model import Model
 from hasel_sim.model_parameters import ModelParameters
 from hasel_sim.node_process import run_node
-from hasel_sim.simulator_messages import BodyMessage, angle_message, diagnostics, rig_voltage, to_nanoseconds
+from hasel_sim.simulator_messages import BodyMessage, angle_message, rig_voltage, to_nanoseconds
 from hasel_sim.simulator_parameters import PARAMETERS
 
 
@@ -48,7 +48,7 @@ class SimulatorNode(ManagedNode):
         self._next_angle_ns = self._next_shape_s = 0
         self._angles = publisher(self, BendingAngle, SIMULATED, Role.EVERY_SAMPLE)
         self._shapes = publisher(self, MarkerArray, SWIMMER, Role.SHAPES)
-        self._diagnostics = publisher(self, DiagnosticArray, DIAGNOSTICS, Role.DIAGNOSTICS)
+        self._diagnostics = Diagnostics(self, Part.SIMULATION)
         self.create_service(AddEffect, "add_effect", self._add_effect)
         self.create_service(RemoveEffect, "remove_effect", self._remove_effect)
         self.create_service(LoadModel, "load_model", self._load_model)
@@ -133,13 +133,10 @@ class SimulatorNode(ManagedNode):
 
     def _report(self) -> None:
         pace, counts = self._pace.report(), self._counts
-        name, stamp = self.get_fully_qualified_name().lstrip("/"), self.get_clock().now().to_msg()
         if not self.active:
             state = "inactive" if self._live is not None else "unconfigured"
-            words = f"{state}: nothing is simulated"
-            self._diagnostics.publish(diagnostics(name, DiagnosticStatus.OK, words, {}, stamp))
+            self._diagnostics.tell(Level.OK, f"{state}: nothing is simulated", {})
             return
-        level = DiagnosticStatus.WARN if pace.behind else DiagnosticStatus.OK
         values = {
             "model": self.live.model.name,
             "effects": ", ".join(effect.id for effect in self.live.model.effects) or "none",
@@ -151,9 +148,8 @@ class SimulatorNode(ManagedNode):
             "gaps bridged": counts["gap"],
             "runs started": counts["start"] + counts["restart"],
         }
-        if counts["held"] or counts["gap"]:
-            level = DiagnosticStatus.WARN
-        self._diagnostics.publish(diagnostics(name, level, str(pace), values, stamp))
+        well = not (pace.behind or counts["held"] or counts["gap"])
+        self._diagnostics.tell(Level.OK if well else Level.WARN, str(pace), values)
         self._counts = Counter({name: counts[name] for name in ("start", "restart")})
 
     def _use(self, model: Model) -> None:

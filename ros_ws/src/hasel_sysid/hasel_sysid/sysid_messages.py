@@ -1,10 +1,7 @@
 """Results of the identification as ROS messages."""
 
 import math
-from collections.abc import Mapping
 
-from builtin_interfaces.msg import Time
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from hasel_interfaces.msg import Diagnosis, Fit, NamedParameter, RankedEffect, RunningError
 from hasel_sim.model import Model
 from hasel_sim.simulator_messages import to_time
@@ -88,10 +85,3 @@ def _ranked(finding: Finding) -> RankedEffect:
         verdict=str(finding),
         parameters=parameters,
     )
-
-
-def diagnostics(node: str, sentence: str, values: Mapping[str, object], stamp: Time) -> DiagnosticArray:
-    """A node's entry in `/diagnostics`."""
-    status = DiagnosticStatus(level=DiagnosticStatus.OK, name=f"{node}: identification", message=sentence)
-    status.values = [KeyValue(key=key, value=str(value)) for key, value in values.items()]
-    return DiagnosticArray(header=Header(stamp=stamp), status=[status])

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from diagnostic_msgs.msg import DiagnosticArray
 from hasel_common.declared_parameters import declare, words
+from hasel_common.diagnostics import Diagnostics, Level, Part
 from hasel_common.endpoints import STEADY, Role, frame_of, publisher, subscription
 from hasel_common.managed_node import ManagedNode, start_and_spin
-from hasel_common.topics import DIAGNOSIS, DIAGNOSTICS, ERROR, FIT, MEASURED, NAMESPACE, SIMULATED, STATE
+from hasel_common.topics import DIAGNOSIS, ERROR, FIT, MEASURED, NAMESPACE, SIMULATED, STATE
 from hasel_interfaces.msg import BendingAngle, Diagnosis, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import RecordingError
@@ -30,7 +30,7 @@ from hasel_sysid.live.fitting import chosen_recordings, diagnose_recordings, fit
 from hasel_sysid.live.heard import Heard
 from hasel_sysid.live.pairing import Pair, Pairing
 from hasel_sysid.live.running_error import RunningErrors
-from hasel_sysid.sysid_messages import diagnosis_message, diagnostics, error_message, fit_message
+from hasel_sysid.sysid_messages import diagnosis_message, error_message, fit_message
 from hasel_sysid.sysid_parameters import PARAMETERS
 
 
@@ -54,7 +54,7 @@ class SysidNode(ManagedNode):
         self._error = publisher(self, RunningError, ERROR, Role.EVERY_SAMPLE)
         self._fit = publisher(self, Fit, FIT, Role.RESULTS)
         self._diagnosis = publisher(self, Diagnosis, DIAGNOSIS, Role.RESULTS)
-        self._diagnostics = publisher(self, DiagnosticArray, DIAGNOSTICS, Role.DIAGNOSTICS)
+        self._diagnostics = Diagnostics(self, Part.IDENTIFICATION)
         hearing, working = MutuallyExclusiveCallbackGroup(), ReentrantCallbackGroup()
         self._inputs = {
             topic: subscription(self, kind, topic, handler, Role.EVERY_SAMPLE, callback_group=hearing)
@@ -124,8 +124,7 @@ class SysidNode(ManagedNode):
             for heard in self._inputs.values()
         }
         values["pairs"] = self._pairs
-        name, stamp = self.get_fully_qualified_name().lstrip("/"), self.get_clock().now().to_msg()
-        self._diagnostics.publish(diagnostics(name, sentence, values, stamp))
+        self._diagnostics.tell(Level.OK, sentence, values)
 
     def _progress(self, sentence: str, share: float) -> None:
         self._doing = f"{share:.0%}: {sentence}"

@@ -3,11 +3,9 @@
 from typing import Any
 
 from builtin_interfaces.msg import Time
-from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from hasel_interfaces.msg import BendingAngle
 from sensor_msgs.msg import CompressedImage
 
-from hasel_tracker.live.health_report import HealthReport
 from hasel_tracker.live.tracking_statistics import Health
 from hasel_tracker.tracking.bending_tracker import TrackedFrame
 from hasel_tracker.tracking.marker_set import marker_names
@@ -42,33 +40,13 @@ def compressed_image(jpeg: bytes, stamp_ns: int, frame_id: str) -> CompressedIma
     return message
 
 
-def diagnostic_status(
-    node_name: str, report: HealthReport, health: Health, details: dict[str, Any]
-) -> DiagnosticStatus:
-    """The tracker's health for /diagnostics."""
+def health_values(health: Health) -> dict[str, Any]:
+    """What `/diagnostics` says of the frames since it was last asked."""
     names = marker_names(len(health.quality)) if health.frames else ()
-    values = {
+    return {
         "frame rate [1/s]": f"{health.frame_rate_hz:.2f}",
         "mean latency [ms]": f"{1e3 * health.mean_latency_s:.2f}",
         "worst latency [ms]": f"{1e3 * health.worst_latency_s:.2f}",
         "frames without angle": f"{health.lost_share:.3f}",
         **{f"quality of {name}": f"{value:.2f}" for name, value in zip(names, health.quality, strict=True)},
-        **details,
     }
-    return DiagnosticStatus(
-        level=bytes([report.level]),
-        name=f"{node_name}: tracking",
-        message=report.message,
-        hardware_id="camera",
-        values=[KeyValue(key=key, value=str(value)) for key, value in values.items()],
-    )
-
-
-def resting_status(node_name: str) -> DiagnosticStatus:
-    """That of a node that is not active."""
-    return DiagnosticStatus(
-        level=DiagnosticStatus.OK,
-        name=f"{node_name}: tracking",
-        message="Not active: nothing is tracked.",
-        hardware_id="camera",
-    )

@@ -10,12 +10,12 @@ from typing import Any
 import cv2
 import numpy as np
 import rclpy
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from hasel_common.declared_parameters import declare
+from hasel_common.diagnostics import Diagnostics, Level, Part
 from hasel_common.endpoints import STEADY, Role, frame_of, publisher
 from hasel_common.managed_node import ManagedNode, start_and_spin
 from hasel_common.parent import end_with_parent
-from hasel_common.topics import DIAGNOSTICS, MEASURED, NAMESPACE
+from hasel_common.topics import MEASURED, NAMESPACE
 from hasel_interfaces.msg import BendingAngle
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.executors import ExternalShutdownException
@@ -36,8 +36,7 @@ from hasel_tracker.live.video_recorder import VideoRecorder
 from hasel_tracker.node_messages import (
     angle_message,
     compressed_image,
-    diagnostic_status,
-    resting_status,
+    health_values,
 )
 from hasel_tracker.node_parameters import PARAMETERS, SEARCH_NAMES
 from hasel_tracker.sources.camera_source import CameraFormat, CameraSource
@@ -63,7 +62,7 @@ class TrackerNode(ManagedNode):
         declare(self, PARAMETERS)
         self._angles = publisher(self, BendingAngle, MEASURED, Role.SAMPLES)
         self._previews = publisher(self, CompressedImage, "~/preview/compressed", Role.PICTURES)
-        self._diagnostics = publisher(self, DiagnosticArray, DIAGNOSTICS, Role.DIAGNOSTICS)
+        self._diagnostics = Diagnostics(self, Part.TRACKING)
         self._next_preview_s = 0.0
         self._reported_drops = 0
         self._topic: ImageTopic | None = None
@@ -165,15 +164,12 @@ class TrackerNode(ManagedNode):
             self._previews.publish(compressed_image(jpeg.tobytes(), frame.stamp_ns, frame_id))
 
     def _report(self) -> None:
-        name = self.get_fully_qualified_name().lstrip("/")
-        message = DiagnosticArray()
-        message.header.stamp = self.get_clock().now().to_msg()
-        message.status.append(
-            self._health(name, self._live) if self.active and self._live is not None else resting_status(name)
-        )
-        self._diagnostics.publish(message)
+        if self.active and self._live is not None:
+            self._tell_health(self._live)
+        else:
+            self._diagnostics.tell(Level.OK, "Not active: nothing is tracked.", {}, "camera")
 
-    def _health(self, name: str, live: LiveTracker) -> DiagnosticStatus:
+    def _tell_health(self, live: LiveTracker) -> None:
         health = live.statistics.take()
         dropped = live.queue.dropped + (0 if self._topic is None else self._topic.lost)
         camera = None if self._camera is None else self._camera.camera
@@ -194,7 +190,7 @@ class TrackerNode(ManagedNode):
             details["camera"] = camera.given
         if live.recording is not None:
             details["recording"] = live.recording.path
-        return diagnostic_status(name, report, health, details)
+        self._diagnostics.tell(Level[report.level], report.message, health_values(health) | details, "camera")
 
     def _record_video(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         try:

@@ -4,10 +4,10 @@ import threading
 import time
 from collections.abc import Callable, Collection
 
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from hasel_common.declared_parameters import declare
-from hasel_common.endpoints import STEADY, Role, publisher
-from hasel_common.topics import DIAGNOSTICS, NAMESPACE
+from hasel_common.diagnostics import Diagnostics, Level, Part
+from hasel_common.endpoints import STEADY
+from hasel_common.topics import NAMESPACE
 from hasel_sim.node_process import run_node
 from lifecycle_msgs.msg import State, Transition
 from lifecycle_msgs.srv import ChangeState, GetState
@@ -58,7 +58,7 @@ class LifecycleManager(Node):
         self.create_service(
             Trigger, "lifecycle_manager/shutdown", self._serve(self._bring_up.shutdown, "Going down.")
         )
-        self._diagnostics = publisher(self, DiagnosticArray, DIAGNOSTICS, Role.DIAGNOSTICS)
+        self._diagnostics = Diagnostics(self, Part.NODES)
         self.create_timer(1.0, self._tell, clock=STEADY)
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._work, name="lifecycles", daemon=True)
@@ -144,15 +144,8 @@ class LifecycleManager(Node):
     def _tell(self) -> None:
         up = self._bring_up.up
         well = all(state is Lifecycle.ACTIVE for state in self._states.values()) or not up
-        entry = DiagnosticStatus(
-            name=f"{self.get_fully_qualified_name().lstrip('/')}: nodes",
-            level=DiagnosticStatus.OK if well else DiagnosticStatus.WARN,
-            message=self._said,
-            values=[KeyValue(key=name, value=state.value) for name, state in self._states.items()],
-        )
-        array = DiagnosticArray(status=[entry])
-        array.header.stamp = self.get_clock().now().to_msg()
-        self._diagnostics.publish(array)
+        states = {name: state.value for name, state in self._states.items()}
+        self._diagnostics.tell(Level.OK if well else Level.WARN, self._said, states)
 
 
 def _common(states: dict[str, Lifecycle]) -> str:

@@ -5,15 +5,15 @@ from dataclasses import dataclass
 from hasel_tracker.live.tracking_statistics import Health
 from hasel_tracker.sources.camera_source import RATE_SHARE
 
-OK, WARN, ERROR = 0, 1, 2  # diagnostic_msgs/DiagnosticStatus
+OK, WARN, ERROR = "OK", "WARN", "ERROR"  # as hasel_common.diagnostics.Level calls them
 POSSIBLE_LATENCY_S = 10.0
 
 
 @dataclass(frozen=True)
 class HealthReport:
-    """Level as in diagnostic_msgs/DiagnosticStatus, and what to know."""
+    """Level by its name, and what to know."""
 
-    level: int
+    level: str
     message: str
 
 
