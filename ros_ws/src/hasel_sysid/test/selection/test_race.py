@@ -1,6 +1,8 @@
 """Racing of single candidates on the low-fidelity model."""
 
+import numpy as np
 import pytest
+from hasel_sim.model import load_model
 from hasel_sysid.candidates import effects_of
 from hasel_sysid.estimation import fit_baseline
 from hasel_sysid.noise.model import NoiseModel
@@ -8,6 +10,7 @@ from hasel_sysid.problem import LowFidelityProblem
 from hasel_sysid.selection.likelihood import Likelihood
 from hasel_sysid.selection.race import at_other_sizes, at_typical_size, race, screen_typical
 from hasel_sysid.testing.made_up_world import NOISE, MadeUpWorld
+from hasel_sysid.testing.simulated_runs import simulated_runs
 
 SOME = ("payload", "pre_bend", "linear_drag", "viscoelastic_creep", "tether")
 
@@ -76,3 +79,19 @@ def test_beside_no_time_the_first_candidates_are_screened_all_the_same():
     tried = {one.start.candidate.name for one in screened}
     assert len(tried) == 8
     assert {c.name for c in untried} == {c.name for c in every} - tried
+
+
+def test_a_strong_lag_is_found_though_first_order_promises_little_of_it():
+    """Beside a baseline whose amplitudes make up for it, a creep of the drive looks likelier at first."""
+    model = load_model("swimmer").with_levels([3500.0, 5500.0]).with_values({"slope": 0.15})
+    lag, creep = effects_of(model, ["charging_lag", "drive_creep"])
+    charge, discharge = lag.names
+    truth = lag.added_to(model).with_values({charge: 0.25, discharge: 0.25})
+    problem = simulated_runs(truth, [(3500.0, 1.0), (5500.0, 1.0), (5500.0, 2.0)], np.arange(0, 2.0, 1 / 60))
+    low = LowFidelityProblem(problem, fit_baseline(problem, model).evaluation)
+    screened, _ = screen_typical(low, [lag, creep])
+    likely = at_typical_size(low, screened, low.known.sum_of_squares)
+    assert {name for name, _ in likely} == {creep.name}
+    name, found = at_other_sizes(low, screened, 2)[0]
+    assert name == lag.name
+    assert [found.values[charge], found.values[discharge]] == pytest.approx([0.25, 0.25], rel=0.01)
