@@ -127,10 +127,14 @@ def refined(problem: Problem, fit: FittedModel) -> FittedModel:
 
 
 def descend(
-    problem: Problem, models: Sequence[Model], first: Sequence[str] = (), tolerance: float = TOLERANCE
+    problem: Problem,
+    models: Sequence[Model],
+    first: Sequence[str] = (),
+    tolerance: float = TOLERANCE,
+    most: int = 1,
 ) -> list[Evaluation]:
-    """Least squares from each of these models that can be simulated, side by side, as long as it can still become the
-    best; what leaves least comes first.
+    """Least squares from each of these models that can be simulated, side by side, as long as it can still come among
+    the best so many of different parameters; what leaves least comes first.
 
     first: parameters that follow alone in the first step, the others as they begin (variable projection: Golub and
     Pereyra 1973); an onset of 0 moves last of all: beside sizes still far off it looks like half of an effect.
@@ -139,8 +143,8 @@ def descend(
     begun = [one for one in problem.evaluate_each(models, names) if not isinstance(one, SimulationError)]
     searches = [GaussNewton(one, tolerance, first) for one in begun]
     for _ in range(MOST_STEPS):
-        least = min((search.at.sum_of_squares for search in searches), default=0.0)
-        going = [s for s in searches if not s.converged and s.may_reach(least)]
+        to_beat = _least(searches, most)
+        going = [s for s in searches if not s.converged and s.may_reach(to_beat)]
         if not going:
             break
         seen = problem.evaluate_each([s.proposal() for s in going], [s.names for s in going])
@@ -152,6 +156,14 @@ def descend(
         if not isinstance(whole, SimulationError):
             found[0] = minimise(problem, whole, tolerance, MOST_STEPS)[0]
     return found
+
+
+def _least(searches: Sequence[GaussNewton], most: int) -> float:
+    """What the last of the best so many of different parameters leaves."""
+    least: dict[tuple[str, ...], float] = {}
+    for search in searches:
+        least[search.names] = min(search.at.sum_of_squares, least.get(search.names, np.inf))
+    return max(sorted(least.values())[:most], default=0.0)
 
 
 def _without_onsets(model: Model) -> tuple[str, ...]:

@@ -49,8 +49,8 @@ def bounded_change(
 
 
 class GaussNewton:
-    """at: the best model so far, evaluated with its derivatives; predicted: sum of squares expected after a step of all
-    parameters; converged: whether a step that nothing held back gave, or would give, next to nothing.
+    """at: the best model so far, evaluated with its derivatives; predicted: sum of squares, to first order, after a
+    step that only the bounds hold back; converged: whether such a step gave, or would give, next to nothing.
     """
 
     def __init__(self, at: Evaluation, tolerance: float, first: Sequence[str] = ()) -> None:
@@ -70,17 +70,11 @@ class GaussNewton:
     def _propose(self, only: Sequence[str] = ()) -> None:
         here = self.at
         value, lower, upper = values_and_bounds(here.model, here.names)
-        reach = self._radius * self._scale
+        reach = self._radius * self._scale * np.array([not only or name in only for name in here.names])
         down, up = np.maximum(lower - value, -reach), np.minimum(upper - value, reach)
-        self._change, self.predicted = bounded_change(here.residual, here.jacobian, down, up)
-        self._expected = self.predicted
-        if only:
-            moves = np.array([name in only for name in here.names])
-            self._change, self._expected = bounded_change(
-                here.residual, here.jacobian, down * moves, up * moves
-            )
-        _, anywhere = bounded_change(here.residual, here.jacobian, lower - value, upper - value)
-        small = here.sum_of_squares - anywhere <= self.tolerance * here.sum_of_squares
+        self._change, self._expected = bounded_change(here.residual, here.jacobian, down, up)
+        _, self.predicted = bounded_change(here.residual, here.jacobian, lower - value, upper - value)
+        small = here.sum_of_squares - self.predicted <= self.tolerance * here.sum_of_squares
         self.converged = bool(small or self._radius < _SMALLEST_RADIUS)
 
     def may_reach(self, squares: float) -> bool:

@@ -71,11 +71,11 @@ def at_other_sizes(problem: LowFidelityProblem, typical: Sequence[Screened], mos
     for batch in problem.time_limit.in_batches(others):
         screened += screen(few, few.known, batch)
     entries = [_entry(few, one) for one in _some_of_each(sorted(screened, key=lambda one: one.predicted))]
+    if problem.time_limit.is_over():
+        return []
     names = {frozenset(model.free): name for name, model in entries}
     ended: dict[str, Model] = {}
-    for one in (
-        [] if problem.time_limit.is_over() else descend(few, [model for _, model in entries], about.names)
-    ):
+    for one in descend(few, [model for _, model in entries], about.names, most=most):
         ended.setdefault(names[frozenset(one.model.free)], one.model)
     return list(ended.items())[:most]
 

@@ -5,7 +5,7 @@ import pytest
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model, load_model, save_model
 from hasel_sysid.estimation import FittedModel, fit_baseline
-from hasel_sysid.estimation.fit import exact, fit, fitted_model, mapped
+from hasel_sysid.estimation.fit import descend, exact, fit, fitted_model, mapped
 from hasel_sysid.estimation.least_squares import minimise
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.problem import Evaluation, LowFidelityProblem, low_fidelity
@@ -55,6 +55,18 @@ def test_manifold_mapping_ends_at_the_exact_optimum(problem):
     errors = fitted_model(best).model.parameters
     for name in (MASS, DAMPING):
         assert abs(found.model.values[name] - best.model.values[name]) < 0.1 * errors[name].standard_error
+
+
+def test_each_of_the_best_so_many_is_followed_to_its_end(problem):
+    """The one that can no longer become the best is left where it is, unless the second best is asked for, too."""
+    right = body(0.3, 0.02).with_held(MASS)
+    wrong = body(0.6, 0.1).with_held(DAMPING)
+    best, second = descend(problem, [wrong, right])
+    assert (best.names, second.names) == ((DAMPING,), (MASS,))
+    ended, converged = minimise(problem, problem.evaluate(wrong, (MASS,)), 1e-3, 10)
+    assert converged and second.sum_of_squares > 1.02 * ended.sum_of_squares
+    _, followed = descend(problem, [wrong, right], most=2)
+    assert followed.sum_of_squares == pytest.approx(ended.sum_of_squares, rel=1e-3)
 
 
 class LowFidelity(FormulaProblem):
