@@ -40,9 +40,8 @@ def test_hidden_effect_is_named_and_added(pool, effect, size):
     assert found.removed_unseen > 0.8
 
 
-@pytest.mark.parametrize(
-    "effect", ["one_sided_dead_zone", pytest.param("stirred_bath", marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("effect", ["one_sided_dead_zone", "stirred_bath"])
 def test_what_no_catalogue_lists_is_not_explained_away(pool, effect):
     """A muscle that starts late resembles a weak one at one voltage only; a push from outside, nothing listed."""
     found = outcome(pool, "unlisted", (effect,), 1.0)

@@ -47,6 +47,7 @@ def test_topics_and_services_are_listed():
     """The tables name exactly what the node publishes and offers."""
     constants = {"MEASURED": topics.MEASURED, "DIAGNOSTICS": topics.DIAGNOSTICS}
     published = re.findall(r"publisher\(self, \w+, (\S+), Role", NODE)
+    published += ["DIAGNOSTICS"] * ("Diagnostics(self, " in NODE)
     offered = re.findall(r'create_service\(\w+, "([^"]+)"', NODE)
     assert {row[0].strip("`") for row in rows("topic")} == {
         constants.get(name, name.strip('"')) for name in published
