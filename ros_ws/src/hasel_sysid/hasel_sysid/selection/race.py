@@ -1,7 +1,7 @@
 """Every candidate alone, fitted by the low-fidelity model until it converged or can no longer win.
 
 Racing: Maron and Moore, Advances in Neural Information Processing Systems 6 (1994) 59. Typical sizes take part first,
-about which first order tells what is worth it. Where none of them ends at the noise, all other sizes do.
+of which first order foretells which may win. Where something is still missing, all other sizes take part.
 """
 
 from collections.abc import Sequence
