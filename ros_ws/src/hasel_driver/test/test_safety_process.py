@@ -77,7 +77,7 @@ def test_a_command_that_was_held_up_on_its_way_is_too_old(open_link, virtual_rig
     link = open_link(heartbeat_timeout=0.45)
     link.ask("arm")
     assert link.wait_for(lambda now: now.status.mode is Mode.ARMED, 2.0), link.now.status
-    link.tell("command", (0.0, 0.0), time.monotonic())
+    link.ask("command", (0.0, 0.0), time.monotonic())  # taken before the process stands still
     rejected = link.now.rejected_commands
     os.kill(link.process_id, signal.SIGSTOP)
     link.tell("command", DRIVE_V, time.monotonic())

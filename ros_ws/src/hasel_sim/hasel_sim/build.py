@@ -86,18 +86,13 @@ class Builder:
         """The mechanical system at the model's values."""
         gravity = np.array(self.model.description.material.gravity_m_per_s2)
         acting = {
-            kind: [e for e in self._of(kind) if not self._is_null(e)]
+            kind: [e for e in self._of(kind) if not e.is_null_at(self._values[e.id])]
             for kind in (ForceEffect, MaterialEffect)
         }
         forces = [law for e in acting[ForceEffect] for law in self._force_laws(e, self._values[e.id])]
         stresses = [self._stress_law(e, self._values[e.id]) for e in acting[MaterialEffect] if e.regions]
         solid, muscles = self._solid(self._values), len(self._described.muscles)
         return System(self.mesh, self.nodes, solid, self.mass, gravity, forces, stresses, muscles)
-
-    def _is_null(self, effect: Effect) -> bool:
-        """Whether an effect has no size, so that nothing it does needs to be called."""
-        own = vars(self._values[effect.id])
-        return all(own[p.name] == p.null for p in effect.parameters if not p.scan)
 
     def _of(self, kind: type[Effect]) -> list:
         """Effects of one kind, in an order that the model file has no part in."""

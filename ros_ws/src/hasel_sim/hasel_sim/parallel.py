@@ -21,7 +21,7 @@ from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 from hasel_sim.run import Run, Simulation
 from hasel_sim.simd import LANES
-from hasel_sim.simulate import simulate_many
+from hasel_sim.simulate import kind_of, simulate_many
 from hasel_sim.turns import Turns
 
 Result = TypeVar("Result")
@@ -112,19 +112,34 @@ def submit_all(
     pool: Executor, model: Model, runs: Sequence[Run], slopes_by: Sequence[str] = ()
 ) -> list["Future[Simulation]"]:
     """Start the simulation of every run, several side by side in each process; the futures are in the runs' order."""
-    futures: list[Future[Simulation]] = [Future() for _ in runs]
-    for numbers in _batches(runs, getattr(pool, "workers", 1)):
-        cases = [(model, runs[number]) for number in numbers]
-        batch = pool.submit(simulate_many, cases, tuple(slopes_by))
-        batch.add_done_callback(partial(_hand_on, futures=[futures[n] for n in numbers]))
+    return submit_each(pool, [model], runs, [slopes_by])[0]
+
+
+def submit_each(
+    pool: Executor, models: Sequence[Model], runs: Sequence[Run], slopes_by: Sequence[Sequence[str]]
+) -> list[list["Future[Simulation]"]]:
+    """Start the simulation of every run with every model, [models][runs]; slopes_by: names of each model's parameters.
+
+    Runs of one model, and models of one kind with the same names, fill the lanes of a process together.
+    """
+    futures: list[list[Future[Simulation]]] = [[Future() for _ in runs] for _ in models]
+    alike: dict[tuple, list[int]] = {}
+    for number, (model, names) in enumerate(zip(models, slopes_by, strict=True)):
+        alike.setdefault((kind_of(model), tuple(names)), []).append(number)
+    share = -(-len(models) * len(runs) // getattr(pool, "workers", 1))
+    for (_, names), numbers in alike.items():
+        for batch in _batches(numbers, runs, min(LANES[-1], max(1, share))):
+            asked = [futures[model][run] for model, run in batch]
+            done = pool.submit(simulate_many, [(models[model], runs[run]) for model, run in batch], names)
+            done.add_done_callback(partial(_hand_on, futures=asked))
     return futures
 
 
-def _batches(runs: Sequence[Run], workers: int) -> list[list[int]]:
-    """Numbers of the runs to simulate side by side: of like length, the longest first, and work for every process."""
-    order = sorted(range(len(runs)), key=lambda index: -len(runs[index].time))
-    size = min(LANES[-1], max(1, -(-len(runs) // workers)))
-    return [order[first : first + size] for first in range(0, len(order), size)]
+def _batches(models: Sequence[int], runs: Sequence[Run], size: int) -> list[list[tuple[int, int]]]:
+    """Numbers of the models and runs to simulate side by side: of like length, the longest first."""
+    cases = [(model, run) for model in models for run in range(len(runs))]
+    cases.sort(key=lambda case: -len(runs[case[1]].time))
+    return [cases[first : first + size] for first in range(0, len(cases), size)]
 
 
 def _hand_on(batch: Future, futures: Sequence[Future]) -> None:

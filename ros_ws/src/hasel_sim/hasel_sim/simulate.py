@@ -52,7 +52,7 @@ def simulate_many(
             results[index] = error
             continue
         of_model.setdefault(id(model), prepared)
-        batches.setdefault(_kind(model), []).append((index, prepared))
+        batches.setdefault(kind_of(model), []).append((index, prepared))
     for batch in batches.values():
         batch.sort(key=lambda case: -len(case[1].plan.coefficients))
         for first in range(0, len(batch), LANES[-1]):
@@ -62,9 +62,12 @@ def simulate_many(
     return results
 
 
-def _kind(model: Model) -> tuple:
-    """What models must have in common to be simulated side by side; their parameters' values may differ."""
-    effects = tuple(sorted(effect.source or effect.id for effect in model.effects))
+def kind_of(model: Model) -> tuple:
+    """What models must have in common to be simulated side by side: mesh, effects, and which of these have a size; the
+    parameters' values may differ.
+    """
+    values = model.effect_values()
+    effects = tuple(sorted((e.source or e.id, e.is_null_at(values[e.id])) for e in model.effects))
     shape = tuple(shape_constants(model.described).values())
     return model.description.model_dump_json(exclude={"name"}), shape, effects
 

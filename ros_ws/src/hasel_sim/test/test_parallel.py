@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 from hasel_sim.errors import ModelError, SimulationError
-from hasel_sim.parallel import SerialExecutor, executor, simulate_all
+from hasel_sim.parallel import SerialExecutor, executor, simulate_all, submit_each
 from hasel_sim.simulate import simulate
 
 
@@ -19,6 +19,24 @@ def test_processes_give_what_one_process_gives(swimmer, boxes):
         expected = simulate(swimmer, run, ["slope"])
         assert simulation.sin_theta == pytest.approx(expected.sin_theta, abs=1e-9)
         assert simulation.slopes == pytest.approx(expected.slopes, abs=1e-6)
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_models_side_by_side_give_what_each_gives_alone(jobs, swimmer, boxes):
+    """Two values of one model, and another with other derivatives, of which one cannot be simulated."""
+    runs, drag = [boxes(duration=d) for d in (0.1, 0.2)], swimmer.with_effects("linear_drag")
+    models = [swimmer, swimmer.with_values({"slope": 20.0}), drag, swimmer]
+    asked = [["slope"], ["slope"], ["linear_drag.rate"], ["nothing"]]
+    with executor(jobs) as pool:
+        futures = submit_each(pool, models, runs, asked)
+        for model, names, of_runs in zip(models[:3], asked[:3], futures[:3], strict=True):
+            for run, future in zip(runs, of_runs, strict=True):
+                alone = simulate(model, run, names)
+                assert future.result().sin_theta == pytest.approx(alone.sin_theta, abs=1e-9)
+                assert future.result().slopes == pytest.approx(alone.slopes, abs=1e-6)
+        for future in futures[3]:
+            with pytest.raises(ModelError, match="not a parameter"):
+                future.result()
 
 
 def test_one_job_runs_in_this_process():

@@ -97,6 +97,18 @@ def test_values_of_an_effect_side_by_side_give_what_they_give_alone(identity, sw
         same(found, simulate(model, run, names))
 
 
+def test_an_effect_of_no_size_beside_one_of_some_gives_what_it_gives_alone(swimmer, boxes):
+    """Two laws of stress in either model, of each of which the other has none."""
+    pair, run = ("strain_softening", "spine_stiffening"), boxes(duration=0.1)
+    coarse = swimmer.with_numerics(mesh_density=0.5).with_effects(*pair)
+    models = []
+    for effect in (e for e in coarse.effects if e.id in pair):
+        models.append(coarse.with_values({f"{effect.id}.{p.name}": p.typical for p in effect.parameters}))
+    models.append(coarse)
+    for model, found in zip(models, simulate_many([(model, run) for model in models]), strict=True):
+        same(found, simulate(model, run))
+
+
 def test_an_effect_that_looks_at_its_drive_sees_that_of_its_own_lane(swimmer, runs):
     """Time, voltage and contraction."""
     model, names = with_own(swimmer, Gusts(), Tiring()), ["gusts.strength", "tiring.modulus", "slope"]

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from hasel_sim.errors import ModelError, SimulationError
 from hasel_sim.model import Model
-from hasel_sim.parallel import submit_all
+from hasel_sim.parallel import submit_each
 from hasel_sim.run import Simulation
 
 from hasel_sysid.errors import SysidError
@@ -178,10 +178,7 @@ class Problem:
         self, models: Sequence[Model], names: Sequence[Sequence[str]]
     ) -> list[Evaluation | SimulationError]:
         """Several models at once, so that all workers stay busy; the error of one that cannot be simulated."""
-        pending = [
-            submit_all(self.pool, model, [e.run for e in self.experiments], by)
-            for model, by in zip(models, names, strict=True)
-        ]
+        pending = submit_each(self.pool, models, [e.run for e in self.experiments], names)
         self.evaluations += len(models)
         results: list[Evaluation | SimulationError] = []
         for model, by, futures in zip(models, names, pending, strict=True):

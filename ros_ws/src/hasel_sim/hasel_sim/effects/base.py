@@ -100,6 +100,10 @@ class Effect:
         """Parameter values at which the effect does nothing."""
         return {parameter.name: parameter.null for parameter in self.parameters}
 
+    def is_null_at(self, values: SimpleNamespace) -> bool:
+        """Whether it has no size at these values of its parameters, so that nothing it does needs to be called."""
+        return all(getattr(values, p.name) == p.null for p in self.parameters if not p.scan)
+
     def typical(self) -> dict[str, float]:
         """Parameter values at which one would notice the effect."""
         return {parameter.name: parameter.typical for parameter in self.parameters}

@@ -22,10 +22,13 @@ from hasel_sysid.estimation.growing_horizon import horizons, in_phase, length
 from hasel_sysid.estimation.least_squares import (
     MOST_STEPS,
     GaussNewton,
+    MayWin,
     at_bound,
     bounded_change,
+    may_be_least,
     minimise,
     scales,
+    step_together,
     values_and_bounds,
 )
 from hasel_sysid.estimation.starts import MOST_FOLLOWED, screen, starts
@@ -131,10 +134,10 @@ def descend(
     models: Sequence[Model],
     first: Sequence[str] = (),
     tolerance: float = TOLERANCE,
-    most: int = 1,
+    may_win: MayWin = may_be_least,
 ) -> list[Evaluation]:
-    """Least squares from each of these models that can be simulated, side by side, as long as it can still come among
-    the best so many of different parameters; what leaves least comes first.
+    """Least squares from each of these models that can be simulated, side by side, as long as it may win; what leaves
+    least comes first.
 
     first: parameters that follow alone in the first step, the others as they begin (variable projection: Golub and
     Pereyra 1973); an onset of 0 moves last of all: beside sizes still far off it looks like half of an effect.
@@ -142,28 +145,13 @@ def descend(
     names = [_without_onsets(model) for model in models]
     begun = [one for one in problem.evaluate_each(models, names) if not isinstance(one, SimulationError)]
     searches = [GaussNewton(one, tolerance, first) for one in begun]
-    for _ in range(MOST_STEPS):
-        to_beat = _least(searches, most)
-        going = [s for s in searches if not s.converged and s.may_reach(to_beat)]
-        if not going:
-            break
-        seen = problem.evaluate_each([s.proposal() for s in going], [s.names for s in going])
-        for search, new in zip(going, seen, strict=True):
-            search.take(new)
+    step_together(problem, searches, may_win)
     found = sorted((search.at for search in searches), key=lambda one: one.sum_of_squares)
     if found and found[0].names != found[0].model.free:
         whole = problem.evaluate_each([found[0].model], [found[0].model.free])[0]
         if not isinstance(whole, SimulationError):
             found[0] = minimise(problem, whole, tolerance, MOST_STEPS)[0]
     return found
-
-
-def _least(searches: Sequence[GaussNewton], most: int) -> float:
-    """What the last of the best so many of different parameters leaves."""
-    least: dict[tuple[str, ...], float] = {}
-    for search in searches:
-        least[search.names] = min(search.at.sum_of_squares, least.get(search.names, np.inf))
-    return max(sorted(least.values())[:most], default=0.0)
 
 
 def _without_onsets(model: Model) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 The region is a box in units of the parameters' scales, so that a step is a linear least-squares problem within bounds.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from hasel_sim.errors import SimulationError
@@ -104,6 +104,43 @@ class GaussNewton:
         self._propose()
         # a step that gave what it promised, and that was next to nothing, is the last
         self.converged |= bool(0 < gain <= self.tolerance * before and gain >= _POOR * promised)
+
+
+MayWin = Callable[[Sequence[GaussNewton]], list[bool]]
+"""Which of all searches are worth another step."""
+
+
+def may_be_least(searches: Sequence[GaussNewton]) -> list[bool]:
+    """Those that would leave less than any does now, were the next step worth twice what first order promises."""
+    least = min((s.at.sum_of_squares for s in searches), default=0.0)
+    return [s.may_reach(least) for s in searches]
+
+
+def best_of_each(most: int) -> MayWin:
+    """Of the searches for the same parameters the one that promises most, as long as it may come among the best so many
+    of different ones.
+    """
+
+    def may_win(searches: Sequence[GaussNewton]) -> list[bool]:
+        best: dict[tuple[str, ...], GaussNewton] = {}
+        for search in sorted(searches, key=lambda one: one.predicted):
+            best.setdefault(search.names, search)
+        to_beat = max(sorted(one.at.sum_of_squares for one in best.values())[:most], default=0.0)
+        return [one is best[one.names] and one.may_reach(to_beat) for one in searches]
+
+    return may_win
+
+
+def step_together(problem: Problem, searches: Sequence[GaussNewton], may_win: MayWin) -> None:
+    """Steps of all searches side by side, each until it has converged or, by `may_win`, is not worth another."""
+    for _ in range(MOST_STEPS):
+        able = may_win(searches)
+        going = [s for s, worth in zip(searches, able, strict=True) if worth and not s.converged]
+        if not going:
+            return
+        seen = problem.evaluate_each([s.proposal() for s in going], [s.names for s in going])
+        for search, new in zip(going, seen, strict=True):
+            search.take(new)
 
 
 def minimise(problem: Problem, start: Evaluation, tolerance: float, most: int) -> tuple[Evaluation, bool]:

@@ -12,13 +12,15 @@ from hasel_sim.model import Model
 
 from hasel_sysid.candidates import Candidate
 from hasel_sysid.estimation.fit import TOLERANCE, descend
-from hasel_sysid.estimation.least_squares import MOST_STEPS, OPTIMISM, GaussNewton
+from hasel_sysid.estimation.least_squares import OPTIMISM, GaussNewton, best_of_each, step_together
 from hasel_sysid.estimation.starts import MOST_FOLLOWED, Screened, screen, starts
 from hasel_sysid.problem import Evaluation, LowFidelityProblem
 from hasel_sysid.selection.likelihood import Likelihood
 
-_RUNS = 4
-"""Runs on which other than typical sizes take part: those of which most is left."""
+_RUNS = 2
+"""Runs on which other than typical sizes take part, those of which most is left: the ends they lead to are fitted to
+all runs after.
+"""
 _OF_EACH = 3
 """Starts of one candidate at most that take part."""
 
@@ -36,6 +38,11 @@ def screen_typical(
         found += screen(problem, problem.known, [s for c in batch for s in starts(c) if s.typical])
         left = left[len(batch) :]
     return found, left
+
+
+def candidates_of(screened: Sequence[Screened]) -> dict[str, Candidate]:
+    """The candidates that were simulated, by name."""
+    return {one.start.candidate.name: one.start.candidate for one in screened}
 
 
 def at_typical_size(problem: LowFidelityProblem, typical: Sequence[Screened], to_beat: float) -> Entries:
@@ -63,9 +70,9 @@ def at_other_sizes(problem: LowFidelityProblem, typical: Sequence[Screened], mos
     strong = {one.start.candidate.name for one in typical if one.strength > 1.0}
     others = [
         start
-        for candidate in {one.start.candidate.name: one.start.candidate for one in typical}.values()
+        for name, candidate in candidates_of(typical).items()
         for start in starts(candidate)
-        if not start.typical and (abs(start.factor) >= 1.0 or candidate.name in strong)
+        if not start.typical and (abs(start.factor) >= 1.0 or name in strong)
     ]
     screened: list[Screened] = []
     for batch in problem.time_limit.in_batches(others):
@@ -75,7 +82,7 @@ def at_other_sizes(problem: LowFidelityProblem, typical: Sequence[Screened], mos
         return []
     names = {frozenset(model.free): name for name, model in entries}
     ended: dict[str, Model] = {}
-    for one in descend(few, [model for _, model in entries], about.names, most=most):
+    for one in descend(few, [model for _, model in entries], about.names, may_win=best_of_each(most)):
         ended.setdefault(names[frozenset(one.model.free)], one.model)
     return list(ended.items())[:most]
 
@@ -92,25 +99,22 @@ def race(
     about = problem.known
     base = likelihood.of(about.residual, about.jacobian).logarithm
     begun = problem.evaluate_each([model for _, model in entries], [model.free for _, model in entries])
-    searches = [
-        (name, GaussNewton(seen, TOLERANCE, _first(seen, about)))
+    searches = {
+        GaussNewton(seen, TOLERANCE, _first(seen, about)): name
         for (name, _), seen in zip(entries, begun, strict=True)
         if not isinstance(seen, SimulationError)
-    ]
-    for _ in range(MOST_STEPS):
-        gains = [likelihood.of(s.at.residual, s.at.jacobian).logarithm - base for _, s in searches]
-        needed = (max(gains, default=0.0) - reach) / OPTIMISM
-        going = [
-            s for gain, (_, s) in zip(gains, searches, strict=True) if gain >= needed and not s.converged
-        ]
-        if not going or problem.time_limit.is_over():
-            break
-        seen = problem.evaluate_each([s.proposal() for s in going], [s.names for s in going])
-        for search, new in zip(going, seen, strict=True):
-            search.take(new)
+    }
+
+    def may_win(every: Sequence[GaussNewton]) -> list[bool]:
+        if problem.time_limit.is_over():
+            return [False] * len(every)
+        gains = [likelihood.of(s.at.residual, s.at.jacobian).logarithm - base for s in every]
+        return [OPTIMISM * gain >= max(gains) - reach for gain in gains]
+
+    step_together(problem, list(searches), may_win)
     ended: dict[str, Evaluation] = {}
-    for name, search in sorted(searches, key=lambda one: one[1].at.sum_of_squares):
-        ended.setdefault(name, search.at)
+    for search in sorted(searches, key=lambda one: one.at.sum_of_squares):
+        ended.setdefault(searches[search], search.at)
     return ended
 
 

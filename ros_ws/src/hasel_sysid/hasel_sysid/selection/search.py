@@ -33,7 +33,14 @@ from hasel_sysid.selection.choose import Choice, ComparedModel, Judged, choose, 
 from hasel_sysid.selection.cross_validation import leave_one_run_out
 from hasel_sysid.selection.likelihood import NOTHING, FittedSet, Likelihood, Names, Whitened
 from hasel_sysid.selection.linearise import CandidateColumns, linearise, secant
-from hasel_sysid.selection.race import Entries, at_other_sizes, at_typical_size, race, screen_typical
+from hasel_sysid.selection.race import (
+    Entries,
+    at_other_sizes,
+    at_typical_size,
+    candidates_of,
+    race,
+    screen_typical,
+)
 
 _LINEARISED = 12
 """Candidates that are simulated anew beside a model, those of most score there; the others keep their secants."""
@@ -241,7 +248,7 @@ class Search:
         return FittedSet({name: candidate}, fitted_model(mapped(self.problem, self.alone[name])))
 
     def _candidates(self) -> dict[str, Candidate]:
-        return {one.start.candidate.name: one.start.candidate for one in (*self.screened, *self._constants)}
+        return candidates_of([*self.screened, *self._constants])
 
     def _something_is_missing(self) -> bool:
         """From the likeliest model so far."""

@@ -6,7 +6,7 @@ from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model, load_model, save_model
 from hasel_sysid.estimation import FittedModel, fit_baseline
 from hasel_sysid.estimation.fit import descend, exact, fit, fitted_model, mapped
-from hasel_sysid.estimation.least_squares import minimise
+from hasel_sysid.estimation.least_squares import GaussNewton, best_of_each, minimise
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.problem import Evaluation, LowFidelityProblem, low_fidelity
 from hasel_sysid.selection.likelihood import Likelihood
@@ -58,15 +58,20 @@ def test_manifold_mapping_ends_at_the_exact_optimum(problem):
 
 
 def test_each_of_the_best_so_many_is_followed_to_its_end(problem):
-    """The one that can no longer become the best is left where it is, unless the second best is asked for, too."""
+    """The one that can no longer become the best is left where it is, unless the second best is asked for, too; of two
+    starts for the same parameters, the one that promises more goes on.
+    """
     right = body(0.3, 0.02).with_held(MASS)
-    wrong = body(0.6, 0.1).with_held(DAMPING)
+    wrong, further = body(0.6, 0.1).with_held(DAMPING), body(0.9, 0.1).with_held(DAMPING)
     best, second = descend(problem, [wrong, right])
     assert (best.names, second.names) == ((DAMPING,), (MASS,))
     ended, converged = minimise(problem, problem.evaluate(wrong, (MASS,)), 1e-3, 10)
     assert converged and second.sum_of_squares > 1.02 * ended.sum_of_squares
-    _, followed = descend(problem, [wrong, right], most=2)
+    _, followed = descend(problem, [wrong, right], may_win=best_of_each(2))
     assert followed.sum_of_squares == pytest.approx(ended.sum_of_squares, rel=1e-3)
+    searches = [GaussNewton(problem.evaluate(one, one.free), 1e-3) for one in (further, wrong, right)]
+    going = [search.names for search, goes in zip(searches, best_of_each(2)(searches), strict=True) if goes]
+    assert sorted(going) == [(DAMPING,), (MASS,)]
 
 
 class LowFidelity(FormulaProblem):
