@@ -6,7 +6,7 @@ from typing import TypeVar
 
 from hasel_driver import protocol
 from hasel_driver.errors import PortError, ProtocolError
-from hasel_driver.faults import Fault, FaultCode
+from hasel_driver.faults import NEED_PROOF, Fault, FaultCode
 from hasel_driver.ground import Ground
 from hasel_driver.limits import Limits
 from hasel_driver.line_buffer import LineBuffer
@@ -34,7 +34,8 @@ class BoardHandshake:
         """The board's name, and the fault it had kept; afterwards it is disarmed, with `limits` applied.
 
         It is in STANDBY, or still in FAULT where it may not forget one: an open interlock, a charged output, a ground
-        contact that its test pulse did not find closed. With `prove`, that pulse is made whatever the fault.
+        contact that its test pulse did not find closed. With `prove`, that pulse is made whatever the fault; without it
+        a fault that only the pulse takes away stays: who opens a port may have his hands at the contacts.
 
         Raises:
             PortError: no board, another program on it, or a limit it does not accept.
@@ -50,7 +51,7 @@ class BoardHandshake:
         self.transact("DISARM")
         fault = self._inherited_fault()
         self._apply(limits)
-        if fault is not None and self._clear():
+        if fault is not None and (prove or fault.code not in NEED_PROOF) and self._clear():
             self._await_proof()
         if prove and self._report().ground is Ground.COMMANDED and self._ask("ARM").accepted:
             self._await_proof()

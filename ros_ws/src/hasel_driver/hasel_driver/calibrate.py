@@ -20,11 +20,13 @@ from hasel_driver.board_handshake import BoardHandshake
 from hasel_driver.calibration import Calibration
 from hasel_driver.calibration_table import CalibrationTable, Point
 from hasel_driver.errors import DriverError, RefusedError
+from hasel_driver.fault_store import FaultStore
 from hasel_driver.faults import Fault, FaultCode, SupplyFaultError
 from hasel_driver.hasel_supply import HaselSupply
-from hasel_driver.limits import HARDWARE_MAXIMUM_V, Limits
+from hasel_driver.limits import HARDWARE_MAXIMUM_V, PULSE_V, Limits
 from hasel_driver.line_buffer import LineBuffer
 from hasel_driver.mode import Mode
+from hasel_driver.parameters import PARAMETERS
 from hasel_driver.serial_port import SerialPort
 from hasel_driver.supervisor import Supervisor
 from hasel_driver.supply_thread import SupplyThread
@@ -34,6 +36,7 @@ CHANNELS = ("upper", "lower")
 SETTLING_S = 1.0
 PATIENCE_S = 10.0  # without an answer, after which the output is grounded
 VOLTAGES_V = "1000,2000,3000,4000,5000"
+STATE_FOLDER = next(each.default for each in PARAMETERS if each.name == "state_folder")
 
 
 class CalibrationBench:
@@ -125,6 +128,8 @@ def measure(
     points = []
     try:
         with listen(bench.stop):
+            if not agree(PULSE_V):  # of the proof that arming begins with
+                raise RefusedError("Stopped, nothing was stored.")
             bench.arm()
             for voltage_v in voltages_v:
                 if not agree(voltage_v):
@@ -193,6 +198,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--forget", action="store_true", help="store no correction for the channel, as after a damaged EEPROM"
     )
+    parser.add_argument(
+        "--state-folder",
+        default=STATE_FOLDER,
+        help=f"of the driver's node, whose latched faults count here too (default: {STATE_FOLDER})",
+    )
     options = parser.parse_args(arguments)
     try:
         voltages_v = [float(word) for word in options.voltages.split(",")]
@@ -204,6 +214,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if options.forget:
             print(f"stored: {store(options.port, options.channel, Calibration()).words()}")
             return 0
+        left = FaultStore(options.state_folder, options.port).load()
+        if left is not None:
+            raise RefusedError(
+                f"The driver's node left a fault ({left}): clear it there first (clear_fault)."
+            )
         table = measure(
             options.port,
             options.channel,

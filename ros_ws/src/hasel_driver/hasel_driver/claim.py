@@ -4,6 +4,8 @@ import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from hasel_driver.graph_names import UNNAMED
+
 SILENT_S = 0.2  # after which a holder that was started anew has its claim again
 
 
@@ -45,7 +47,8 @@ class Claim:
             if holder is not None and holder.publisher == publisher:
                 holder.heard_s, holder.name = now_s, name  # which the graph may have told only now
                 return True, False
-            back = holder is not None and holder.name == name and now_s - holder.heard_s > SILENT_S
+            named = holder is not None and holder.name == name != UNNAMED
+            back = named and now_s - holder.heard_s > SILENT_S
             if holder is None or back:
                 self._holder = _Holder(publisher, name, now_s)
                 return True, True

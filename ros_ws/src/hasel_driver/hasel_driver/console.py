@@ -83,7 +83,10 @@ class Console:
                 except DriverError as error:
                     self._tell(str(error))
         except KeyboardInterrupt:
-            self._tell(self._link.trigger("emergency_stop"))
+            try:
+                self._tell(self._link.trigger("emergency_stop"))
+            except DriverError as error:
+                self._tell(str(error))
         finally:
             state = self._link.state()
             if state is None or state.mode in (Mode.ARMED, Mode.ACTIVE):

@@ -23,6 +23,7 @@ from hasel_driver.limits import Voltages
 ANSWER_S = 5.0
 FRESH_S = 0.5
 CLAIM_PERIOD_S = 0.02
+TO_GROUND = {"emergency_stop", "disarm"}  # which are sent however many answer
 
 
 class ConsoleLink:
@@ -110,15 +111,19 @@ class ConsoleLink:
         client = self._clients[name]
         if client.wait_for_service(ANSWER_S):
             answering = self._node.count_services(client.srv_name)
-            if answering > 1:
-                raise RefusedError(
-                    f"{answering} nodes answer {client.srv_name}, and one answer would stand for all: stop each supply"
-                    " by its switch, and end all but one."
-                )
+            refusal = (
+                f"{answering} nodes answer {client.srv_name}, and one answer would stand for all: stop each supply"
+                " by its switch, and end all but one."
+            )
+            if answering > 1 and name not in TO_GROUND:
+                raise RefusedError(refusal)
             done = threading.Event()
             future = client.call_async(request)
             future.add_done_callback(lambda _: done.set())
-            if done.wait(ANSWER_S):
+            answered = done.wait(ANSWER_S)
+            if answering > 1:
+                raise RefusedError(f"It was sent, but {refusal}")
+            if answered:
                 return future.result()
         raise RefusedError(
             f"{client.srv_name} gives no answer: start the driver's node, or treat the output as live."

@@ -24,7 +24,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from hasel_driver.claim import Claim
 from hasel_driver.driver_services import SERVICES, DriverServices
-from hasel_driver.errors import DriverError, PortError, PortInUseError, RefusedError
+from hasel_driver.errors import DriverError, PortInUseError, PortMissingError, RefusedError
 from hasel_driver.experiment_server import ExperimentServer
 from hasel_driver.faults import Fault, FaultCode
 from hasel_driver.messages import supply_health, to_supply_state
@@ -109,7 +109,7 @@ class DriverNode(LifecycleNode):
             self.end_reason = str(error)
             rclpy.try_shutdown()
             return TransitionCallbackReturn.FAILURE
-        except PortError as error:
+        except PortMissingError as error:
             if str(error) != self._last_problem:  # once, not with every attempt
                 self.get_logger().error(str(error))
             self._last_problem = str(error)
@@ -118,6 +118,10 @@ class DriverNode(LifecycleNode):
         except DriverError as error:
             self.get_logger().error(str(error))
             self._last_problem = str(error)
+            return TransitionCallbackReturn.FAILURE
+        except Exception as error:  # noqa: BLE001  rclpy would swallow it, and the node end without a word
+            self._last_problem = f"A defect kept the driver from starting, please report it: {error!r}."
+            self.get_logger().error(self._last_problem)
             return TransitionCallbackReturn.FAILURE
         self._last_problem = ""
         self._link = link
@@ -146,7 +150,7 @@ class DriverNode(LifecycleNode):
         elif self._port_missing:
             self._retrying = True
         elif self.end_reason is None:
-            self.end_reason = self._last_problem or "It could not be configured: see above."
+            self.end_reason = self._last_problem
             rclpy.try_shutdown()
 
     def _retry(self) -> None:

@@ -77,10 +77,13 @@ class DriverServices:
         return self._prove_grounded(link, "Disarmed")
 
     def emergency_stop(self) -> str:
-        """To FAULT, from everywhere."""
+        """To FAULT, from everywhere; refused, though it is done, unless the output is proven grounded."""
         link = self._require_link()
         link.ask("fail", Fault(FaultCode.EMERGENCY_STOP, "by service"))
-        return self._prove_grounded(link, "Stopped", PROOF_TIMEOUT_S)
+        answer = self._prove_grounded(link, "Stopped", PROOF_TIMEOUT_S)
+        if link.now.status.output != "grounded":
+            raise RefusedError(answer)
+        return answer
 
     def clear_fault(self) -> str:
         """FAULT to STANDBY."""

@@ -17,6 +17,10 @@ class PortError(DriverError):
     """A serial port that cannot be opened, or a device on it that is not the expected one."""
 
 
+class PortMissingError(PortError):
+    """A serial port that is not there, or not yet."""
+
+
 class PortInUseError(PortError):
     """A serial port that another program has open."""
 

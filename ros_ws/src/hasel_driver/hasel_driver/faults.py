@@ -48,7 +48,7 @@ EXPLANATIONS: dict[FaultCode, str] = {
     FaultCode.OVERVOLTAGE: "the measured voltage exceeded the maximum, or its monitor's range",
     FaultCode.NOT_GROUNDED: "the ground contact should be closed, but there is voltage, or its proof failed",
     FaultCode.MONITOR: "the measured voltage does not follow the asked one, or is not measured at all",
-    FaultCode.EEPROM: "the calibration in the board's EEPROM is damaged",
+    FaultCode.EEPROM: "the calibration in the board's EEPROM is damaged: store one, or `calibrate --forget`",
     FaultCode.DISCREPANCY: "the two channels of the interlock disagreed",
     FaultCode.EMERGENCY_STOP: "emergency stop",
     FaultCode.LINK_LOST: "the serial port is gone",

@@ -15,6 +15,7 @@ LONGEST_HEARTBEAT_S = 2.0
 GROUND_OHM = 2e6  # of the path that discharges a muscle
 TOUCHABLE_V = 50.0
 GROUNDED_WITHIN_S = 0.5  # of the host's death, whatever the load
+WIRE_S = 0.02  # of that, for the host's last word on its way and the board's own clock
 
 MUSCLE_NAMES = ("upper", "lower")
 Voltages = tuple[float, float]  # V, in the order of MUSCLE_NAMES
@@ -36,15 +37,15 @@ class Limits:
     def silence_to_ground_s(self) -> float:
         """Time from the host's last word to less than 50 V on the largest muscle [s]."""
         fall = math.log(max(1.0, self.maximum_voltage_v / TOUCHABLE_V))
-        return self.heartbeat_s + self.dead_time_s + GROUND_OHM * self.load_f * fall
+        return WIRE_S + self.heartbeat_s + self.dead_time_s + GROUND_OHM * self.load_f * fall
 
     def check_sum(self) -> None:
         """Raises LimitError where the limits, each allowed by itself, do not ground the output in time."""
         if self.silence_to_ground_s >= GROUNDED_WITHIN_S:
             raise LimitError(
-                f"heartbeat_timeout {self.heartbeat_s:g} s, dead_time {self.dead_time_s:g} s and the discharge of"
-                f" load_capacitance {self.load_f * 1e9:g} nF from {self.maximum_voltage_v:g} V take"
-                f" {self.silence_to_ground_s:.3f} s in all, less than {GROUNDED_WITHIN_S:g} s was expected:"
+                f"heartbeat_timeout {self.heartbeat_s:g} s, dead_time {self.dead_time_s:g} s, {WIRE_S:g} s on the wire"
+                f" and the discharge of load_capacitance {self.load_f * 1e9:g} nF from {self.maximum_voltage_v:g} V"
+                f" take {self.silence_to_ground_s:.3f} s in all, less than {GROUNDED_WITHIN_S:g} s was expected:"
                 " lower heartbeat_timeout first."
             )
 

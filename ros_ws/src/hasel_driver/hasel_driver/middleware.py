@@ -20,8 +20,8 @@ LOOPBACK = Path(__file__).with_name("loopback.xml")
 
 
 def prepare(environment: MutableMapping[str, str] = os.environ) -> None:
-    """To be called before `rclpy.init`; a user's own range, peers, profiles or transports stay."""
-    if not {RANGE, LOCALHOST_ONLY, PEERS} & set(environment):
+    """To be called before `rclpy.init`; a user's own range, peers, profiles or transports stay, unless empty."""
+    if not any(environment.get(name, "").strip() for name in (RANGE, LOCALHOST_ONLY, PEERS)):
         environment[RANGE] = "LOCALHOST"
     if "fastrtps" not in get_rmw_implementation_identifier() or PROFILES in environment:
         return

@@ -10,7 +10,7 @@ from rclpy.node import Node
 
 from hasel_driver.backends import limits_of
 from hasel_driver.errors import DriverError, LimitError
-from hasel_driver.parameters import LOWERABLE, PARAMETERS, DriverParameter
+from hasel_driver.parameters import FOLDERS, LOWERABLE, PARAMETERS, DriverParameter
 
 OF_ROS = {"use_sim_time", "start_type_description_service"}
 TABLE = {parameter.name: parameter for parameter in PARAMETERS}
@@ -54,6 +54,10 @@ def _check_change(
     parameter: DriverParameter, value: Any, in_use: bool, lower: Callable[[float], None]
 ) -> None:
     parameter.check(value)
+    if parameter.name in FOLDERS:
+        raise LimitError(
+            f"{parameter.name} is given at the start and stays: start the node anew with another one."
+        )
     if not in_use:
         return
     if parameter.name != LOWERABLE:

@@ -8,6 +8,8 @@ from hasel_common.node_parameter import NodeParameter
 from hasel_driver.errors import LimitError
 
 LOWERABLE = "maximum_voltage"  # the one that may be changed, downwards, while it is in use
+FOLDERS = {"state_folder", "recording_directory", "waveform_directory", "history_file"}
+"""Where files are read and written: said at the start only, as whoever is on the network can set a parameter."""
 
 
 class DriverParameter(NodeParameter):

@@ -7,7 +7,7 @@ import select
 
 import serial
 
-from hasel_driver.errors import PortError, PortInUseError
+from hasel_driver.errors import PortInUseError, PortMissingError
 from hasel_driver.faults import FaultCode, SupplyFaultError
 
 
@@ -44,14 +44,15 @@ class SerialPort:
         """Open and lock the port.
 
         Raises:
-            PortError: there is no such port, it is in use, or access is denied.
+            PortMissingError: there is no such port, or access is denied.
+            PortInUseError: another program has it open.
         """
         try:
             self._serial = serial.Serial(self.path, self._baud, timeout=0, write_timeout=0, exclusive=True)
         except (OSError, ValueError) as error:
             if "lock" in str(error):
                 raise _in_use(self.path) from error
-            raise PortError(
+            raise PortMissingError(
                 f"The serial port {self.path} cannot be opened ({error}): check the cable, the parameter"
                 " `port`, that the user is in the group dialout, and that no other program uses it."
             ) from error

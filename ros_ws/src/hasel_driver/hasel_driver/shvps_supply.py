@@ -44,6 +44,8 @@ class ShvpsSupply(Supply):
                 channel.send("SVset 0", f"SSwMode {OFF}")
         except (PortError, SupplyFaultError) as error:
             self.close()
+            if isinstance(error, PortError):
+                raise
             raise PortError(str(error)) from error
         return Connection("SHVPS " + ", ".join(names))
 

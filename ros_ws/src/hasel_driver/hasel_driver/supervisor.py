@@ -138,8 +138,11 @@ class Supervisor:
             self._guard(self._supply.disarm)
 
     def fail(self, fault: Fault) -> None:
-        """Latch `fault` and ground the output; the first fault stays, but an emergency stop replaces it."""
-        if self.fault is None or fault.code is FaultCode.EMERGENCY_STOP:
+        """Latch `fault` and ground the output; the first fault stays, but an emergency stop replaces it, unless that
+        would take away that a proof is needed.
+        """
+        stop = fault.code is FaultCode.EMERGENCY_STOP
+        if self.fault is None or (stop and self.fault.code not in NEED_PROOF):
             self.fault = fault
         self._armed_wanted = False
         self._end_drive()
@@ -161,10 +164,10 @@ class Supervisor:
             raise RefusedError("The supply does not report its output grounded: wait, or cut its power.")
         if status.interlock_closed and not all(status.interlock_closed):
             raise RefusedError("The interlock is open: close both of its channels first.")
-        prove = self.fault.code in NEED_PROOF and self.capabilities.proves_grounded
-        self.disconnect()
-        time.sleep(REOPEN_S)
-        reading = self._open(prove)
+        prove = self._needs_proof(self.fault)
+        reading = self._open_anew(prove)
+        if not prove and self._needs_proof(self._inherited):  # which a stop had hidden
+            prove, reading = True, self._open_anew(True)
         ground = self._ground(reading)
         found = reading.fault
         if found is None and (ground is Ground.NOT or (prove and ground is not Ground.PROVEN)):
@@ -253,6 +256,14 @@ class Supervisor:
             self._judge(reading)
         self._look(now_s)
         return bool(readings)
+
+    def _needs_proof(self, fault: Fault | None) -> bool:
+        return self.capabilities.proves_grounded and fault is not None and fault.code in NEED_PROOF
+
+    def _open_anew(self, prove: bool) -> Reading:
+        self.disconnect()
+        time.sleep(REOPEN_S)
+        return self._open(prove)
 
     def _open(self, prove: bool = False) -> Reading:
         connection = self._supply.open(prove)

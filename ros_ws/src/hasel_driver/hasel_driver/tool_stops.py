@@ -2,8 +2,11 @@
 
 import importlib.util
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+
+LATCHED_S = 1.0  # within which a stop that is held already is heard, as at the driver's arming
 
 
 @contextmanager
@@ -36,6 +39,7 @@ def stops_of_ros(stop: Callable[[str], None]) -> Iterator[None]:
     )
     node.create_service(Trigger, EMERGENCY_STOP, serve)
     spin = BackgroundSpin(node, "stops", owns_context=True)
+    time.sleep(LATCHED_S)
     try:
         yield
     finally:

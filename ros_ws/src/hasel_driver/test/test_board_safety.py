@@ -58,12 +58,15 @@ def test_a_charged_output_forbids_arming(board, rig):
     assert board.report().fault_code == NOT_GROUNDED
 
 
-def test_a_dead_tick_is_noticed_by_the_watchdog(board, rig):
-    """With the timer interrupt off and the host pinging on, the watchdog grounds the output within half a second."""
+@pytest.mark.parametrize("how", ["tickless", "unconverted"])
+def test_a_dead_tick_is_noticed_by_the_watchdog(board, rig, how):
+    """With the timer interrupt off, or inputs that are converted no more, and the host pinging on, the watchdog grounds
+    the output within half a second.
+    """
     drive(board, 5000, 0)
     rig.await_live(True)
     dead_s = time.monotonic()
-    rig.say("tickless")
+    rig.say(how)
     for index in range(30):
         board.send(protocol.encode_command(board.after(index + 1), "PING"))
         time.sleep(0.02)

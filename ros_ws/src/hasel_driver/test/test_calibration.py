@@ -8,6 +8,8 @@ from hasel_driver import calibrate
 from hasel_driver.calibration import Calibration
 from hasel_driver.calibration_table import CalibrationTable, Point
 from hasel_driver.errors import LimitError, RefusedError
+from hasel_driver.fault_store import FaultStore
+from hasel_driver.faults import Fault, FaultCode
 
 
 def table(present: Calibration, voltages=(1000.0, 3000.0, 5000.0)) -> CalibrationTable:
@@ -75,8 +77,21 @@ def test_nothing_is_put_on_without_leave_nor_above_the_maximum(rig):
         calibrate.measure(rig.port, "upper", (1000.0, 9800.0), lambda _: 0.0, lambda _: True)
     with pytest.raises(RefusedError, match="Stopped"):
         calibrate.measure(rig.port, "upper", (1000.0, 2000.0, 3000.0), lambda _: 0.0, lambda _: False)
-    assert max(rig.ask("output")[4:]) < 550  # the proof of ground
+    assert max(rig.ask("output")[4:]) < 50
+    with pytest.raises(RefusedError, match="Stopped"):
+        calibrate.measure(
+            rig.port, "upper", (1000.0, 2000.0, 3000.0), lambda _: 0.0, lambda asked: asked < 1000
+        )
+    assert 200 < max(rig.ask("output")[4:]) < 550  # the proof of ground, with leave
     rig.await_live(False)
+
+
+def test_a_fault_that_the_node_left_counts_here_too(rig, tmp_path, capsys):
+    """A stop that nobody cleared: nothing is armed."""
+    FaultStore(str(tmp_path), rig.port).keep(Fault(FaultCode.EMERGENCY_STOP, "by service"))
+    words = ["--port", rig.port, "--channel", "upper", "--state-folder", str(tmp_path)]
+    assert calibrate.main(words) == 1
+    assert "left a fault (emergency stop: by service): clear it there first" in capsys.readouterr().err
 
 
 def test_without_an_answer_the_output_is_grounded(rig, monkeypatch):

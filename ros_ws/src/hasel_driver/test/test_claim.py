@@ -2,6 +2,7 @@
 
 import pytest
 from hasel_driver.claim import SILENT_S, Claim
+from hasel_driver.graph_names import UNNAMED
 
 A, B, C = b"a", b"b", b"c"
 
@@ -50,3 +51,11 @@ def test_a_node_that_comes_back_has_it_again(clock):
     clock.now_s = 1.1 * SILENT_S
     assert claim.take(C, "/controller") == (True, True)
     assert claim.take(A, "/controller") == (False, False)
+
+
+def test_nobody_comes_back_whose_name_is_not_known(clock):
+    """Two that the graph does not name yet are not one."""
+    claim = Claim(clock)
+    claim.hand_out({A: UNNAMED})
+    clock.now_s = 1.1 * SILENT_S
+    assert claim.take(C, UNNAMED) == (False, False)

@@ -118,3 +118,32 @@ def test_a_console_that_is_ended_grounds_what_it_armed(start_driver, virtual_rig
         process.wait()
         os.close(here)
         os.close(there)
+
+
+def test_a_stop_is_sent_though_two_answer(start_driver, virtual_rig, ros, tmp_path):
+    """Nobody can say whose answer it is, but the supply is stopped; to arm is not even asked for."""
+    from hasel_driver.testing.ros_client import another_node
+    from std_srvs.srv import Trigger
+
+    start_driver(virtual_rig.port)
+    ros.await_mode(Mode.STANDBY)
+    said = tmp_path / "said.txt"
+    with another_node("stranger") as node, said.open("w") as out, ros.silent():
+        for name in ("/hasel/emergency_stop", "/hasel/arm"):
+            node.create_service(Trigger, name, lambda _, response: response)
+        process = subprocess.Popen(CONSOLE, stdin=subprocess.PIPE, stdout=out, text=True)
+        try:
+            for line, words in (
+                ("arm", "2 nodes answer arm"),
+                ("stop", "sent, but 2 nodes answer emergency_stop"),
+            ):
+                end_s = time.monotonic() + 20.0  # until the console has found the stranger, too
+                while words not in said.read_text() and time.monotonic() < end_s:
+                    process.stdin.write(f"{line}\n")
+                    process.stdin.flush()
+                    time.sleep(0.5)
+                assert words in said.read_text()
+            ros.wait(lambda: ros.state.fault_code == FaultCode.EMERGENCY_STOP)
+        finally:
+            process.kill()
+            process.wait()

@@ -1,6 +1,8 @@
 """What happens to the process: killed, frozen, ended, without a port, started after an emergency stop."""
 
 import math
+import os
+import pty
 import random
 import signal
 import subprocess
@@ -233,6 +235,18 @@ def test_an_open_interlock_at_the_start_is_told_and_closed_later(start_driver, v
     time.sleep(0.1)
     assert ros.trigger("clear_fault").success
     driver.arm()
+
+
+def test_a_device_that_is_no_supply_is_opened_once(start_driver, ros):
+    """Each opening resets a board: the node says what is there, and ends."""
+    board, port = pty.openpty()
+    driver = start_driver(os.ttyname(port))
+    assert driver.process.wait(20.0) == 1
+    driver.close()
+    os.close(board)
+    log = "".join(driver.log)
+    assert log.count("check that it is the supply") == 2  # in the log, and as its last word
+    assert "Traceback" not in log
 
 
 def test_missing_port_is_said_in_one_sentence(start_driver, ros):

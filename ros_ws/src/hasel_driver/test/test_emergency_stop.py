@@ -153,6 +153,20 @@ def test_a_charged_output_is_no_success(driver, shared_rig, ros, service):
     ros.wait(lambda: ros.state.grounded)
 
 
+def test_a_stop_that_no_monitor_can_see_is_no_success(driver, shared_rig, ros):
+    """The divider is off and a contact welded: nothing is measured, so nothing is proven, and the answer says so."""
+    driver.arm()
+    ros.drive(lambda: shared_rig.live and ros.state.measured_voltage[0] > 2900)
+    shared_rig.say("weld")
+    shared_rig.say("blind")
+    answer = ros.trigger("emergency_stop")
+    assert not answer.success, answer
+    assert "treat it as live" in answer.message.lower()
+    shared_rig.say("recover")
+    ros.wait(lambda: ros.state.ground == ros.state.GROUND_COMMANDED)
+    assert ros.trigger("clear_fault").success
+
+
 def test_deactivating_a_charged_output_is_a_fault(driver, shared_rig, ros):
     """What the lifecycle cannot prove it calls FAULT."""
     from lifecycle_msgs.msg import Transition

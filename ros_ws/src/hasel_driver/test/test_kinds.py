@@ -42,6 +42,7 @@ def test_a_failed_contact_stays_failed(rig, how):
     again = Bench(rig)  # a node that knows nothing of it
     try:
         assert again.supervisor.fault.code is FaultCode.NOT_GROUNDED
+        assert again.status().ground is Ground.COMMANDED  # no pulse yet: hands may be at the contacts
         rig.say("recover")
         assert again.wait_until(lambda: again.status().quiet)
         again.call(again.supervisor.clear_fault)

@@ -38,5 +38,7 @@ def test_no_number_is_an_error(bad):
 def test_the_sum_of_silence_dead_time_and_discharge_is_limited():
     """Each within its range, 0.45 s, 0.05 s and 4.5 nF are more than half a second to ground; the defaults are not."""
     Limits(load_f=4.5e-9).check_sum()
-    with pytest.raises(LimitError, match=r"0\.54. s in all"):
+    with pytest.raises(LimitError, match=r"0\.51. s in all"):
+        Limits(heartbeat_s=0.45, dead_time_s=0.006, load_f=4.5e-9).check_sum()  # 0.499 s, and the wire
+    with pytest.raises(LimitError, match=r"0\.56. s in all"):
         Limits(maximum_voltage_v=9800.0, heartbeat_s=0.45, dead_time_s=0.05, load_f=4.5e-9).check_sum()

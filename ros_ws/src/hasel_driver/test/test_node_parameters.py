@@ -19,6 +19,15 @@ def node():
     node.context.try_shutdown()
 
 
+@pytest.mark.parametrize(
+    "name", ["state_folder", "recording_directory", "waveform_directory", "history_file"]
+)
+def test_where_files_are_is_said_at_the_start_only(node, name):
+    """Nobody on the network moves them, the port closed or not."""
+    (result,) = node.set_parameters([Parameter(name, value="/etc")])
+    assert (result.successful, "given at the start" in result.reason) == (False, True)
+
+
 def test_parameters_that_together_ground_too_late_are_refused(node):
     """Each is within its range; the one that brings the sum above half a second is not taken."""
     first, second = node.set_parameters(

@@ -74,7 +74,7 @@ def test_a_held_interpreter_lock_does_not_hold_up_the_heartbeat(open_link, virtu
 
 def test_a_command_that_was_held_up_on_its_way_is_too_old(open_link, virtual_rig):
     """What lay before a process that stood still for a quarter of a second is not obeyed when it goes on."""
-    link = open_link(heartbeat_timeout=0.45)
+    link = open_link(heartbeat_timeout=0.42)
     link.ask("arm")
     assert link.wait_for(lambda now: now.status.mode is Mode.ARMED, 2.0), link.now.status
     link.ask("command", (0.0, 0.0), time.monotonic())  # taken before the process stands still

@@ -33,7 +33,7 @@ def test_needs_consent_drives_and_claims_nothing(boards, start_driver, ros):
 
     ros.drive(driven_and_told, (9000.0, -500.0))
     answer = ros.trigger("emergency_stop")
-    assert (answer.success, UNPROVEN in answer.message) == (True, True)
+    assert (answer.success, UNPROVEN in answer.message) == (False, True)
     state = ros.await_mode(FAULT)
     assert state.fault_code == FaultCode.EMERGENCY_STOP
     assert "Nothing proves the output grounded" in state.fault_text

@@ -436,6 +436,17 @@ def test_a_fault_that_needs_a_proof_is_not_cleared_without_one(case):
     assert case.supervisor.fault is None
 
 
+@pytest.mark.parametrize("code", [FaultCode.MONITOR, FaultCode.NOT_GROUNDED, FaultCode.GROUND_NOT_PROVEN])
+def test_a_stop_does_not_take_away_that_a_proof_is_needed(case, code):
+    """Stopped after the fault, and cleared: without a proof it comes back."""
+    case.supervisor.fail(Fault(code))
+    case.supervisor.fail(Fault(FaultCode.EMERGENCY_STOP))
+    case.pass_time(0.1)
+    case.supply.unproven = True
+    with pytest.raises(RefusedError, match="came back"):
+        case.supervisor.clear_fault()
+
+
 def test_a_ripple_that_the_output_cannot_follow_is_no_blindness(case):
     """A converter cannot sink: the output stays at the peaks of what is asked for, and that is no stuck monitor."""
     case.arm()

@@ -16,6 +16,7 @@ from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import RecordingError
 from hasel_sim.errors import HaselSimError
 from hasel_sim.live.live_model import live_model
+from hasel_sim.live.own_files import within
 from hasel_sim.model import Model, save_model
 from hasel_sim.node_process import end_at_once, run_node
 from hasel_sim.simulator_messages import rig_voltage, to_nanoseconds
@@ -144,8 +145,8 @@ class SysidNode(ManagedNode):
 
     def _serve_diagnosis(self, request: Diagnose.Request, response: Diagnose.Response) -> Diagnose.Response:
         def diagnose() -> str:
+            effects = [within(self._value("own_files"), effect) for effect in request.effects if effect]
             model, recordings = self._model(), self._recordings(request.recordings)
-            effects = [effect for effect in request.effects if effect]
             found = diagnose_recordings(model, recordings, effects, self._value("jobs"), self._progress)
             response.diagnosis = diagnosis_message(found, status(found), self._header())
             self._diagnosis.publish(response.diagnosis)

@@ -4,9 +4,12 @@ from hasel_common.node_parameter import AUTOSTART, NodeParameter
 
 PARAMETERS = (
     NodeParameter(*AUTOSTART),
-    NodeParameter("model", "swimmer", "model that is fitted: its name or file", changeable=True),
-    NodeParameter("effects", [""], "effects added to it: ids, or path/to/file.py:ClassName", changeable=True),
-    NodeParameter("output", ".", "folder into which fitted models are written", changeable=True),
+    NodeParameter("model", "swimmer", "model that is fitted: its name or file"),
+    NodeParameter("effects", [""], "effects added to it: ids, or path/to/file.py:ClassName"),
+    NodeParameter(
+        "own_files", "", "folder below which diagnose may read files of effects of yours; empty: none"
+    ),
+    NodeParameter("output", ".", "folder into which fitted models are written"),
     NodeParameter("jobs", 0, "processes that simulate; 0: one per core", "1", 0, 256, changeable=True),
     NodeParameter("gap", 0.1, "no interpolation between simulated angles further apart", "s", 0.001, 10.0),
     NodeParameter("reset", 2.0, "a longer gap begins a new run", "s", 0.01, 3600.0),

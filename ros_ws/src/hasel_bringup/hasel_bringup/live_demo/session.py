@@ -85,7 +85,7 @@ class Session:
         if cleared := rig.arm():
             self._say(f"The supply had stopped itself: {cleared} It was cleared and armed again.")
         rig.trigger("hasel_tracker/restart")
-        rig.set_parameters("hasel_recorder", {"folder": str(self._folder / "recordings"), "name": name})
+        rig.set_parameters("hasel_recorder", {"name": name})
         path = Path(rig.trigger("recorder/start"))
         before = rig.measured
         rig.trigger("camera/capture", SetBool, data=True)

@@ -61,9 +61,11 @@ class RecorderNode(ManagedNode):
             raise BringupError("The recorder is not active: activate it (lifecycle) first.")
         if self._recorder is not None:
             raise BringupError(f"{self._path} is being recorded: stop that first (recorder/stop).")
-        folder = Path(self._value("folder")).expanduser()
+        folder, name = Path(self._value("folder")).expanduser(), self._value("name")
+        if name in ("", "..") or Path(name).name != name:
+            raise BringupError(f"name is '{name}', but a name without folders is expected: set another one.")
         folder.mkdir(parents=True, exist_ok=True)
-        self._path = folder / f"{self._value('name')}.mcap"
+        self._path = folder / f"{name}.mcap"
         if self._path.exists():
             raise BringupError(
                 f"{self._path} exists already, and no recording is overwritten: set another name."

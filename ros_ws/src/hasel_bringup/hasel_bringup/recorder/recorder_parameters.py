@@ -3,7 +3,7 @@
 from hasel_common.node_parameter import AUTOSTART, NodeParameter
 
 PARAMETERS = (
-    NodeParameter("folder", "recordings", "into which recordings are written", changeable=True),
-    NodeParameter("name", "run", "of the next recording, without .mcap", changeable=True),
+    NodeParameter("folder", "recordings", "into which recordings are written, and nowhere else"),
+    NodeParameter("name", "run", "of the next recording, without folder and .mcap", changeable=True),
     NodeParameter(*AUTOSTART),
 )

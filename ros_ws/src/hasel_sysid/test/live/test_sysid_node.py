@@ -45,17 +45,11 @@ def recording(swimmer) -> Recording:
 @pytest.fixture
 def talk(tmp_path, swimmer):
     """The node, spun in a thread, and a second node that talks to it."""
-    rclpy.init()
     start = swimmer.with_values({"amplitude_5500": 0.04, "slope": 0.5})
     save_model(start, tmp_path / "start.yaml")
+    given = (f"model:={tmp_path}/start.yaml", f"output:={tmp_path}", f"own_files:={tmp_path}/own", "jobs:=1")
+    rclpy.init(args=["--ros-args", *(word for each in given for word in ("-p", each))])
     node, user = SysidNode(), rclpy.create_node("user")
-    node.set_parameters(
-        [
-            Parameter("model", value=str(tmp_path / "start.yaml")),
-            Parameter("output", value=str(tmp_path)),
-            Parameter("jobs", value=1),
-        ]
-    )
     node.begin()
     executor = MultiThreadedExecutor(num_threads=3)
     executor.add_node(node)
@@ -114,6 +108,21 @@ class Talk:
         self.client = self.user.create_client(FitModel, "/hasel/fit")
         assert self.client.wait_for_service(timeout_sec=10.0)
         return self.client.call_async(FitModel.Request(**request))
+
+
+def test_no_request_brings_code_with_it(talk, tmp_path):
+    """An effect's file lies below the folder given at the start, and what was given then stays."""
+    file = tmp_path / "effect.py"
+    file.write_text("raise SystemExit('it ran')")
+    client = talk.user.create_client(Diagnose, "/hasel/diagnose")
+    assert client.wait_for_service(timeout_sec=10.0)
+    future = client.call_async(Diagnose.Request(effects=[f"{file}:Effect"]))
+    talk.until(future.done)
+    assert not future.result().success
+    assert f"is not below {tmp_path}/own" in future.result().message
+    for name, value in (("effects", [f"{file}:Effect"]), ("model", str(file)), ("output", "/etc")):
+        (result,) = talk.node.set_parameters([Parameter(name, value=value)])
+        assert not result.successful
 
 
 def test_the_error_is_published_for_every_frame(talk, recording):
