@@ -21,6 +21,8 @@ REMEDIES = {
     errno.EPERM: "choose another place, or ask for the permission",
     errno.EROFS: "choose another place to write to",
     errno.ENOENT: "check the name",
+    errno.EEXIST: "a folder is expected there: choose another name",
+    errno.ENOTDIR: "a folder is expected there: choose another name",
     errno.EMFILE: "close other programs, or raise the limit with `ulimit -n`",
     errno.ENOMEM: "close other programs, or try again with --jobs 1",
     errno.EADDRINUSE: "choose another port",

@@ -90,6 +90,13 @@ def test_a_huge_request_is_refused_unread(client):
     assert client.post("/data/live", headers=COOKIE, content=iter([b"x"])).status_code == 411
 
 
+@pytest.mark.parametrize("how", ["chunked", "Chunked", "gzip, CHUNKED", "identity"])
+def test_a_request_that_does_not_say_its_length_is_refused(client, how):
+    """In whatever spelling."""
+    answer = client.post("/data/live", headers={**COOKIE, "Transfer-Encoding": how}, content=iter([b"{}"]))
+    assert answer.status_code == 411
+
+
 def test_beyond_this_machine_is_said():
     """Another host is refused without a certificate or an explicit word, and says what it opens with either."""
     assert opening("127.0.0.1", None, False) == ""

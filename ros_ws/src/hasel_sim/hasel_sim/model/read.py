@@ -34,10 +34,12 @@ def model_names() -> list[str]:
     )
 
 
-def load_model(name_or_path: str | Path) -> Model:
+def load_model(name_or_path: str | Path, own_code: bool = True) -> Model:
     """Read a model by the name of one that comes with the package, or from a file.
 
-    Raises ModelError with one sentence for a missing file, an unknown key (with the nearest known one) or a bad value.
+    own_code: whether it may have effects of one's own, which are code that runs: False where nobody chose this model,
+    as with the one that a recording names. Raises ModelError with one sentence for a missing file, an unknown key (with
+    the nearest known one) or a bad value.
     """
     name = str(name_or_path)
     if name in model_names():
@@ -53,10 +55,10 @@ def load_model(name_or_path: str | Path) -> Model:
         text = path.read_text(encoding="utf-8")
     except UnicodeDecodeError:
         raise ModelError(f"{name} is not a text file; expected a model file in YAML: give its path") from None
-    return _parse(text, name, path.parent)
+    return _parse(text, name, path.parent, own_code)
 
 
-def _parse(text: str, source: str, folder: Path) -> Model:
+def _parse(text: str, source: str, folder: Path, own_code: bool = True) -> Model:
     try:
         content = YAML(typ="safe").load(text)
     except YAMLError as error:
@@ -75,6 +77,12 @@ def _parse(text: str, source: str, folder: Path) -> Model:
     sections = ("body", "material", "medium", "muscles", "markers")
     for fault in implausible({name: content[name] for name in sections if name in content}):
         raise ModelError(f"{source}: {fault}")
+    code = [effect for effect in description.effects if ":" in effect]
+    if code and not own_code:
+        raise ModelError(
+            f"{source} is named by the recording and has the effect {code[0]}, which is code that would run: "
+            f"give --model {source} if that is meant"
+        )
     bare = Model(description.model_copy(update={"effects": (), "parameters": {}}))
     bare = replace(bare, parameters=response_parameters(description))
     model = bare.with_effects(*(_located(effect, folder) for effect in description.effects))

@@ -271,3 +271,11 @@ def test_correlations_that_make_no_sense_are_refused(tmp_path, correlations, sai
     (tmp_path / "m.yaml").write_text(text.replace(line, f"{line} correlations: {correlations},"))
     with pytest.raises(ModelError, match=said):
         load_model(tmp_path / "m.yaml")
+
+
+def test_a_model_that_nobody_chose_brings_no_code(tmp_path, content):
+    """As one that a recording names: its effect's file is not run."""
+    (tmp_path / "effect.py").write_text("raise SystemExit('it ran')")
+    YAML(typ="safe").dump({**content, "effects": ["effect.py:Evil"]}, tmp_path / "model.yaml")
+    with pytest.raises(ModelError, match=r"has the effect effect.py:Evil, which is code .* give --model"):
+        load_model(tmp_path / "model.yaml", own_code=False)

@@ -43,6 +43,7 @@ def _fit(options: argparse.Namespace) -> int:
             f"model '{given.label}' has no free parameter; expected at least one: add an effect with `add`, "
             "or set free: true in the model file"
         )
+    options.output.mkdir(parents=True, exist_ok=True)
     problem = None
     try:
         with workers(options) as pool, progress_bar("fit") as progress:

@@ -113,6 +113,20 @@ def test_bad_input_is_one_sentence(folder, tmp_path, capsys, run, options, said)
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_header_does_not_run_code(folder, tmp_path, monkeypatch, capsys):
+    """A recording from elsewhere names a model whose effect is a file beside it."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "x.yaml").write_text(
+        (folder / "coarse.yaml").read_text().replace("effects: []", "effects: ['x.py:X']")
+    )
+    (tmp_path / "x.py").write_text("raise SystemExit('it ran')")
+    run = read_recording(folder / "run_3500.csv")
+    stranger = Recording("s", run.time_s, run.sin_theta, run.voltage, metadata={"model": "x.yaml"})
+    write_recording(stranger, tmp_path / "stranger.csv")
+    assert compare.main(["stranger.csv", "--jobs", "1"]) == 2
+    assert "is code that would run: give --model x.yaml if that is meant" in capsys.readouterr().err
+
+
 def test_header_names_the_model(folder, tmp_path, capsys):
     """Without --model the recordings' header decides: a driven run that says beam is refused as a beam."""
     recording = read_recording(folder / "run_3500.csv")

@@ -46,7 +46,7 @@ class Door:
         if not self._is_token(self._kept(headers)) and not self._shown(scope):
             return PlainTextResponse("Open the address that the workbench printed, with its token.", 403)
         length = headers.get("content-length", "0")
-        if "chunked" in headers.get("transfer-encoding", ""):
+        if headers.get("transfer-encoding"):
             return PlainTextResponse("Say how long the request is.", 411)
         if not length.isdecimal() or int(length) > LARGEST_REQUEST:
             return PlainTextResponse(f"A request has at most {LARGEST_REQUEST >> 20} MB.", 413)

@@ -120,6 +120,8 @@ def _free_port(host: str, port: int) -> int:
         tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             tried.bind((host, port))
+        except OverflowError:
+            raise SysidError(f"--port is {port}, but 0 to 65535 is expected: give another one") from None
         except OSError as error:
             raise SysidError(
                 f"{host} port {port} cannot be listened at ({error.strerror}): is a workbench there already? Otherwise "
