@@ -15,7 +15,8 @@ NODES = {
     "hasel_tracker": ("hasel_tracker", "tracker_node", "--ros-args", "-p", "autostart:=false"),
 }
 LAUNCH = """
-import subprocess, sys, time
+import signal, subprocess, sys, time
+signal.signal(signal.SIGHUP, signal.SIG_DFL)  # with `nohup`, as the tests may have been started, nodes are to stay
 children = [subprocess.Popen(words.split("|")) for words in sys.argv[1:]]
 print(*[child.pid for child in children], flush=True)
 time.sleep(1000)

@@ -58,11 +58,8 @@ def test_two_rigs_do_not_hear_each_other(tmp_path, environment, listener):
             assert angles[name][-1].header.frame_id == f"{name}/camera"
         if states["rig1"][-1].mode == SupplyState.FAULT:
             listener.call(Trigger, "/rig1/clear_fault", 20.0, check)
-        for _ in range(5):  # a state that is too old proves nothing: then one asks again
-            answer = listener.call(Trigger, "/rig1/emergency_stop", 20.0, check)
-            if answer.success:
-                break
-        assert answer.success, answer.message
+        answer = listener.call(Trigger, "/rig1/emergency_stop", 20.0, check)
+        assert answer.message.startswith("Stopped"), answer.message  # never charged, its ground is not proven
         listener.until(lambda: states["rig1"][-1].mode == SupplyState.FAULT, 20.0, drive)
         listener.until(lambda: states["rig2"][-1].mode == SupplyState.ACTIVE, 20.0, drive)
         assert not listener.states  # nobody speaks in the default namespace
