@@ -1,7 +1,7 @@
 """The header lines of a recording that mean something."""
 
 KNOWN_KEYS = {
-    "model": "model to use where --model is not given",
+    "model": "model to use where --model is not given; one with an effect of your own, which is code, wants --model",
     "initial_state": "rest (default) or static_equilibrium",
     "initial_load_factor": "times all loads that act in static_equilibrium (default 1)",
     "initial_time_s": "when the body is let go (default: first frame or switch)",

@@ -23,7 +23,7 @@ from hasel_recording.rosbag2_metadata import TopicCount, bag_metadata, channel_m
 HEADER_RECORD = "hasel_recording"  # metadata record with the header lines
 TIME_RECORD = "hasel_time"  # metadata record with the stamp that is time 0
 CHUNK_BYTES = 16 * 1024
-FIRST_FLUSH_S, FLUSH_PERIOD_S = 0.05, 0.4
+FLUSH_PERIOD_S = 0.4
 
 
 class McapRecorder:
@@ -146,9 +146,7 @@ class McapRecorder:
         return self._channels[topic]
 
     def _flush_until_closed(self) -> None:
-        wait_s = FIRST_FLUSH_S  # of a run that is killed at once something is left
-        while not self._closing.wait(wait_s):
-            wait_s = FLUSH_PERIOD_S
+        while not self._closing.wait(FLUSH_PERIOD_S):
             try:
                 with self._lock:
                     self._writer.flush()
