@@ -8,6 +8,7 @@ from fastapi import FastAPI, Request, WebSocket, WebSocketDisconnect
 from fastapi.responses import PlainTextResponse
 from fastapi.testclient import TestClient
 from hasel_workbench.page.door import LARGEST_REQUEST, Door
+from hasel_workbench.page.page import free_path
 from hasel_workbench.page.server import opening
 
 TOKEN, SITE = "a-token-of-the-test", "http://127.0.0.1:8477"
@@ -95,6 +96,18 @@ def test_a_request_that_does_not_say_its_length_is_refused(client, how):
     """In whatever spelling."""
     answer = client.post("/data/live", headers={**COOKIE, "Transfer-Encoding": how}, content=iter([b"{}"]))
     assert answer.status_code == 411
+
+
+@pytest.mark.parametrize(
+    "name", ["a.csv", "../../a.csv", "/etc/a.csv", "a\0.csv", 300 * "x" + "a.csv", "..", "", "."]
+)
+def test_an_upload_stays_below_its_folder(tmp_path, name):
+    """Whatever it is called, a file can be written there, and none that is there is overwritten."""
+    for _ in range(2):
+        path = free_path(tmp_path, name)
+        assert path.resolve().parent == tmp_path
+        assert not path.exists()
+        path.write_text("1")
 
 
 def test_beyond_this_machine_is_said():

@@ -83,7 +83,7 @@ class Page:
         folder.mkdir(parents=True, exist_ok=True)
         paths = []
         for file in event.files:
-            path = free_path(folder, Path(file.name).name)
+            path = free_path(folder, file.name)
             await file.save(path)
             paths.append(path)
         self.do("load", lambda progress: self.session.load(paths, unseen, progress))
@@ -165,8 +165,12 @@ class Page:
         self.jobs.say("negative", await self.rig.stop())
 
 
+LONGEST_NAME = 120
+
+
 def free_path(folder: Path, name: str) -> Path:
-    """A path of this name that no file has yet: numbered where one has."""
+    """A path below the folder that no file has yet, of the end of this name, numbered where one has it."""
+    name = Path(name.replace("\0", "")).name[-LONGEST_NAME:] or "recording"
     path, number = folder / name, 1
     while path.exists():
         number += 1
