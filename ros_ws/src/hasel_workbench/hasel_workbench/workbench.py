@@ -214,7 +214,7 @@ class Workbench:
     def _take(self, recordings: Sequence[Recording], unseen: bool, progress: Progress) -> None:
         state = self.state
         name = chosen_name(self._asked, recordings)
-        model = load_model(name, own_code=self._asked is not None) if not state.steps else state.current.model
+        model = load_model(name, own_code=bool(self._asked)) if not state.steps else state.current.model
         found, said = checked(model, recordings, state.every)
         state = replace(state, banners=(*state.banners, *said))
         self._commit(state)

@@ -97,7 +97,6 @@ def _fit_json(result: FittedModel) -> dict:
 
 
 def _save(model: Model, folder: Path) -> Path:
-    folder.mkdir(parents=True, exist_ok=True)
     path = folder / MODEL_FILE
     save_model(model, path)
     return path

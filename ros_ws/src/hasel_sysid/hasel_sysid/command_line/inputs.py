@@ -80,7 +80,7 @@ def chosen_model(name: str | None, experiments: Sequence[Experiment]) -> tuple[s
     """The model asked for, else the one all headers name, else the swimmer; with what to call it."""
     named = {experiment.recording.metadata.get("model") for experiment in experiments}
     header = named.pop() if len(named) == 1 else None
-    asked, name = name is not None, name or header or DEFAULT_MODEL
+    asked, name = bool(name), name or header or DEFAULT_MODEL
     model = load_model(name, own_code=asked)
     label = Path(name).stem if Path(name).suffix in (".yaml", ".yml") else name
     return label, model

@@ -123,8 +123,9 @@ def test_a_header_does_not_run_code(folder, tmp_path, monkeypatch, capsys):
     run = read_recording(folder / "run_3500.csv")
     stranger = Recording("s", run.time_s, run.sin_theta, run.voltage, metadata={"model": "x.yaml"})
     write_recording(stranger, tmp_path / "stranger.csv")
-    assert compare.main(["stranger.csv", "--jobs", "1"]) == 2
-    assert "is code that would run: give --model x.yaml if that is meant" in capsys.readouterr().err
+    for words in ([], ["--model", ""]):
+        assert compare.main(["stranger.csv", "--jobs", "1", *words]) == 2
+        assert "is code that would run: give --model x.yaml if that is meant" in capsys.readouterr().err
 
 
 def test_header_names_the_model(folder, tmp_path, capsys):
