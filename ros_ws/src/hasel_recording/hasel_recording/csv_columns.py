@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from hasel_common.names import nearest
 
-from hasel_recording.drive_channel import DriveChannel, is_drive_column, parse_column
+from hasel_recording.drive_channel import HASEL_PAIR, DriveChannel, is_drive_column, parse_column
 from hasel_recording.errors import RecordingError
 from hasel_recording.recording import MARKER_NAMES
 
@@ -16,6 +16,8 @@ THETA_UNITS = {"deg": 0.017453292519943295, "rad": 1.0, "mrad": 1e-3}
 MARKER_UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "px": 1.0}
 MEANINGS = "time, sin_theta, theta, <marker>_x, <marker>_y or <quantity>_<channel>, such as voltage_upper"
 
+TIMES = {f"time_{unit}": factor for unit, factor in TIME_UNITS.items()}
+THETAS = {f"theta_{unit}": factor for unit, factor in THETA_UNITS.items()}
 _MARKER = re.compile(r"(?P<marker>.+)_(?P<axis>[xy])_(?P<unit>" + "|".join(MARKER_UNITS) + ")")
 
 
@@ -44,11 +46,6 @@ class Columns:
     marker_unit: str
     unused: tuple[str, ...]
 
-    def names(self) -> set[str]:
-        """The columns that are read."""
-        single = [column for column in (self.time, self.sin_theta, self.theta) if column]
-        return {column.name for column in (*single, *self.drive.values(), *self.markers)}
-
 
 def marker_columns(names: Iterable[str], unit: str) -> list[str]:
     """Return the columns of markers in `unit` ("m" or "px"): head_x_m, head_y_m, middle_x_m …"""
@@ -56,127 +53,105 @@ def marker_columns(names: Iterable[str], unit: str) -> list[str]:
 
 
 def understand(names: list[str], meant: Mapping[str, str], source: str, angle: bool = True) -> Columns:
-    """Return what the columns mean.
+    """Return what the columns mean; one that is mapped counts before one that has the name itself.
 
     names: as in the file; meant: for some of them what to read them as (see column_map); source: where they were
     found; angle: whether an angle or markers must be there. Raises RecordingError for what is missing, twice,
     misspelt or in a unit that is not known.
     """
-    reader = _Reader(names, meant, source, angle)
-    columns = reader.columns()
-    for name in columns.names():
+    left = {meant[name]: name for name in names if name in meant}
+    mapped = {_role(name) for name in left}
+    left |= {name.lower(): name for name in names if name not in meant and _role(name.lower()) not in mapped}
+    time, sin_theta = _first(left, TIMES), _first(left, {SIN_THETA: 1.0})
+    theta = None if sin_theta else _first(left, THETAS)
+    markers, marker_unit = _markers(left)
+    drive = _drive(left, source, needed=time is None or not (sin_theta or theta or markers))
+    _check_spelling(left, names, meant, source)
+    marker_names = tuple(dict.fromkeys(marker for marker, _ in markers))
+    needed = {"time_s": (time, f"or {', '.join([*TIMES][1:])}")}
+    for marker, axis in markers:
+        other = marker, "y" if axis == "x" else "x"
+        needed["_".join((*other, marker_unit))] = (
+            markers.get(other),
+            "a marker has both coordinates in one unit",
+        )
+    if angle and not set(MARKER_NAMES) <= set(marker_names):
+        needed[SIN_THETA] = (
+            sin_theta or theta,
+            "or theta_deg, theta_rad, or the markers head, middle and tail",
+        )
+    for name, (column, others) in needed.items():
+        if column is None:
+            raise RecordingError(
+                f"{source} has no column {name!r} ({others}), only {', '.join(names)}: "
+                f"rename a column, or say which it is with --map {'' if angle else 'drive.'}{name}=COLUMN."
+            )
+    in_order = tuple(markers[marker, axis] for marker in marker_names for axis in "xy")
+    read = [column.name for column in (time, sin_theta, theta, *drive.values(), *in_order) if column]
+    for name in read:
         if names.count(name) > 1:
             raise RecordingError(f"{source} has the column {name!r} twice: keep one of them.")
-    found = columns.sin_theta or columns.theta or set(MARKER_NAMES) <= set(columns.marker_names)
-    if angle and not found:
-        raise reader.missing(SIN_THETA, "or theta_deg, theta_rad, or the markers head, middle and tail")
-    return columns
+    unused = tuple(name for name in names if name not in read)
+    return Columns(time, sin_theta, theta, drive, marker_names, in_order, marker_unit, unused)
 
 
-class _Reader:
-    """Sorts columns by what they are; a column that is mapped counts before one that has the name itself."""
+def _first(left: dict[str, str], known: Mapping[str, float]) -> Column | None:
+    """The first of the known columns that the file has; known: name → its unit in the SI unit."""
+    name = next((name for name in known if name in left), None)
+    return None if name is None else Column(left.pop(name), known[name])
 
-    def __init__(self, names: list[str], meant: Mapping[str, str], source: str, angle: bool) -> None:
-        self.source, self.names, self.meant, self.angle = source, names, meant, angle
-        self.left = {meant[name]: name for name in names if name in meant}
-        mapped = {_role(name) for name in self.left}
-        self.unused = [name for name in names if name not in meant and _role(name.lower()) in mapped]
-        self.left |= {name.lower(): name for name in names if name not in (*meant, *self.unused)}
 
-    def columns(self) -> Columns:
-        """Take what is known and complain about what resembles it."""
-        time = self._one("time", TIME_UNITS) or self._missing_time()
-        sin_theta = Column(self.left.pop(SIN_THETA)) if SIN_THETA in self.left else None
-        theta = None if sin_theta else self._one("theta", THETA_UNITS)
-        names, markers, unit = self._markers()
-        drive = self._drive(angle_known=bool(sin_theta or theta or markers))
-        self._check_spelling()
-        unused = tuple(sorted([*self.left.values(), *self.unused], key=self.names.index))
-        return Columns(time, sin_theta, theta, drive, names, markers, unit, unused)
+def _markers(left: dict[str, str]) -> tuple[dict[tuple[str, str], Column], str]:
+    """Coordinates by marker and axis and their unit: those in metres, where there are none those in pixels."""
+    matches = [match for name in left if (match := _MARKER.fullmatch(name))]
+    unit = "px" if matches and all(match["unit"] == "px" for match in matches) else "m"
+    found: dict[tuple[str, str], Column] = {}
+    for match in matches:
+        if (match["unit"] == "px") == (unit == "px") and match.group("marker", "axis") not in found:
+            found[match.group("marker", "axis")] = Column(left.pop(match[0]), MARKER_UNITS[match["unit"]])
+    return found, unit
 
-    def missing(self, name: str, others: str) -> RecordingError:
-        """Return the error that says a column is missing and which there are."""
-        return RecordingError(
-            f"{self.source} has no column {name!r} ({others}), only {', '.join(self.names)}: "
-            f"rename a column, or say which it is with --map {'' if self.angle else 'drive.'}{name}=COLUMN."
-        )
 
-    def _missing_time(self) -> Column:
-        self._check_spelling()
-        raise self.missing("time_s", "or time_ms, time_us, time_ns, time_min")
-
-    def _one(self, quantity: str, units: Mapping[str, float]) -> Column | None:
-        for unit, factor in units.items():
-            if f"{quantity}_{unit}" in self.left:
-                return Column(self.left.pop(f"{quantity}_{unit}"), factor)
-        return None
-
-    def _drive(self, angle_known: bool) -> dict[DriveChannel, Column]:
-        found: dict[DriveChannel, Column] = {}
-        nameless: list[RecordingError] = []
-        for name in [name for name in self.left if is_drive_column(name)]:
-            try:
-                channel, factor = parse_column(name)
-            except RecordingError as error:
-                if name.count("_") > 1:
-                    raise RecordingError(f"{self.source}: {error}") from None
-                nameless.append(self._nameless(name, error))
-                continue
-            if channel in found:
-                raise RecordingError(
-                    f"{self.source} has {channel} twice, as {found[channel].name!r} and {name!r}: keep one of them."
+def _drive(left: dict[str, str], source: str, needed: bool) -> dict[DriveChannel, Column]:
+    """The channels; where others are there, or nothing is missing without it, one that has no name is left over."""
+    found: dict[DriveChannel, Column] = {}
+    nameless = None
+    for name in filter(is_drive_column, list(left)):
+        try:
+            channel, factor = parse_column(name)
+        except RecordingError as error:
+            quantity, *rest = name.split("_")
+            said = str(error)
+            if quantity == "angle" and len(rest) == 1 and rest[0] in THETA_UNITS:
+                said = (
+                    f"is {name!r} the bending angle? Then call it theta_{rest[0]}, or give "
+                    f"--map theta_{rest[0]}={left[name]}; an angle that drives is angle_<channel>_{rest[0]}."
                 )
-            found[channel] = Column(self.left.pop(name), factor)
-        if nameless and not (found and angle_known):
-            raise nameless[0]
-        return found
-
-    def _nameless(self, name: str, error: RecordingError) -> RecordingError:
-        quantity, _, unit = name.lower().partition("_")
-        if quantity == "angle" and unit in THETA_UNITS:
-            return RecordingError(
-                f"{self.source}: is {name!r} the bending angle? Then call it theta_{unit}, or give "
-                f"--map theta_{unit}={self.left[name]}; an angle that drives is angle_<channel>_{unit}."
+            nameless = nameless or RecordingError(f"{source}: {said}")
+            if len(rest) > 1:
+                raise RecordingError(f"{source}: {said}") from None
+            continue
+        if channel in found:
+            raise RecordingError(
+                f"{source} has {channel} twice, as {found[channel].name!r} and {left[name]!r}: keep one of them."
             )
-        return RecordingError(f"{self.source}: {error}")
+        found[channel] = Column(left.pop(name), factor)
+    if nameless and (needed or not found):
+        raise nameless
+    return found
 
-    def _markers(self) -> tuple[tuple[str, ...], tuple[Column, ...], str]:
-        """Markers in metres, or else in pixels; those of the other unit are left over."""
-        matches = {name: match for name in self.left if (match := _MARKER.fullmatch(name))}
-        for in_pixels in (False, True):
-            chosen = {n: m for n, m in matches.items() if (m["unit"] == "px") == in_pixels}
-            if not chosen:
-                continue
-            markers = tuple(dict.fromkeys(match["marker"] for match in chosen.values()))
-            columns = []
-            for marker in markers:
-                for axis in "xy":
-                    columns.append(self._coordinate(marker, axis, chosen))
-            return markers, tuple(columns), "px" if in_pixels else "m"
-        return (), (), "m"
 
-    def _coordinate(self, marker: str, axis: str, chosen: Mapping[str, re.Match]) -> Column:
-        for name, match in chosen.items():
-            if (match["marker"], match["axis"]) == (marker, axis):
-                return Column(self.left.pop(name), MARKER_UNITS[match["unit"]])
-        unit = next(match["unit"] for match in chosen.values() if match["marker"] == marker)
-        raise self.missing(f"{marker}_{axis}_{unit}", "a marker has both coordinates in one unit")
-
-    def _check_spelling(self) -> None:
-        known = [SIN_THETA, *marker_columns(MARKER_NAMES, "m"), *marker_columns(MARKER_NAMES, "px")]
-        known += [
-            f"{q}_{unit}" for q, units in (("time", TIME_UNITS), ("theta", THETA_UNITS)) for unit in units
-        ]
-        known += ["voltage_upper_v", "voltage_lower_v"]
-        for name, own in self.left.items():
-            near = nearest(name, known)
-            if own in self.meant and not (name in known or _MARKER.fullmatch(name) or is_drive_column(name)):
-                hint = f"did you mean {near!r}?" if near else f"expected {MEANINGS}."
-                raise RecordingError(f"--map gives {name}={own}, but nothing is called {name!r} here: {hint}")
-            if near not in (None, *self.names) and name not in known:
-                raise RecordingError(
-                    f"{self.source} has a column {name!r} that is not known: did you mean {near!r}?"
-                )
+def _check_spelling(left: Mapping[str, str], names: list[str], meant: Mapping[str, str], source: str) -> None:
+    """Raise RecordingError where what is left resembles a name that is known."""
+    markers = [*marker_columns(MARKER_NAMES, "m"), *marker_columns(MARKER_NAMES, "px")]
+    known = [SIN_THETA, *markers, *TIMES, *THETAS, *(channel.column for channel in HASEL_PAIR)]
+    for name, own in left.items():
+        near = nearest(name, known)
+        if own in meant and not (name in known or _MARKER.fullmatch(name) or is_drive_column(name)):
+            hint = f"did you mean {near!r}?" if near else f"expected {MEANINGS}."
+            raise RecordingError(f"--map gives {name}={own}, but nothing is called {name!r} here: {hint}")
+        if near not in (None, *names) and name not in known:
+            raise RecordingError(f"{source} has a column {name!r} that is not known: did you mean {near!r}?")
 
 
 def _role(name: str) -> str:

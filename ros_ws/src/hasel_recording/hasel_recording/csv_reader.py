@@ -94,7 +94,7 @@ def _angle(columns: Columns, numbers: CsvNumbers, markers: np.ndarray | None) ->
 
 def _understood(columns: Columns, text: CsvText) -> list[str]:
     """Which column is read as what, one sentence each; those that mean what they are called are left out."""
-    said = [f"columns {', '.join(name for name in text.names if name in columns.names())}"]
+    said = [f"columns {', '.join(name for name in text.names if name not in columns.unused)}"]
     if text.separator != ",":
         said.append(f"cells are separated by {SEPARATED_BY[text.separator]}")
     if columns.time.factor != 1 or columns.time.name != "time_s":
