@@ -112,7 +112,7 @@ def fuzz_csv(data):
     if run is None or said or any(sign in text for sign in ("\x85", "\u00a0", "\u2009", "'", ";", "\t")):
         return
     try:
-        other = pandas.read_csv(io.StringIO(text), comment="#", skipinitialspace=True)
+        other = pandas.read_csv(io.StringIO(text), comment="#", skipinitialspace=True, index_col=False)
         columns = [pandas.to_numeric(other[name]).to_numpy(float) for name in ("time_s", "sin_theta")]
     except (ValueError, KeyError, pandas.errors.ParserError):
         return

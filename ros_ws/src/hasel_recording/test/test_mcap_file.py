@@ -133,3 +133,17 @@ def test_a_chunk_that_says_to_be_huge_takes_no_memory(mcap_file):
     mcap_file.write_bytes(content)
     with pytest.warns(RecordingWarning, match="1 chunks"):
         assert count(mcap_file) > 0
+
+
+def test_a_damaged_name_of_a_type_does_not_break_the_sentence(tmp_path):
+    """What a file calls a type is quoted on one line, what cannot be printed as in a Python string."""
+    path = tmp_path / "run.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start(profile="ros2")
+        schema = writer.register_schema("\nasel/msg/Angle\x1b", "ros2msg", b"float64 sin_theta")
+        writer.add_message(writer.register_channel(MEASURED, "cdr", schema), 0, bytes(12), 0)
+        writer.finish()
+    with pytest.raises(RecordingError, match=r"holds \\nasel/msg/Angle\\x1b, but") as caught:
+        read_recording(path)
+    assert str(caught.value).isprintable()
