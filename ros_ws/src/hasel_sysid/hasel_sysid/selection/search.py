@@ -114,16 +114,10 @@ class Search:
         self.first = self._tested(NOTHING)
         self.threshold = self.first.threshold
         if self.first.chance < self.policy.level:
-            self._say("each alone", 0.2)
-            self._race(at_typical_size(self._low, self.screened, self._least()))
+            self._each_alone("every effect", self.screened, 0.2)
             if self._with_constants and self._something_is_missing():
-                self._say("numbers of the model file", 0.3)
                 self._constants, _ = screen_typical(self._low, constants_of(self.baseline.model))
-                self._race(at_typical_size(self._low, self._constants, self._least()))
-            if self._something_is_missing():
-                self._say("each alone, from all other sizes", 0.4)
-                typical = [*self.screened, *self._constants]
-                self._race(at_other_sizes(self._low, typical, self.policy.fits))
+                self._each_alone("every number of the model file", self._constants, 0.4)
             self._rounds(0.5)
         choice = self._choose()
         return Searched(
@@ -230,6 +224,14 @@ class Search:
         return float(np.linalg.norm(first.T @ second, 2)) if first.size and second.size else 0.0
 
     # what is fitted
+
+    def _each_alone(self, what: str, typical: list[Screened], share: float) -> None:
+        """From typical sizes; where something is still missing, from all others."""
+        self._say(f"{what} alone", share)
+        self._race(at_typical_size(self._low, typical, self._least()))
+        if self._something_is_missing():
+            self._say(f"{what} alone, from all other sizes", share + 0.1)
+            self._race(at_other_sizes(self._low, typical, self.policy.fits))
 
     def _race(self, entries: Entries) -> None:
         """Candidates alone: raced by the low-fidelity model, those within reach of the best then by the model."""
