@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_benchmark.bench_far.far_case import baseline, observed, swings
+from hasel_benchmark.bench_far.far_case import FarCase, baseline, measure, observed, swings
 from hasel_bringup.hidden_truth.truth import NUMERICS
 from hasel_sysid.improvement import improve
 from hasel_sysid.problem import Problem
@@ -24,3 +24,11 @@ def test_stress_of_the_start_is_named_with_its_size(share, pool):
         entry = found["stages"][-1]["parameters"][name]
         assert abs(entry["value"] - value) < 2.5 * entry["std"]
     assert found["stages"][-1]["mae_validation"] < 1.1 * NOISE * np.sqrt(2 / np.pi)
+
+
+def test_a_load_of_any_size_is_named_before_a_number_of_the_model_file(pool):
+    """A density somebody measured does nearly what a load does of twenty times the typical one."""
+    fitted, unseen = measure(FarCase("payload", -0.1, "beam", 2e-5), 0.2057, pool)
+    found = improve(Problem(fitted, pool), baseline("beam"), Problem(unseen, pool)).to_json()
+    assert found["verdict"]["missing"] == ["payload"]
+    assert found["stages"][-1]["parameters"]["payload.mass"]["value"] == pytest.approx(0.2057, rel=0.02)
