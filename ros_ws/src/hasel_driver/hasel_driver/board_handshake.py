@@ -11,6 +11,7 @@ from hasel_driver.ground import Ground
 from hasel_driver.limits import Limits
 from hasel_driver.line_buffer import LineBuffer
 from hasel_driver.mode import Mode
+from hasel_driver.pulse_sight import PulseSight
 from hasel_driver.serial_port import SerialPort
 
 BOOT_TIMEOUT_S = 2.5  # an Arduino's boot loader takes up to 2 s after the port is opened
@@ -29,6 +30,7 @@ class BoardHandshake:
     def __init__(self, port: SerialPort, lines: LineBuffer, clock: Callable[[], float]) -> None:
         self._port, self._lines, self._clock = port, lines, clock
         self._sequence = 0
+        self.pulse: PulseSight | None = None  # what was seen of the last test pulse
 
     def perform(self, limits: Limits, prove: bool = False) -> tuple[str, Fault | None]:
         """The board's name, and the fault it had kept; afterwards it is disarmed, with `limits` applied.
@@ -83,6 +85,7 @@ class BoardHandshake:
 
     def _await_proof(self) -> None:
         """Until the board's test pulse has ended, one way or the other."""
+        self.pulse = PulseSight()
         deadline_s = self._clock() + PROOF_TIMEOUT_S
         while self._report().mode is Mode.ACTIVE and self._clock() < deadline_s:
             self.transact("PING")
@@ -150,9 +153,12 @@ class BoardHandshake:
         messages = []
         for line in self._lines.feed(self._port.read()):
             try:
-                messages.append(protocol.parse_device_line(line))
+                message = protocol.parse_device_line(line)
             except ProtocolError:
                 continue  # a boot loader, or a line that began before we listened
+            messages.append(message)
+            if self.pulse is not None and isinstance(message, protocol.Telemetry):
+                self.pulse.take(message)
         time.sleep(0.002)
         return messages
 

@@ -2,8 +2,9 @@
 
 End the driver's node first; connect a calibrated high-voltage probe to the muscle's terminals. Each voltage is put on
 only after a `yes`, and what the probe shows is asked for: without an answer for 10 s the output is grounded. An empty
-answer stops, as do Ctrl-C, the interlock, and the driver's emergency stop by topic or service. The table is printed,
-and stored on the board only after another `yes`. Run it once more to verify.
+answer stops, as do Ctrl-C, the interlock, and the driver's emergency stop by topic or service; where the driver runs in
+another namespace, as /rig2, add `--ros-args -r __ns:=/rig2`. The table is printed, and stored on the board only after
+another `yes`. Run it once more to verify.
 """
 
 import argparse
@@ -14,6 +15,7 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 
 from hasel_common.command_entry import command
+from hasel_common.node_usage import user_arguments
 
 from hasel_driver import protocol
 from hasel_driver.board_handshake import BoardHandshake
@@ -203,7 +205,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         default=STATE_FOLDER,
         help=f"of the driver's node, whose latched faults count here too (default: {STATE_FOLDER})",
     )
-    options = parser.parse_args(arguments)
+    options = parser.parse_args(user_arguments(sys.argv[1:] if arguments is None else arguments))
     try:
         voltages_v = [float(word) for word in options.voltages.split(",")]
     except ValueError:

@@ -27,7 +27,7 @@ from hasel_driver.driver_services import SERVICES, DriverServices
 from hasel_driver.errors import DriverError, PortInUseError, PortMissingError, RefusedError
 from hasel_driver.experiment_server import ExperimentServer
 from hasel_driver.faults import Fault, FaultCode
-from hasel_driver.messages import supply_health, to_supply_state
+from hasel_driver.messages import sentence, supply_health, to_supply_state
 from hasel_driver.middleware import prepare, reach
 from hasel_driver.node_parameters import declare, values
 from hasel_driver.parameter_files import check_files
@@ -57,6 +57,7 @@ class DriverNode(LifecycleNode):
         self._retrying = self._port_missing = False
         self._last_problem = ""
         self._silent = False  # the supply, at rest
+        self._note = ""  # why it disarmed itself
         self._configured_s = 0.0
         self._claim = Claim(time.monotonic)
         self._refused_s: dict[str, float] = {}  # when it was last said, by the other commander's name
@@ -251,6 +252,10 @@ class DriverNode(LifecycleNode):
             self._state.publish(message)
             self.experiments.record_state(message)
         self.history.take(status)
+        if status.note != self._note:
+            self._note = status.note
+            if status.note:
+                self.get_logger().warning(sentence(status.note))
         if bool(status.silent_s) != self._silent:
             self._silent = not self._silent
             self.get_logger().warning(

@@ -67,6 +67,8 @@ class DrivenExperiment:
         self.voltage_v: Voltages = (0.0, 0.0)
         self._drive_began_s: float | None = None
         self._drive_ended_s: float | None = None
+        self._row = 0  # of a file, that was sent last
+        self._missed_s: list[float] = []  # times of the changes of voltage in it that were not sent
 
     @property
     def _on_board(self) -> bool:
@@ -105,24 +107,43 @@ class DrivenExperiment:
         if not status.mode.may_be_live:
             self._finish(f"the supply left the armed state: {status}")
         elif self._drive_began_s is None:
-            self._begin_drive_when_rested()
+            if self.elapsed_s >= self.plan.rest_s:
+                self._drive_began_s = self._clock()
+                self._begin_drive()
         elif self._drive_ended_s is None:
             self._drive(status.mode)
         elif self._clock() >= self._drive_ended_s + self.plan.rest_s:
-            self._finish(None)
+            self._finish(self._missed())
 
-    def _begin_drive_when_rested(self) -> None:
-        if self.elapsed_s >= self.plan.rest_s:
-            self._drive_began_s = self._clock()
-            waveform = self.plan.waveform
-            if self._on_board and isinstance(waveform, Waveform):
-                self._supervisor.start(waveform)
+    def _begin_drive(self) -> None:
+        waveform = self.plan.waveform
+        if self._on_board and isinstance(waveform, Waveform):
+            self._supervisor.start(waveform)
+        else:
+            self._hold(0.0)
+
+    def _hold(self, driven_s: float) -> None:
+        waveform = self.plan.waveform
+        self._supervisor.hold(waveform.voltage(driven_s))
+        if isinstance(waveform, FileWaveform):
+            row = waveform.row(driven_s)
+            self._missed_s += waveform.changes_between(self._row, row)
+            self._row = row
+
+    def _missed(self) -> str | None:
+        """What this machine was too late to send."""
+        if not self._missed_s:
+            return None
+        return (
+            f"rows of the file that were not sent: {len(self._missed_s)}, the first that of {self._missed_s[0]:g} s,"
+            " as this machine was late: run it again with less to do, or with rows further apart"
+        )
 
     def _drive(self, mode: Mode) -> None:
         driven_s = self._clock() - self._drive_began_s
         duration_s = self.plan.waveform.duration_s
         if not self._on_board:
-            self._supervisor.hold(self.plan.waveform.voltage(driven_s))
+            self._hold(driven_s)
             over = driven_s >= duration_s
         else:
             over = driven_s >= duration_s and mode is Mode.ARMED

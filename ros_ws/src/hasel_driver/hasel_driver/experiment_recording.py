@@ -19,6 +19,7 @@ from hasel_driver.waveform import MUSCLES, FileWaveform, Waveform
 MOST_STATE_GAP_S = 0.2
 MOST_TOPIC_GAP_S = 1.0
 SAMPLE_S = 0.02  # longest usual distance of two states
+TOLERANCE_V = 1.0  # the board counts in whole volts
 
 
 @dataclass
@@ -93,32 +94,31 @@ def _drive_lacking(content: McapFile, topic: str, waveform: Waveform | FileWavef
 
 
 def _file_lacking(voltage_v: np.ndarray, waveform: FileWaveform) -> list[str]:
-    """Extremes that were held long enough for the states to show them."""
-    held = np.diff(waveform.time_s) >= 2 * SAMPLE_S
-    lacking = []
-    for muscle, series, rows in zip(("upper", "lower"), voltage_v.T, waveform.voltages_v[:-1].T, strict=True):
-        for extreme in (np.max, np.min):
-            expected_v, reached_v = (
-                float(extreme(rows[held], initial=0.0)),
-                float(extreme(series, initial=0.0)),
-            )
-            if not math.isclose(reached_v, expected_v, abs_tol=1.0) and held.all():
-                lacking.append(f"the {muscle} muscle reached {reached_v:.0f} V of {expected_v:.0f} V")
-    return lacking
+    """The first of the rows that were held long enough for the states to show them, and were not, in their order."""
+    held = np.flatnonzero(np.diff(waveform.time_s) >= 2 * SAMPLE_S)
+    states = iter(voltage_v)
+    state_v = next(states, None)
+    for row in held:
+        row_v = waveform.voltages_v[row]
+        while state_v is not None and abs(state_v - row_v).max() > TOLERANCE_V:
+            state_v = next(states, None)
+        if state_v is None:
+            return [f"the row of {waveform.time_s[row]:g} s, {row_v[0]:g} and {row_v[1]:g} V, was not seen"]
+    return []
 
 
 def _waveform_lacking(voltage_v: np.ndarray, waveform: Waveform) -> list[str]:
     window_s = 0.5 * waveform.duty / waveform.frequency_hz
     if window_s < 2 * SAMPLE_S or waveform.voltage_v < 1.0:
         return []  # too short for the states to show
-    tolerance_v = 1.0
+    tolerance_v = TOLERANCE_V
     if waveform.shape != "box":
         tolerance_v += waveform.voltage_v * 2 * SAMPLE_S / window_s
     lacking = []
     for muscle, delay, series in zip(("upper", "lower"), MUSCLES[waveform.muscles], voltage_v.T, strict=True):
         expected_v = 0.0 if delay is None else waveform.voltage_v
         peak_v = float(series.max())
-        if not math.isclose(peak_v, expected_v, abs_tol=tolerance_v if expected_v else 1.0):
+        if not math.isclose(peak_v, expected_v, abs_tol=tolerance_v if expected_v else TOLERANCE_V):
             lacking.append(f"the {muscle} muscle reached {peak_v:.0f} V of {expected_v:.0f} V")
         # Without a rest the first drive may have begun before the first state: what came before it was 0 V.
         drives = int(np.count_nonzero(np.diff((series > 0).astype(int), prepend=0) == 1))

@@ -1,6 +1,7 @@
 """Keeps on disk, for each port, the fault that a restarted node must still have."""
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 from hasel_driver.errors import PortError
@@ -21,7 +22,7 @@ class FaultStore:
         """The fault that was kept. Raises PortError where the file makes no sense: nobody knows then."""
         entry = self._entries().get(self._port)
         try:
-            self._kept = Fault(FaultCode(entry["code"]), entry["detail"]) if entry else None
+            self._kept = Fault(**{**entry, "code": FaultCode(entry["code"])}) if entry else None
         except (KeyError, TypeError, ValueError) as error:
             raise self._unreadable() from error
         return self._kept
@@ -35,7 +36,7 @@ class FaultStore:
         entries = self._entries()
         entries.pop(self._port, None)
         if outlives is not None:
-            entries[self._port] = {"code": int(outlives.code), "detail": outlives.detail}
+            entries[self._port] = asdict(outlives)
         self._path.parent.mkdir(parents=True, exist_ok=True)
         beside = self._path.with_suffix(".new")
         beside.write_text(json.dumps(entries, indent=1))

@@ -1,6 +1,6 @@
 """Codes and plain words of every latched fault: below 100 the board's own, from 100 on the driver's."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
 
@@ -71,14 +71,20 @@ EXPLANATIONS: dict[FaultCode, str] = {
 
 @dataclass(frozen=True)
 class Fault:
-    """A latched fault; prints as a sentence."""
+    """A latched fault; prints as a sentence. `stop`: the emergency stop that came besides, in words."""
 
     code: FaultCode
     detail: str = ""
+    stop: str = ""
 
     def __str__(self) -> str:
         words = EXPLANATIONS[self.code]
-        return f"{words}: {self.detail}" if self.detail else words
+        words = f"{words}: {self.detail}" if self.detail else words
+        return f"{words}; besides, {self.stop}" if self.stop else words
+
+    def beside(self, other: "Fault") -> "Fault":
+        """This fault, which also shows the emergency stop that `other` is, or shows."""
+        return replace(self, stop=str(other) if other.code is FaultCode.EMERGENCY_STOP else other.stop)
 
 
 # Only a proof of the ground contacts, or of the monitors, takes these away.

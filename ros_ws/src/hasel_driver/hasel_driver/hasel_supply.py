@@ -9,11 +9,12 @@ from hasel_driver import protocol
 from hasel_driver.board_handshake import BoardHandshake, board_fault
 from hasel_driver.device_clock import DeviceClock
 from hasel_driver.errors import PortError, ProtocolError
-from hasel_driver.faults import Fault, FaultCode, SupplyFaultError
+from hasel_driver.faults import NEED_PROOF, Fault, FaultCode, SupplyFaultError
 from hasel_driver.ground import Ground
 from hasel_driver.limits import DISCHARGED_V, LEAST_PULSE_V, Limits, Voltages
 from hasel_driver.line_buffer import LineBuffer
 from hasel_driver.mode import Mode
+from hasel_driver.pulse_sight import PulseSight
 from hasel_driver.serial_port import SerialPort
 from hasel_driver.supply import Capabilities, Connection, Reading, Supply
 from hasel_driver.waveform import Waveform
@@ -55,14 +56,16 @@ class HaselSupply(Supply):
         self._sent_s = 0.0
         self._wanted: Voltages | None = None  # voltage waiting for room on the line
         self._reset_found = False
+        self._pulse: PulseSight | None = None  # since it began, until it has proven the ground
         self._device_us: int | None = None  # the board's clock in its last report
         self._maxima_v = {round(self.limits.maximum_voltage_v)}  # that the board may report
 
     def open(self, prove: bool = False) -> Connection:
         self._forget_link()
         self._port.open()
+        handshake = BoardHandshake(self._port, self._lines, self._clock)
         try:
-            name, fault = BoardHandshake(self._port, self._lines, self._clock).perform(self.limits, prove)
+            name, fault = handshake.perform(self.limits, prove)
         except SupplyFaultError as problem:
             self._port.close()
             raise PortError(
@@ -71,6 +74,7 @@ class HaselSupply(Supply):
         except PortError:
             self._port.close()
             raise
+        self._pulse = handshake.pulse
         return Connection(name, fault)
 
     def close(self) -> None:
@@ -170,6 +174,8 @@ class HaselSupply(Supply):
         if reply.accepted:
             if reply.words[0] == "MAXIMUM":
                 self._maxima_v = {round(self.limits.maximum_voltage_v)}
+            elif reply.words[0] == "ARM":
+                self._pulse = PulseSight()
             return
         if pending.words[0] == "ARM":
             self.refusal = REFUSALS.get(reply.words[0], f"the board answered {text}")
@@ -178,6 +184,10 @@ class HaselSupply(Supply):
 
     def _read(self, report: protocol.Telemetry, now_s: float) -> Reading:
         self._check_for_reset(report)
+        if report.mode in (Mode.STANDBY, Mode.ARMED):
+            self._pulse = None
+        elif self._pulse is not None:
+            self._pulse.take(report)
         fault = self._fault(report) if report.mode is Mode.FAULT else None
         discharged = all(abs(volts) < DISCHARGED_V for volts in report.measured)
         return Reading(
@@ -217,9 +227,12 @@ class HaselSupply(Supply):
         if code is FaultCode.INTERLOCK:
             words = ("closed" if closed else "open" for closed in report.interlock)
             return Fault(code, "its two channels are now " + " and ".join(words))
-        if code is FaultCode.NOT_GROUNDED:
-            return Fault(code, f"{report.measured[0]} and {report.measured[1]} V")
-        return Fault(code)
+        measured = (
+            f"{report.measured[0]} and {report.measured[1]} V" if code is FaultCode.NOT_GROUNDED else ""
+        )
+        in_pulse = self._pulse is not None and code in NEED_PROOF
+        pulse = self._pulse.without_load(report.measured) if in_pulse else ""
+        return Fault(code, "; ".join(filter(None, (measured, pulse))))
 
 
 def _answers(reply: protocol.Reply, command: tuple[str, ...]) -> bool:

@@ -34,7 +34,7 @@ def to_supply_state(
     frame_id: str = "",
     commander: str = "",
 ) -> SupplyState:
-    """`/hasel/state`; in FAULT its text also tells whether the output is proven grounded."""
+    """`/hasel/state`; in FAULT its text also tells whether the output is proven grounded, else why it disarmed."""
     message = SupplyState()
     message.header.stamp, message.header.frame_id = to_time(status.time_s), frame_id
     message.muscle = list(MUSCLE_NAMES)
@@ -53,9 +53,16 @@ def to_supply_state(
     message.heartbeat_timeout = limits.heartbeat_s if limits else math.nan
     message.commander = commander
     if status.mode is Mode.FAULT:
-        sentence = str(status.fault) if status.fault else "The supply is not connected, or does not report"
-        message.fault_text = f"{sentence[:1].upper()}{sentence[1:]}. {OUTPUT_WORDS[status.output]}"
+        words = str(status.fault) if status.fault else "the supply is not connected, or does not report"
+        message.fault_text = f"{sentence(words)} {OUTPUT_WORDS[status.output]}"
+    elif status.note:
+        message.fault_text = sentence(status.note)
     return message
+
+
+def sentence(words: str) -> str:
+    """With a capital and a full stop."""
+    return f"{words[:1].upper()}{words[1:]}."
 
 
 def _interlock(closed: tuple[bool, bool] | None) -> list[int]:
@@ -70,5 +77,5 @@ def supply_health(status: SupplyStatus | None) -> tuple[Level, str, dict[str, ob
         return Level.WARN, "not configured: the port is closed", {}
     level = Level.WARN if status.silent_s else Level.OK
     level = Level.ERROR if status.mode is Mode.FAULT else level
-    sentence = str(status) + (f", no report for {status.silent_s:.1f} s" if status.silent_s else "")
-    return level, sentence, {"mode": status.mode.name, "output": status.output}
+    words = str(status) + (f", no report for {status.silent_s:.1f} s" if status.silent_s else "")
+    return level, words, {"mode": status.mode.name, "output": status.output}

@@ -1,9 +1,9 @@
 """`ros2 run hasel_driver prove`: breaks the simulated supply's hardware, kind by kind, and judges what the driver says.
 
-Then other nodes come: a second driver of its name, and strangers. The truth is the simulated contacts and voltages,
-never a node's word. With `--firmware` (firmware/build) the sketch in simavr is tried instead of the virtual supply.
-The table is printed, and the exit code is 0 where nothing was wrong. A trial during which this machine itself was late
-proves nothing, and is repeated.
+The upper and the lower channel are broken by turns. Then other nodes come: a second driver of its name, and strangers.
+The truth is the simulated contacts and voltages, never a node's word. With `--firmware` (firmware/build) the sketch in
+simavr is tried instead of the virtual supply. The table is printed, and the exit code is 0 where nothing was wrong.
+A trial during which this machine itself was late proves nothing, and is repeated.
 """
 
 import argparse
@@ -12,7 +12,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from itertools import chain
+from itertools import chain, cycle, islice
 from pathlib import Path
 
 from hasel_common.command_entry import command
@@ -20,7 +20,7 @@ from hasel_common.command_entry import command
 from hasel_driver.bench_options import firmware_files
 from hasel_driver.errors import DriverError, RefusedError
 from hasel_driver.testing.bench import Bench
-from hasel_driver.testing.kinds import KINDS, UNSEEN, Kind, Trial, try_kind
+from hasel_driver.testing.kinds import CHANNELS, KINDS, UNSEEN, Kind, Trial, try_kind
 from hasel_driver.testing.punctuality import Punctuality
 from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Rig
 from hasel_driver.testing.walk import Walk
@@ -56,9 +56,9 @@ class Trials:
         self._punctuality = Punctuality()
         self.repeated = 0
 
-    def of(self, judge: Callable[[Rig], Trial]) -> list[Trial]:
-        """Each on a supply of its own."""
-        return [self._one(judge) for _ in range(self._rounds)]
+    def of(self, *judges: Callable[[Rig], Trial]) -> list[Trial]:
+        """Each on a supply of its own; where there are several judges, they take turns."""
+        return [self._one(judge) for judge in islice(cycle(judges), self._rounds)]
 
     def _one(self, judge: Callable[[Rig], Trial]) -> Trial:
         for attempt in range(ATTEMPTS):
@@ -77,15 +77,16 @@ class Trials:
 
 
 def prove_hardware(trials: Trials, kinds: Sequence[Kind]) -> Iterator[ProofRow]:
-    """Each kind with the driver's thread on the supply."""
+    """Each kind, in the upper and the lower channel by turns, with the driver's thread on the supply."""
     for kind in kinds:
-        yield ProofRow(kind.name, trials.of(partial(_try_hardware, kind)), "not before the next arming")
+        judges = [partial(_try_hardware, kind, channel) for channel in range(len(CHANNELS))]
+        yield ProofRow(kind.name, trials.of(*judges), "not before the next arming")
 
 
-def _try_hardware(kind: Kind, rig: Rig) -> Trial:
+def _try_hardware(kind: Kind, channel: int, rig: Rig) -> Trial:
     bench = Bench(rig)
     try:
-        return try_kind(bench, kind)
+        return try_kind(bench, kind, channel)
     finally:
         bench.close()
 

@@ -37,8 +37,8 @@ class Rivals:
 
     def __init__(self, node: Node, services: Callable[[], list[str]]) -> None:
         self._node, self._services = node, services
-        name = f"{node.get_namespace().rstrip('/')}/{DRIVER}"
-        self.own_words = f"{name} on {socket.gethostname()} (process {os.getpid()})"
+        self._name = f"{node.get_namespace().rstrip('/')}/{DRIVER}"
+        self.own_words = f"{self._name} on {socket.gethostname()} (process {os.getpid()})"
         self._token = uuid.uuid4().hex
         self._own: bytes | None = None  # this process, as the middleware calls it
         self._words: dict[bytes, str] = {}  # of each process
@@ -59,21 +59,21 @@ class Rivals:
         return self._own is not None
 
     def found(self) -> list[str]:
-        """Each other driver in words: its node's name, and its host where it tells that."""
-        if self._own is None:
-            return []
-        others, gone = [], 0
-        for info in self._node.get_publishers_info_by_topic(relative(STATE)):
-            participant = bytes(info.endpoint_gid[:PARTICIPANT_BYTES])
-            if participant == self._own:
-                continue
-            if self._is_gone(participant):
-                gone += 1
-            else:
-                name = self._words.get(participant, f"{full_name(info)} {NOT_TOLD}")
-                others.append(name)
+        """Each other driver in words: its node's name, and its host where it tells that.
+
+        Before this driver has found itself, one that has not told its name may be this one; any more are others.
+        """
+        infos = self._node.get_publishers_info_by_topic(relative(STATE))
+        drivers = {bytes(info.endpoint_gid[:PARTICIPANT_BYTES]): full_name(info) for info in infos}
+        unnamed = (each for each in drivers if each not in self._words)
+        own = self._own or min(unnamed, key=lambda each: drivers[each] != self._name, default=b"")
+        drivers.pop(own, None)
+        gone = {each for each in drivers if self._is_gone(each)}
+        others = [
+            self._words.get(each, f"{name} {NOT_TOLD}") for each, name in drivers.items() if each not in gone
+        ]
         servers = max(self._node.count_services(name) for name in self._services())
-        if servers > 1 + gone + len(others):
+        if servers > 1 + len(gone) + len(others):
             others.append(self._other_server())
         return others
 
@@ -96,7 +96,8 @@ class Rivals:
         """Whether the middleware only has not noticed yet that a process of this machine has ended."""
         now_s = time.monotonic()
         if (
-            participant[HOST] != self._own[HOST]
+            self._own is None
+            or participant[HOST] != self._own[HOST]
             or now_s - self._seen_s.setdefault(participant, now_s) < SILENT_S
         ):
             return False

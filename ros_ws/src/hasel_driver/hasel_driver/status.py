@@ -32,6 +32,7 @@ class SupplyStatus:
     current_a: Voltages
     interlock_closed: tuple[bool, bool] | None = None
     silent_s: float = 0.0  # since the last report of a supply at rest, where that is too long ago
+    note: str = ""  # why it disarmed itself, where that was no fault
 
     @property
     def output(self) -> str:
@@ -46,5 +47,5 @@ class SupplyStatus:
         return None if self.ground is None else self.ground is not Ground.NOT
 
     def __str__(self) -> str:
-        fault = f" ({self.fault})" if self.fault else ""
-        return f"{self.mode.name}{fault}, {WORDS[self.output]}"
+        why = f" ({self.fault or self.note})" if self.fault or self.note else ""
+        return f"{self.mode.name}{why}, {WORDS[self.output]}"

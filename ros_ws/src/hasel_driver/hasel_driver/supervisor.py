@@ -6,6 +6,7 @@ What it tells about the output comes from the supply's own recent report, never 
 import math
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from hasel_driver.checks import STALE_S, Sight, Watch, volts
 from hasel_driver.errors import LimitError, PortError, RefusedError
@@ -46,6 +47,7 @@ class Supervisor:
         self._experiment_running = False
         self._proving = self._zero_seen = False  # since the last arming
         self._used_s = -math.inf  # when somebody last made use of being armed
+        self._note = ""  # why it disarmed itself
         self._watch, self._outputs = Watch(), OutputWatch()
         self._unfollowed: str | None = None
         self._driven_s = -math.inf  # when a voltage was last asked for; infinite while a waveform runs
@@ -99,12 +101,14 @@ class Supervisor:
         if reading is None:
             silent_s = now_s - self._reading.time_s if self.fault is None and self._at_rest() else 0.0
             mode = Mode.STANDBY if silent_s else Mode.FAULT
-            return SupplyStatus(now_s, mode, self.fault, None, UNKNOWN, UNKNOWN, UNKNOWN, silent_s=silent_s)
+            unknown = SupplyStatus(now_s, mode, self.fault, None, UNKNOWN, UNKNOWN, UNKNOWN)
+            return replace(unknown, silent_s=silent_s, note=self._note)
         ground = self._ground(reading)
         mode = Mode.ACTIVE if ground is Ground.NOT and reading.mode is not Mode.FAULT else reading.mode
         mode = Mode.FAULT if self.fault else mode
         values = (reading.commanded_v, reading.measured_v, reading.current_a)
-        return SupplyStatus(reading.time_s, mode, self.fault, ground, *values, reading.interlock_closed)
+        known = SupplyStatus(reading.time_s, mode, self.fault, ground, *values, reading.interlock_closed)
+        return replace(known, note=self._note)
 
     def arm(self) -> None:
         """Ask the supply to arm, which begins with the proof of its ground. Raises RefusedError unless in STANDBY."""
@@ -122,7 +126,7 @@ class Supervisor:
                 f"Arming needs a discharged output, it is {status}, {volts(status.measured_v)} measured:"
                 " treat it as live, find out why, and use the ground stick."
             )
-        self._command_expires_s = None
+        self._command_expires_s, self._note = None, ""
         self._armed_wanted, self._zero_seen = True, False
         self._proving = self.capabilities.proves_grounded
         self._requested_s = self._used_s = self._clock()
@@ -131,19 +135,21 @@ class Supervisor:
 
     def disarm(self) -> None:
         """Ask the supply for STANDBY; allowed in every state."""
-        self._armed_wanted = False
+        self._armed_wanted, self._note = False, ""
         self._requested_s = self._clock()
         self._end_drive()
         if self.connected:
             self._guard(self._supply.disarm)
 
     def fail(self, fault: Fault) -> None:
-        """Latch `fault` and ground the output; the first fault stays, but an emergency stop replaces it, unless that
-        would take away that a proof is needed.
+        """Latch `fault` and ground the output; the first fault stays, but an emergency stop replaces it, or is shown
+        beside it, where replacing would take away that a proof is needed.
         """
         stop = fault.code is FaultCode.EMERGENCY_STOP
         if self.fault is None or (stop and self.fault.code not in NEED_PROOF):
             self.fault = fault
+        elif stop:
+            self.fault = self.fault.beside(fault)
         self._armed_wanted = False
         self._end_drive()
         if fault.code is FaultCode.LINK_LOST:
@@ -172,9 +178,9 @@ class Supervisor:
         found = reading.fault
         if found is None and (ground is Ground.NOT or (prove and ground is not Ground.PROVEN)):
             found = Fault(FaultCode.GROUND_NOT_PROVEN, f"{volts(reading.measured_v)} measured")
-        self.fault = found
-        if found is not None:
-            raise RefusedError(f"The fault came back at once: {found}.")
+        self.fault = found and found.beside(self.fault)
+        if self.fault is not None:
+            raise RefusedError(f"The fault came back at once: {self.fault}.")
 
     def command(self, voltage_v: Sequence[float], age_s: float = 0.0) -> None:
         """A voltage from outside [V], `age_s` old; clipped, held for 200 ms from its making, else ignored."""
@@ -277,7 +283,7 @@ class Supervisor:
         self._watch.forget()
         self._outputs, self._unfollowed = OutputWatch(), None
         self._armed_wanted = self._proving = False
-        self._requested_s = self._clock()
+        self._requested_s, self._note = self._clock(), ""
         return reading
 
     def _first_reading(self, name: str) -> Reading:
@@ -333,6 +339,10 @@ class Supervisor:
                 self._take(Fault(*found))
         if self._armed_wanted and not self._experiment_running and now_s - self._used_s > self.idle_disarm_s:
             self.disarm()
+            self._note = (
+                f"disarmed by itself, as no command and no experiment came for {self.idle_disarm_s:g} s:"
+                " arm again to go on"
+            )
         proven = fresh is not None and not fresh.mode.may_be_live
         if self.fault is not None and not proven and now_s - self._stop_sent_s > STOP_REPEAT_S:
             self._send_stop()

@@ -3,7 +3,7 @@
 import importlib.util
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 
 LATCHED_S = 1.0  # within which a stop that is held already is heard, as at the driver's arming
@@ -11,13 +11,16 @@ LATCHED_S = 1.0  # within which a stop that is held already is heard, as at the 
 
 @contextmanager
 def stops_of_ros(stop: Callable[[str], None]) -> Iterator[None]:
-    """Within it `stop(who)` is called for an emergency stop by topic, and by the service, which is answered."""
+    """Within it `stop(who)` is called for an emergency stop by topic, and by the service, which is answered.
+
+    Both in the driver's namespace, which `--ros-args -r __ns:=…` changes as for any node; what is heard is said.
+    """
     if importlib.util.find_spec("rclpy") is None:
         print("ROS 2 is not there: only the keyboard and the interlock stop.", file=sys.stderr)
         yield
         return
     from hasel_common.spinning import BackgroundSpin, node_alone
-    from hasel_common.topics import EMERGENCY_STOP, NAMESPACE
+    from hasel_common.topics import EMERGENCY_STOP, NAMESPACE, relative
     from std_srvs.srv import Trigger
 
     from hasel_driver.middleware import prepare
@@ -37,12 +40,25 @@ def stops_of_ros(stop: Callable[[str], None]) -> Iterator[None]:
     topic = StopTopic(
         node, StopHolders(), lambda asserted, who: stop(f"by topic, from {who}") if asserted else None
     )
-    node.create_service(Trigger, EMERGENCY_STOP, serve)
+    service = node.create_service(Trigger, relative(EMERGENCY_STOP), serve)
     spin = BackgroundSpin(node, "stops", owns_context=True)
     time.sleep(LATCHED_S)
+    print(_heard(service.service_name, node.get_topic_names_and_types() + node.get_service_names_and_types()))
     try:
         yield
     finally:
         spin.end()
         topic.destroy()
         spin.close()
+
+
+def _heard(name: str, present: Iterable[tuple[str, list[str]]]) -> str:
+    """What is heard, and what is there and is not, in words."""
+    last = name.rpartition("/")[-1]
+    others = sorted({each for each, _ in present if each.rpartition("/")[-1] == last} - {name})
+    if not others:
+        return f"Emergency stops are heard on {name}."
+    return (
+        f"Emergency stops are heard on {name} only, and there is {', '.join(others)} too: for the supply of another"
+        " namespace, such as /rig2, add --ros-args -r __ns:=/rig2."
+    )

@@ -1,7 +1,7 @@
 """The supply's board in Python: the same protocol, states and faults as the sketch in `firmware/`."""
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from hasel_driver import protocol
 from hasel_driver.calibration import Calibration
@@ -45,32 +45,27 @@ SETTINGS: dict[str, tuple[int, int, int]] = {
 
 
 @dataclass
-class Hardware:
-    """What the board does not know of its relays, converters and monitors; upper muscle first."""
+class ChannelHardware:
+    """What the board does not know of one channel's relays, converter and monitor."""
 
-    welded: bool = (
-        False  # the upper muscle's positive contact stays closed, and keeps the ground contact open
-    )
-    ground_broken: bool = False  # the upper muscle's ground contact does not close
-    set_point_gain: list[float] = field(default_factory=lambda: [1.0, 1.0])
-    monitor_gain: list[float] = field(default_factory=lambda: [1.0, 1.0])
-    stuck_v: float | None = None  # what the upper muscle's monitor says for good
-    inverted: bool = False  # the sign of the upper muscle's monitor
-    unconverted: bool = False  # the converter of the analogue inputs has stopped
+    welded: bool = False  # the positive contact stays closed, and keeps the ground contact open
+    ground_broken: bool = False  # the ground contact does not close
+    set_point_gain: float = 1.0
+    monitor_gain: float = 1.0
+    stuck_v: float | None = None  # what the monitor says for good
+    inverted: bool = False  # the monitor's sign
 
-    def contact(self, channel: int, asked: Contact) -> Contact:
+    def contact(self, asked: Contact) -> Contact:
         """The contact that is closed when the board closes `asked`."""
-        if channel == 0 and self.welded:
+        if self.welded:
             return Contact.POSITIVE
-        if channel == 0 and self.ground_broken and asked is Contact.GROUND:
-            return Contact.OPEN
-        return asked
+        return Contact.OPEN if self.ground_broken and asked is Contact.GROUND else asked
 
-    def monitor_v(self, channel: int, voltage_v: float) -> float:
-        """Magnitude that a muscle's monitor gives [V]."""
-        if channel == 0 and self.stuck_v is not None:
-            return self.stuck_v
-        return min(abs(voltage_v) * self.monitor_gain[channel], MONITOR_V)
+    def monitor_v(self, voltage_v: float) -> float:
+        """Magnitude that the monitor gives [V]."""
+        return (
+            self.stuck_v if self.stuck_v is not None else min(abs(voltage_v) * self.monitor_gain, MONITOR_V)
+        )
 
 
 class VirtualBoard:
@@ -82,7 +77,8 @@ class VirtualBoard:
         self.calibrations = [Calibration(), Calibration()]
         self.calibrations_damaged = False
         self.latches: set[Latch] = set()
-        self.hardware = Hardware()
+        self.hardware = (ChannelHardware(), ChannelHardware())  # upper muscle first
+        self.unconverted = False  # the converter of the analogue inputs has stopped
         self.transmitted = bytearray()
         self.reset("power")
 
@@ -94,7 +90,7 @@ class VirtualBoard:
         self.voltage = self.wanted = (0, 0)
         self.waveform = Waveform("box", 0, 1.0, 1)
         self.waveform_ms: int | None = None
-        self.tick_dead = self.hardware.unconverted = False
+        self.tick_dead = self.unconverted = False
         self.proof: GroundProof | None = None
         self.evidence = (GroundEvidence(), GroundEvidence())
         self.monitors = (MonitorWatch(), MonitorWatch())
@@ -136,7 +132,7 @@ class VirtualBoard:
     def _closed(self, channel: int) -> bool:
         """The ground contact by what was commanded, and by its auxiliary contact where that is wired."""
         commanded = self.bridges[channel].contact
-        read = self.hardware.contact(channel, commanded) if self.settings["CONTACTS"] else commanded
+        read = self.hardware[channel].contact(commanded) if self.settings["CONTACTS"] else commanded
         return self.bridges[channel].grounded and read is Contact.GROUND
 
     @property
@@ -147,16 +143,19 @@ class VirtualBoard:
     def _convert(self) -> None:
         upper, lower = (
             math.copysign(
-                calibration.measured_v(self.hardware.monitor_v(channel, muscle.voltage_v)), muscle.voltage_v
+                calibration.measured_v(hardware.monitor_v(muscle.voltage_v)),
+                -muscle.voltage_v if hardware.inverted else muscle.voltage_v,
             )
-            for channel, (calibration, muscle) in enumerate(zip(self.calibrations, self.muscles, strict=True))
+            for calibration, hardware, muscle in zip(
+                self.calibrations, self.hardware, self.muscles, strict=True
+            )
         )
-        self._converted_v = (-upper if self.hardware.inverted else upper, lower)
+        self._converted_v = (upper, lower)
 
     def tick(self) -> None:
         """One millisecond of board and muscles."""
         self._unfed_ms += 1
-        if not self.hardware.unconverted:
+        if not self.unconverted:
             self._convert()
             self._unfed_ms = self._unfed_ms if self.tick_dead else 0
         if self._unfed_ms >= WATCHDOG_MS:
@@ -165,8 +164,8 @@ class VirtualBoard:
             self._control()
         for channel, (bridge, muscle) in enumerate(zip(self.bridges, self.muscles, strict=True)):
             set_point_v = min(self.calibrations[channel].set_point_v(bridge.set_point_v), MONITOR_V)
-            contact = self.hardware.contact(channel, bridge.contact)
-            muscle.step(1e-3, contact, set_point_v * self.hardware.set_point_gain[channel])
+            contact = self.hardware[channel].contact(bridge.contact)
+            muscle.step(1e-3, contact, set_point_v * self.hardware[channel].set_point_gain)
         self._telemetry_ms += 1
         if self._telemetry_ms >= self.settings["TELEMETRY"]:
             self._telemetry_ms = 0
@@ -179,7 +178,7 @@ class VirtualBoard:
     def _control(self) -> None:
         self._time_ms += 1
         self.heartbeat_ms += 1
-        self._stale_ms = self._stale_ms + 1 if self.hardware.unconverted else 0
+        self._stale_ms = self._stale_ms + 1 if self.unconverted else 0
         if self._stale_ms >= BLIND_MS:
             self.fail(FaultCode.MONITOR)
         self._watch_interlock()
@@ -246,7 +245,7 @@ class VirtualBoard:
         most_v = max(self.settings["MAXIMUM"] * 1.05, self.settings["MAXIMUM"] + 100)
         most_a = min(self.settings["TRIP"] * 1e-6, last * MONITOR_A)
         sources = [
-            (abs(volts), abs(self.hardware.monitor_v(channel, muscle.voltage_v)))
+            (abs(volts), abs(self.hardware[channel].monitor_v(muscle.voltage_v)))
             for channel, (volts, muscle) in enumerate(zip(self.measured_v, self.muscles, strict=True))
             if self.bridges[channel].contact.sign
         ]

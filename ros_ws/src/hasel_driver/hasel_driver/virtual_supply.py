@@ -20,7 +20,7 @@ from hasel_common.node_usage import user_arguments
 
 from hasel_driver.errors import PortError
 from hasel_driver.pseudo_terminal import PseudoTerminal
-from hasel_driver.virtual_board import Hardware, VirtualBoard
+from hasel_driver.virtual_board import ChannelHardware, VirtualBoard
 from hasel_driver.virtual_commands import receive
 from hasel_driver.virtual_muscle import Contact, VirtualMuscle
 
@@ -35,23 +35,24 @@ INPUTS = {
     "truncate": "cut the next line to the host in half",
     "noise": "flip one bit of what the host sends next",
     "reset": "reset the board",
-    "overcurrent": "short the upper muscle by 2 MΩ until `recover`",
+    "lower": "what is injected from now on, until `recover`, breaks the lower muscle's channel, not the upper's",
+    "overcurrent": "short the muscle by 2 MΩ until `recover`",
     "interlock": "open both channels of the interlock until `recover`",
     "bounce": "open both channels for 2 ms, as a contact that bounces or a disturbance on its line does",
     "interlock_a": "open its first channel only",
     "interlock_b": "open its second channel only",
-    "weld": "weld the upper muscle's positive contact, so that its ground contact cannot close",
-    "unground": "keep the upper muscle's ground contact from closing",
+    "weld": "weld the muscle's positive contact, so that its ground contact cannot close",
+    "unground": "keep the muscle's ground contact from closing",
     "tickless": "switch the board's timer interrupt off, its line goes on",
     "mute_reset": "reset the board, and lose its banner",
-    "blind": "take the lead off the upper muscle's voltage divider",
+    "blind": "take the lead off the muscle's voltage divider",
     "third": "its monitor says a third of what there is",
     "stick": "its monitor says for good what it says now",
     "invert": "its monitor has the wrong sign",
     "unconverted": "the board converts its analogue inputs no more",
-    "leak": "the upper muscle leaks by 100 MΩ",
+    "leak": "the muscle leaks by 100 MΩ",
     "damage": "change a byte of the calibration in the EEPROM; a reset finds it",
-    "miscalibrate": "the upper converter gives 3 % less than asked, its monitor says 4 % more than there is",
+    "miscalibrate": "the converter gives 3 % less than asked, its monitor says 4 % more than there is",
     "unplug": "pull the cable",
     "replug": "put it back, under a new path (printed, and linked)",
     "recover": "undo the above but reset and unplug",
@@ -68,6 +69,7 @@ class VirtualSupply:
     def __init__(self, board: VirtualBoard, port: PseudoTerminal, tell: Callable[[str], None]) -> None:
         self.board, self.port, self._tell = board, port, tell
         self._faults: set[str] = set()
+        self._channel = 0  # that is broken by what is injected
         self._host_present = False
         self._live = self._tracing = False
         self._peaks = [0.0, 0.0]
@@ -79,9 +81,12 @@ class VirtualSupply:
         """One of INPUTS."""
         if name == "recover":
             self._faults.clear()
-            self.board.muscles[0].short_ohm = float("inf")
+            self._channel = 0
+            for muscle in self.board.muscles:
+                muscle.short_ohm = float("inf")
             self.board.interlock_closed = [True, True]
-            self.board.hardware = Hardware()
+            self.board.hardware = (ChannelHardware(), ChannelHardware())
+            self.board.unconverted = False
         elif name == "help":
             self._tell("\n".join(f"{key:12} {meaning}" for key, meaning in INPUTS.items()))
         elif name not in INPUTS:
@@ -131,8 +136,14 @@ class VirtualSupply:
             self._tell(f"{'live' if live else 'dead'} {time.monotonic():.4f}")
 
     def _ground_contacts(self) -> list[bool]:
-        asked = enumerate(bridge.contact for bridge in self.board.bridges)
-        return [self.board.hardware.contact(channel, contact) is Contact.GROUND for channel, contact in asked]
+        return [
+            hardware.contact(bridge.contact) is Contact.GROUND
+            for hardware, bridge in zip(self.board.hardware, self.board.bridges, strict=True)
+        ]
+
+    @property
+    def _hardware(self) -> ChannelHardware:
+        return self.board.hardware[self._channel]
 
     def _transmit(self) -> None:
         data, self.board.transmitted = bytes(self.board.transmitted), bytearray()
@@ -148,8 +159,11 @@ class VirtualSupply:
     def _inject_reset(self) -> None:
         self.board.reset("external")
 
+    def _inject_lower(self) -> None:
+        self._channel = 1
+
     def _inject_overcurrent(self) -> None:
-        self.board.muscles[0].short_ohm = 2e6
+        self.board.muscles[self._channel].short_ohm = 2e6
 
     def _inject_interlock(self) -> None:
         self.board.interlock_closed = [False, False]
@@ -167,10 +181,10 @@ class VirtualSupply:
         self.board.interlock_closed[1] = False
 
     def _inject_weld(self) -> None:
-        self.board.hardware.welded = True
+        self._hardware.welded = True
 
     def _inject_unground(self) -> None:
-        self.board.hardware.ground_broken = True
+        self._hardware.ground_broken = True
 
     def _inject_tickless(self) -> None:
         self.board.tick_dead = True
@@ -181,26 +195,26 @@ class VirtualSupply:
         del self.board.transmitted[sent:]
 
     def _inject_miscalibrate(self) -> None:
-        self.board.hardware.set_point_gain[0] = 0.97
-        self.board.hardware.monitor_gain[0] = 1.04
+        self._hardware.set_point_gain = 0.97
+        self._hardware.monitor_gain = 1.04
 
     def _inject_blind(self) -> None:
-        self.board.hardware.monitor_gain[0] = 0.0
+        self._hardware.monitor_gain = 0.0
 
     def _inject_third(self) -> None:
-        self.board.hardware.monitor_gain[0] = 1 / 3
+        self._hardware.monitor_gain = 1 / 3
 
     def _inject_stick(self) -> None:
-        self.board.hardware.stuck_v = abs(self.board.muscles[0].voltage_v)
+        self._hardware.stuck_v = abs(self.board.muscles[self._channel].voltage_v)
 
     def _inject_invert(self) -> None:
-        self.board.hardware.inverted = True
+        self._hardware.inverted = True
 
     def _inject_unconverted(self) -> None:
-        self.board.hardware.unconverted = True
+        self.board.unconverted = True
 
     def _inject_leak(self) -> None:
-        self.board.muscles[0].short_ohm = 1e8
+        self.board.muscles[self._channel].short_ohm = 1e8
 
     def _inject_damage(self) -> None:
         self.board.calibrations_damaged = True

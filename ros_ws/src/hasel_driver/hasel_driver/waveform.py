@@ -125,11 +125,22 @@ class FileWaveform:
         """`positive` where no voltage is below 0, else `mixed`."""
         return "positive" if (self.voltages_v >= 0).all() else "mixed"
 
+    def row(self, time_s: float) -> int:
+        """The number of the row that holds at `time_s` after the start; the last one's from the end on."""
+        return int(self.time_s.searchsorted(time_s, side="right")) - 1
+
+    def changes_between(self, first: int, last: int) -> list[float]:
+        """Times [s] of the rows between these two that ask for another voltage than the row before them."""
+        if last - first < 2:
+            return []
+        changed = (self.voltages_v[first + 1 : last] != self.voltages_v[first : last - 1]).any(axis=1)
+        return self.time_s[first + 1 : last][changed].tolist()
+
     def voltage(self, time_s: float) -> Voltages:
         """Voltage of the upper and lower muscle [V] at `time_s` after the start; 0 outside the drive."""
         if not 0.0 <= time_s < self.duration_s:
             return 0.0, 0.0
-        upper, lower = self.voltages_v[self.time_s.searchsorted(time_s, side="right") - 1]
+        upper, lower = self.voltages_v[self.row(time_s)]
         return float(upper), float(lower)
 
     def metadata(self) -> dict[str, str]:

@@ -1,5 +1,6 @@
 """Calibration: the corrections, and the procedure on a supply that needs them."""
 
+import sys
 import time
 from contextlib import contextmanager
 
@@ -160,3 +161,30 @@ def test_the_stops_of_ros_are_heard():
             assert heard[1:] in (["by topic, from /user"], [f"by topic, from {UNNAMED}"])
     finally:
         client.close()
+
+
+def test_the_stops_of_another_namespace_are_heard_where_it_is_given(monkeypatch, capsys):
+    """As any node takes it; what is heard is said, and what is there and is not."""
+    pytest.importorskip("rclpy", reason="ROS 2 is not there")
+    from hasel_driver.testing.ros_client import LATCHED, another_node
+    from hasel_driver.tool_stops import stops_of_ros
+    from std_msgs.msg import Bool
+
+    heard: list[str] = []
+    with another_node("panel") as node:
+        node.create_publisher(Bool, "/hasel/emergency_stop", LATCHED)
+        publisher = node.create_publisher(Bool, "/rig2/emergency_stop", LATCHED)
+        publisher.publish(Bool(data=True))
+        monkeypatch.setattr(sys, "argv", ["calibrate", "--ros-args", "-r", "__ns:=/rig2"])
+        with stops_of_ros(heard.append):
+            assert any("by topic" in each for each in heard)
+    told = capsys.readouterr().out
+    assert "heard on /rig2/emergency_stop only, and there is /hasel/emergency_stop too" in told
+
+
+def test_arguments_for_ros_are_left_to_it(rig, monkeypatch, capsys):
+    """The namespace is no unknown option."""
+    monkeypatch.setattr("builtins.input", lambda _: "")
+    words = ["--port", rig.port, "--channel", "lower", "--ros-args", "-r", "__ns:=/rig2"]
+    assert calibrate.main(words) == 1
+    assert "nothing was stored" in capsys.readouterr().err

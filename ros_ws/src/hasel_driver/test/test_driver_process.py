@@ -346,3 +346,15 @@ def test_a_parameter_file_that_is_not_there_is_one_sentence():
     ]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert (done.returncode, "Traceback" in done.stderr, "/no/such.yaml" in done.stderr) == (1, False, True)
+
+
+def test_a_driver_that_disarms_itself_says_why(start_driver, virtual_rig, ros):
+    """In the log and in the state, until it is armed again."""
+    driver = start_driver(virtual_rig.port, idle_disarm=1.0)
+    driver.arm()
+    ros.await_mode(STANDBY)
+    expected = "Disarmed by itself, as no command and no experiment came for 1 s: arm again to go on."
+    assert (ros.state.fault_code, ros.state.fault_text) == (0, expected)
+    ros.wait(lambda: any(expected in line for line in list(driver.log)))
+    driver.arm()
+    assert ros.await_mode(ARMED).fault_text == ""

@@ -2,14 +2,16 @@
 
 import math
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from hasel_driver.errors import LimitError, RefusedError
 from hasel_driver.experiment import DrivenExperiment, ExperimentPlan
 from hasel_driver.experiment_recording import ExperimentRecording
 from hasel_driver.mode import Mode
-from hasel_driver.waveform import Waveform
+from hasel_driver.waveform import FileWaveform, Waveform
 from hasel_recording.errors import RecordingError
 
 STATE, MEASURED = "/hasel/state", "/hasel/bending/measured"
@@ -66,6 +68,61 @@ def test_rests_drives_and_rests():
         (-3000.0, 0.0),
         (0.0, -3000.0),
     }
+
+
+@pytest.fixture
+def drive(tmp_path) -> FileWaveform:
+    """A file: one flat second, then rows of 50 ms that each ask for another voltage."""
+    time_s = np.concatenate([np.arange(0.0, 1.0, 0.05), np.arange(1.0, 2.01, 0.05)])
+    upper_v = np.where(time_s < 0.99, 1000.0, 1000.0 + 1000.0 * time_s.round(2))
+    return FileWaveform(tmp_path / "drive.csv", time_s, np.stack([upper_v, 0.0 * upper_v], axis=1))
+
+
+@pytest.mark.parametrize(
+    ("late_at_s", "told"), [(None, None), (0.5, None), (1.33, "not sent: 2, the first that of 1.35 s")]
+)
+def test_rows_of_a_file_that_were_not_sent_are_told(drive, late_at_s, told):
+    """Where the machine was late by 0.13 s: rows that ask for what is on already are not lost."""
+    clock, supervisor = [0.0], FakeSupervisor()
+    experiment = DrivenExperiment(ExperimentPlan(drive, 0.0), supervisor, lambda: clock[0])
+    experiment.begin()
+    while not experiment.finished:
+        late = late_at_s is not None and abs(clock[0] - late_at_s) < 5e-4
+        clock[0] += 0.13 if late else 0.001
+        experiment.step()
+    assert (experiment.failure is None) == (told is None)
+    assert told is None or re.search(told, experiment.failure)
+
+
+def test_the_first_row_is_sent_at_once():
+    """Not with the next step, by when a short one may have ended."""
+    clock, supervisor = [0.0], FakeSupervisor()
+    experiment = DrivenExperiment(ExperimentPlan(PLAN.waveform), supervisor, lambda: clock[0])
+    experiment.begin()
+    experiment.step()
+    assert supervisor.voltage_v == (3000.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("lost_s", "told"), [(None, []), (1.5, ["the row of 1.5 s, 2500 and 0 V, was not seen"])]
+)
+def test_each_row_of_a_file_must_be_seen(tmp_path, drive, lost_s, told):
+    """Also where others are too short to be, and between the extremes."""
+    pytest.importorskip("hasel_interfaces", reason="the workspace is not built")
+    from hasel_interfaces.msg import SupplyState
+
+    short = replace(
+        drive, time_s=np.append(drive.time_s, 2.01), voltages_v=np.append(drive.voltages_v, [[0, 0]], 0)
+    )
+    recording = ExperimentRecording(tmp_path / "run.mcap", ExperimentPlan(short))
+    for time_s in np.arange(0.005, 2.01, 0.01):
+        message = SupplyState(muscle=["upper", "lower"])
+        message.header.stamp.sec, message.header.stamp.nanosec = int(time_s), round(time_s % 1 * 1e9)
+        shown_s = time_s - 0.05 if lost_s is not None and lost_s < time_s < lost_s + 0.05 else time_s
+        message.commanded_voltage = list(short.voltage(shown_s))
+        recording.write(STATE, message)
+    recording.close()
+    assert recording.missing(short.duration_s) == told
 
 
 def test_ends_when_the_supply_leaves_the_armed_state():

@@ -19,6 +19,13 @@ def test_a_stop_is_kept_for_its_port_until_it_is_cleared(tmp_path):
     assert FaultStore(str(tmp_path), "/dev/a").load() is None
 
 
+def test_a_stop_beside_a_fault_is_kept_with_it(tmp_path):
+    """Both are there after a restart."""
+    both = Fault(FaultCode.NOT_GROUNDED, "2900 and 0 V").beside(STOP)
+    FaultStore(str(tmp_path), "/dev/a").keep(both)
+    assert FaultStore(str(tmp_path), "/dev/a").load() == both
+
+
 @pytest.mark.parametrize(
     "text", ["{", "[]", '{"/dev/a": {"code": "stop"}}', '{"/dev/a": {"code": 9999, "detail": ""}}']
 )

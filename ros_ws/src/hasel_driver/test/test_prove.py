@@ -1,5 +1,7 @@
 """The command that proves what the driver says."""
 
+from types import SimpleNamespace
+
 import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
@@ -23,6 +25,17 @@ def test_every_kind_is_a_row_and_what_is_wrong_is_told(monkeypatch, capsys):
     monkeypatch.setattr(neighbours, "meet", lambda *_: Trial(0.6, ["4000 V"]))
     assert prove.main(["--rounds", "1"]) == 1
     assert "| 600 ms | 4000 V |" in capsys.readouterr().out
+
+
+def test_the_channels_are_broken_by_turns(monkeypatch):
+    """Rounds of a kind take no longer than with one channel."""
+    channels: list[int] = []
+    monkeypatch.setattr(prove, "Rig", lambda *_: SimpleNamespace(close=lambda: None))
+    monkeypatch.setattr(
+        prove, "_try_hardware", lambda kind, channel, rig: channels.append(channel) or Trial()
+    )
+    (row,) = prove.prove_hardware(prove.Trials([], 3), KINDS[:1])
+    assert (channels, row.wrong) == ([0, 1, 0], [])
 
 
 def test_beside_a_driver_that_runs_nothing_is_tried(virtual_rig, start_driver, ros, monkeypatch, capsys):

@@ -327,6 +327,11 @@ def test_what_nobody_uses_is_disarmed(case):
     case.pass_time(61.0)
     assert (case.supervisor.armed, case.supervisor.fault) == (False, None)
     assert case.supervisor.status().mode is Mode.STANDBY
+    assert "disarmed by itself, as no command and no experiment came for 60 s" in str(
+        case.supervisor.status()
+    )
+    case.arm()
+    assert case.supervisor.status().note == ""
 
 
 def test_a_gap_in_the_telemetry_is_borne_while_nothing_is_armed(case):
@@ -445,6 +450,23 @@ def test_a_stop_does_not_take_away_that_a_proof_is_needed(case, code):
     case.supply.unproven = True
     with pytest.raises(RefusedError, match="came back"):
         case.supervisor.clear_fault()
+
+
+def test_a_stop_beside_a_fault_that_needs_a_proof_is_shown(case):
+    """The fault stays, and both are told; a clearing that is refused takes neither away, one that is granted both."""
+    case.supervisor.fail(Fault(FaultCode.NOT_GROUNDED, "2900 and 0 V"))
+    case.supervisor.fail(Fault(FaultCode.EMERGENCY_STOP, "by service"))
+    case.pass_time(0.1)
+    for unproven in (True, False):
+        told = str(case.supervisor.status().fault)
+        assert case.supervisor.fault.code in (FaultCode.NOT_GROUNDED, FaultCode.GROUND_NOT_PROVEN)
+        assert "besides, emergency stop: by service" in told
+        case.supply.unproven = unproven
+        if unproven:
+            with pytest.raises(RefusedError, match="emergency stop"):
+                case.supervisor.clear_fault()
+    case.supervisor.clear_fault()
+    assert case.supervisor.fault is None
 
 
 def test_a_ripple_that_the_output_cannot_follow_is_no_blindness(case):

@@ -35,9 +35,15 @@ static struct port port;
 static struct muscle muscles[CHANNELS];
 static double peaks_v[CHANNELS];
 static uint16_t compare_values[CHANNELS];
-static bool interlock_open[2], contact_welded, ground_broken, boot_lost;
-static double set_point_gain = 1.0, monitor_gain = 1.0;  // of the upper muscle's converter and monitor
-static double stuck_v = -1.0;                            // what its monitor says for good; negative: the truth
+static bool interlock_open[2], boot_lost;
+struct hardware {
+  bool contact_welded, ground_broken;
+  double set_point_gain, monitor_gain;
+  double stuck_v;  // what the monitor says for good; negative: the truth
+};
+static const struct hardware WHOLE = {.set_point_gain = 1.0, .monitor_gain = 1.0, .stuck_v = -1.0};
+static struct hardware hardware[CHANNELS];
+static int broken;  // channel that is broken by what is injected
 static bool live, silent, deaf, noise, truncate_next, uart_full, host_present, tracing;
 static char received[4096];
 static size_t received_count;
@@ -61,8 +67,8 @@ static bool high(uint8_t pin) {
 static enum contact contact_of(int channel) {
   const bool positive = high(2 + channel), negative = high(4 + channel), ground = !high(6 + channel);
   if (positive + negative + ground > 1) ++overlaps;
-  if (channel == 0 && contact_welded) return POSITIVE;  // and keeps the ground contact from closing
-  if (channel == 0 && ground_broken && ground) return OPEN;
+  if (hardware[channel].contact_welded) return POSITIVE;  // and keeps the ground contact from closing
+  if (hardware[channel].ground_broken && ground) return OPEN;
   return ground ? GROUND : positive ? POSITIVE : negative ? NEGATIVE : OPEN;
 }
 
@@ -92,7 +98,7 @@ static void compare_written(struct avr_irq_t* irq, uint32_t low_byte, void* para
 
 static double set_point_v(int channel) {
   const uint8_t connected = channel == 0 ? 0x80 : 0x20;
-  return high(8) && avr->data[TCCR1A] & connected ? compare_values[channel] * (channel == 0 ? set_point_gain : 1.0) : 0.0;
+  return high(8) && avr->data[TCCR1A] & connected ? compare_values[channel] * hardware[channel].set_point_gain : 0.0;
 }
 
 static void raise_analogue(int input, double full_scale_share) {
@@ -135,7 +141,8 @@ static void tick(void) {
     const double volts = fabs(muscles[channel].voltage_v);
     peaks_v[channel] = fmax(peaks_v[channel], volts);
     is_live |= volts > LIVE_V || contacts[channel] != GROUND;
-    const double said_v = channel != 0 ? volts : stuck_v < 0.0 ? volts * monitor_gain : stuck_v;
+    const struct hardware* own = &hardware[channel];
+    const double said_v = own->stuck_v < 0.0 ? volts * own->monitor_gain : own->stuck_v;
     raise_analogue(channel, said_v / 10000.0);
     set_contact(channel);
     raise_analogue(CHANNELS + channel, muscles[channel].current_a / 1e-3);
@@ -211,10 +218,10 @@ static void run_until(uint64_t target) {
 }
 
 static void recover(void) {
-  silent = deaf = noise = truncate_next = contact_welded = ground_broken = boot_lost = false;
+  silent = deaf = noise = truncate_next = boot_lost = false;
   interlock_open[0] = interlock_open[1] = false;
-  set_point_gain = monitor_gain = 1.0;
-  stuck_v = -1.0;
+  hardware[0] = hardware[1] = WHOLE;
+  broken = 0;
   set_interlock();
   muscles[0].short_ohm = muscles[1].short_ohm = HUGE_VAL;
 }
@@ -245,7 +252,16 @@ static void bounce(void) {
   set_interlock();
 }
 
+// Twice: the sketch may be just about to write the register as it read it before.
+static void stop_conversion(void) {
+  for (int time = 0; time < 2; ++time) {
+    avr->data[ADCSRA] &= ~(1 << ADIE);
+    run_until(avr->cycle + BYTE_CYCLES);
+  }
+}
+
 static bool obey(const char* word) {
+  struct hardware* own = &hardware[broken];
   if (!strcmp(word, "quit")) return false;
   if (!strcmp(word, "silence")) silent = true;
   else if (!strcmp(word, "deaf")) deaf = true;
@@ -255,17 +271,18 @@ static bool obey(const char* word) {
   else if (!strcmp(word, "bounce")) bounce();
   else if (!strcmp(word, "interlock_a")) interlock_open[0] = true, set_interlock();
   else if (!strcmp(word, "interlock_b")) interlock_open[1] = true, set_interlock();
-  else if (!strcmp(word, "weld")) contact_welded = true;
-  else if (!strcmp(word, "unground")) ground_broken = true;
+  else if (!strcmp(word, "lower")) broken = 1;
+  else if (!strcmp(word, "weld")) own->contact_welded = true;
+  else if (!strcmp(word, "unground")) own->ground_broken = true;
   else if (!strcmp(word, "tickless")) avr->data[TIMSK2] = 0;
-  else if (!strcmp(word, "blind")) monitor_gain = 0.0;
-  else if (!strcmp(word, "third")) monitor_gain = 1.0 / 3.0;
-  else if (!strcmp(word, "stick")) stuck_v = fabs(muscles[0].voltage_v);
-  else if (!strcmp(word, "unconverted")) avr->data[ADCSRA] &= ~(1 << ADIE);
-  else if (!strcmp(word, "leak")) muscles[0].short_ohm = 1e8;
+  else if (!strcmp(word, "blind")) own->monitor_gain = 0.0;
+  else if (!strcmp(word, "third")) own->monitor_gain = 1.0 / 3.0;
+  else if (!strcmp(word, "stick")) own->stuck_v = fabs(muscles[broken].voltage_v);
+  else if (!strcmp(word, "unconverted")) stop_conversion();
+  else if (!strcmp(word, "leak")) muscles[broken].short_ohm = 1e8;
   else if (!strcmp(word, "damage")) damage_eeprom();
-  else if (!strcmp(word, "miscalibrate")) set_point_gain = 0.97, monitor_gain = 1.04;
-  else if (!strcmp(word, "overcurrent")) muscles[0].short_ohm = 2e6;
+  else if (!strcmp(word, "miscalibrate")) own->set_point_gain = 0.97, own->monitor_gain = 1.04;
+  else if (!strcmp(word, "overcurrent")) muscles[broken].short_ohm = 2e6;
   else if (!strcmp(word, "recover")) recover();
   else if (!strcmp(word, "reset")) reset();
   else if (!strcmp(word, "mute_reset")) boot_lost = true, reset();

@@ -11,8 +11,9 @@ from hasel_driver.limits import DISCHARGED_V, Voltages
 from hasel_driver.mode import Mode
 from hasel_driver.testing.bench import Bench
 
-DRIVEN_V: Voltages = (3000.0, -2000.0)
+DRIVEN_V: Voltages = (3000.0, -2000.0)  # of the broken channel, and of the other
 OTHER_V: Voltages = (5000.0, -2000.0)
+CHANNELS: tuple[tuple[str, ...], ...] = ((), ("lower",))  # words that choose the one to be broken
 WITHIN_S = 0.5
 WATCHED_S = 0.7
 F = FaultCode
@@ -71,24 +72,31 @@ class Trial:
     wrong: list[str] = field(default_factory=list)
 
 
-def try_kind(bench: Bench, kind: Kind) -> Trial:
-    """Inject one kind, and judge everything that the driver says by the voltages of the supply."""
+def try_kind(bench: Bench, kind: Kind, channel: int) -> Trial:
+    """Inject one kind in one channel, and judge everything that the driver says by the voltages of the supply."""
     trial, rig = Trial(), bench.rig
     _prepare(bench)
     if kind.act != "arm":
         bench.arm()
-        if not bench.command_until(lambda: bench.status().measured_v[0] > 2900, DRIVEN_V):
+        if not bench.command_until(
+            lambda: bench.status().measured_v[channel] > 2900, _asked(DRIVEN_V, channel)
+        ):
             trial.wrong.append(f"it did not reach its voltage: {bench.status()}")
             return trial
-    for word in kind.inject:
+    for word in (*CHANNELS[channel], *kind.inject):
         rig.say(word)
     began_s = time.monotonic()
-    _act(bench, kind)
-    _watch(bench, trial, kind, began_s)
+    _act(bench, kind, channel)
+    _watch(bench, trial, kind, channel, began_s)
     if kind.expected:
         _judge(bench, trial, kind)
     rig.say("recover")
     return trial
+
+
+def _asked(voltage_v: Voltages, channel: int) -> Voltages:
+    """The first of two voltages on the channel that is broken."""
+    return voltage_v if channel == 0 else (voltage_v[1], voltage_v[0])
 
 
 def _prepare(bench: Bench) -> None:
@@ -106,29 +114,29 @@ def _prepare(bench: Bench) -> None:
     raise AssertionError(f"the driver did not come back to STANDBY: {bench.status()}")
 
 
-def _act(bench: Bench, kind: Kind) -> None:
-    supervisor = bench.supervisor
+def _act(bench: Bench, kind: Kind, channel: int) -> None:
+    supervisor, (upper_v, lower_v) = bench.supervisor, _asked(DRIVEN_V, channel)
     if kind.act == "disarm":
         bench.call(supervisor.disarm)
     elif kind.act == "arm":
         bench.call(supervisor.arm)
     elif kind.act == "ramp and disarm":
         for share in range(20, -1, -1):
-            bench.call(supervisor.command, (DRIVEN_V[0] * share / 20, DRIVEN_V[1] * share / 20))
+            bench.call(supervisor.command, (upper_v * share / 20, lower_v * share / 20))
             time.sleep(0.02)
         time.sleep(0.1)
         bench.call(supervisor.disarm)
 
 
-def _watch(bench: Bench, trial: Trial, kind: Kind, began_s: float) -> None:
+def _watch(bench: Bench, trial: Trial, kind: Kind, channel: int, began_s: float) -> None:
     """Commands go on where they did; no word of grounded while there is voltage."""
-    target_v = OTHER_V if kind.act == "change" else DRIVEN_V
+    target_v = _asked(OTHER_V if kind.act == "change" else DRIVEN_V, channel)
     while time.monotonic() - began_s < WATCHED_S:
         if kind.act in ("drive", "change"):
             bench.call(bench.supervisor.command, target_v)
-        before = abs(bench.rig.ask("output")[0])
+        before = abs(bench.rig.ask("output")[channel])
         status = bench.status()
-        after = abs(bench.rig.ask("output")[0])
+        after = abs(bench.rig.ask("output")[channel])
         if status.ground is Ground.PROVEN and min(before, after) > DISCHARGED_V:
             trial.wrong.append(f"{status}, with {after:.0f} V")
         if bench.supervisor.fault is not None and trial.found_s is None:

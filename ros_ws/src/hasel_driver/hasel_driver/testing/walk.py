@@ -17,6 +17,7 @@ PROOF_S = 0.3  # of arming
 PERIOD_S = 0.01
 NO_GROUND = {"weld", "unground"}  # with which nothing can ground the output
 WORDS = (
+    "lower",  # the channel that is broken from then on
     *NO_GROUND,
     *("blind", "third", "stick", "unconverted", "leak", "overcurrent", "tickless"),
     *("interlock", "interlock_a", "interlock_b", "bounce"),
