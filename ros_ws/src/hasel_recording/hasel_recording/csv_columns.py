@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import product
 
 from hasel_common.names import nearest
 
@@ -59,40 +60,37 @@ def understand(names: list[str], meant: Mapping[str, str], source: str, angle: b
     found; angle: whether an angle or markers must be there. Raises RecordingError for what is missing, twice,
     misspelt or in a unit that is not known.
     """
+
+    def missing(name: str, others: str) -> RecordingError:
+        _check_spelling(left, names, meant, source)
+        return RecordingError(
+            f"{source} has no column {name!r} ({others}), only {', '.join(names)}: "
+            f"rename a column, or say which it is with --map {'' if angle else 'drive.'}{name}=COLUMN."
+        )
+
     left = {meant[name]: name for name in names if name in meant}
     mapped = {_role(name) for name in left}
     left |= {name.lower(): name for name in names if name not in meant and _role(name.lower()) not in mapped}
     time, sin_theta = _first(left, TIMES), _first(left, {SIN_THETA: 1.0})
+    if time is None:
+        raise missing("time_s", f"or {', '.join([*TIMES][1:])}")
     theta = None if sin_theta else _first(left, THETAS)
-    markers, marker_unit = _markers(left)
-    drive = _drive(left, source, needed=time is None or not (sin_theta or theta or markers))
+    markers, unit = _markers(left)
+    drive = _drive(left, source, needed=not (sin_theta or theta or markers))
     _check_spelling(left, names, meant, source)
     marker_names = tuple(dict.fromkeys(marker for marker, _ in markers))
-    needed = {"time_s": (time, f"or {', '.join([*TIMES][1:])}")}
-    for marker, axis in markers:
-        other = marker, "y" if axis == "x" else "x"
-        needed["_".join((*other, marker_unit))] = (
-            markers.get(other),
-            "a marker has both coordinates in one unit",
-        )
-    if angle and not set(MARKER_NAMES) <= set(marker_names):
-        needed[SIN_THETA] = (
-            sin_theta or theta,
-            "or theta_deg, theta_rad, or the markers head, middle and tail",
-        )
-    for name, (column, others) in needed.items():
-        if column is None:
-            raise RecordingError(
-                f"{source} has no column {name!r} ({others}), only {', '.join(names)}: "
-                f"rename a column, or say which it is with --map {'' if angle else 'drive.'}{name}=COLUMN."
-            )
-    in_order = tuple(markers[marker, axis] for marker in marker_names for axis in "xy")
+    for marker, axis in product(marker_names, "xy"):
+        if (marker, axis) not in markers:
+            raise missing(f"{marker}_{axis}_{unit}", "a marker has both coordinates in one unit")
+    if angle and not (sin_theta or theta or set(MARKER_NAMES) <= set(marker_names)):
+        raise missing(SIN_THETA, "or theta_deg, theta_rad, or the markers head, middle and tail")
+    in_order = tuple(markers[place] for place in product(marker_names, "xy"))
     read = [column.name for column in (time, sin_theta, theta, *drive.values(), *in_order) if column]
     for name in read:
         if names.count(name) > 1:
             raise RecordingError(f"{source} has the column {name!r} twice: keep one of them.")
     unused = tuple(name for name in names if name not in read)
-    return Columns(time, sin_theta, theta, drive, marker_names, in_order, marker_unit, unused)
+    return Columns(time, sin_theta, theta, drive, marker_names, in_order, unit, unused)
 
 
 def _first(left: dict[str, str], known: Mapping[str, float]) -> Column | None:
@@ -107,8 +105,9 @@ def _markers(left: dict[str, str]) -> tuple[dict[tuple[str, str], Column], str]:
     unit = "px" if matches and all(match["unit"] == "px" for match in matches) else "m"
     found: dict[tuple[str, str], Column] = {}
     for match in matches:
-        if (match["unit"] == "px") == (unit == "px") and match.group("marker", "axis") not in found:
-            found[match.group("marker", "axis")] = Column(left.pop(match[0]), MARKER_UNITS[match["unit"]])
+        place = match["marker"], match["axis"]
+        if (match["unit"] == "px") == (unit == "px") and place not in found:
+            found[place] = Column(left.pop(match[0]), MARKER_UNITS[match["unit"]])
     return found, unit
 
 
