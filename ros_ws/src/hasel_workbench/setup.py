@@ -15,6 +15,7 @@ setup(
         "setuptools",
         "numpy>=1.26",
         "plotly>=6",
+        "pydantic>=2",
         "ruamel.yaml",
     ],
     extras_require={

@@ -40,7 +40,7 @@ def test_a_recording_has_its_name_and_is_not_overwritten(node, tmp_path):
     assert "no recording is overwritten" in call(node, "recorder/start").message
 
 
-@pytest.mark.parametrize("name", ["../monday", "/etc/monday", "..", "", "a/b"])
+@pytest.mark.parametrize("name", ["../monday", "/etc/monday", "..", "", "a/b", "a\0b", "~"])
 def test_nothing_is_written_outside_the_folder(node, tmp_path, name):
     """Whoever is on the network sets the name, and nobody the folder."""
     node.set_parameters([Parameter("name", value=name)])

@@ -4,33 +4,27 @@ import itertools
 from datetime import datetime
 from pathlib import Path
 
+from hasel_common.inside_folder import inside_folder
+
 from hasel_driver.errors import LimitError
 
 SUFFIX = ".mcap"
 
 
 def below(folder: Path, given: str, what: str) -> Path:
-    """The path that a goal names, which may come from anywhere: below `folder` only. Raises LimitError."""
+    """The path that a goal names, which may come from anywhere: inside `folder` only. Raises LimitError."""
     try:
-        path = (folder / Path(given).expanduser()).resolve()
-    except (ValueError, RuntimeError, OSError) as error:
-        raise LimitError(f"{what} is {given!r}, the path of a file was expected ({error}).") from error
-    if folder.resolve() not in path.parents:
+        return inside_folder(folder, given)
+    except ValueError as error:
         raise LimitError(
-            f"{what} is {given!r}, a file below {folder.resolve()} was expected: name one there, or start the node with"
-            " another folder."
-        )
-    return path
+            f"{what}: {error}: name one there, or start the node with another folder."
+        ) from error
 
 
 def chosen_path(folder: Path, output: str) -> Path:
-    """The path that a goal names, with its suffix. Raises LimitError for a name that can be no file below `folder`."""
-    try:
-        path = below(folder, output, "output")
-        path = path if path.suffix == SUFFIX else path.with_name(path.name + SUFFIX)
-    except (ValueError, RuntimeError) as error:
-        raise LimitError(f"output is {output!r}, the path of a file was expected ({error}).") from error
-    return path
+    """The path that a goal names, with its suffix. Raises LimitError for a name that is no file inside `folder`."""
+    path = below(folder, output, "output")
+    return path if path.suffix == SUFFIX else path.with_name(path.name + SUFFIX)
 
 
 def reserve(path: Path) -> Path:

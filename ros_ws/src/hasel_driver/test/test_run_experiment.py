@@ -190,7 +190,7 @@ def test_no_recording_is_overwritten(driver, ros, run):
         assert (status, "exists already" in result.message) == (ABORTED, True), result.message
     for output in ("/", "~nobody-there/x", "/tmp/elsewhere", "../elsewhere"):
         _, _, end = run(output=output)
-        assert "the path of a file was expected" in (told := end()[1].message) or "a file below" in told, told
+        assert "is no file below" in (told := end()[1].message), told
     assert taken.read_bytes() == b"precious"
     ros.await_mode(ARMED)
 
@@ -296,8 +296,8 @@ REFUSALS = {
     "duty is 0.0": {"duty": 0.0},
     "lasts 6e+06 s, at most 3600 s": {"frequency": 0.01, "periods": 60_000},
     "There is no waveform file": {"waveform_file": "no_such.csv"},
-    "waveform_file is '/etc/shadow', a file below": {"waveform_file": "/etc/shadow"},
-    "output is '/proc/no/such/place.mcap', a file below": {"output": "/proc/no/such/place.mcap"},
+    "waveform_file: '/etc/shadow' is no file below": {"waveform_file": "/etc/shadow"},
+    "output: '/proc/no/such/place.mcap' is no file below": {"output": "/proc/no/such/place.mcap"},
 }
 
 

@@ -1,5 +1,7 @@
 """Crash-safe recordings of experiments: MCAP and CSV."""
 
+from hasel_common.lazy_version import lazy_version
+
 from hasel_recording.drive_channel import HASEL_PAIR, DriveChannel, parse_column
 from hasel_recording.errors import RecordingError, RecordingWarning
 from hasel_recording.marker_angle import sin_theta_from_markers
@@ -20,3 +22,5 @@ __all__ = [
     "sin_theta_from_markers",
     "write_recording",
 ]
+
+__getattr__ = lazy_version(__name__)

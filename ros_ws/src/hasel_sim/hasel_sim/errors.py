@@ -9,5 +9,9 @@ class ModelError(HaselSimError):
     """A model file, effect or parameter that cannot be used as written."""
 
 
+class OwnCodeError(ModelError):
+    """A model with an effect that is code, where nobody chose to run any."""
+
+
 class SimulationError(HaselSimError):
     """A simulation that could not be carried out or did not converge."""

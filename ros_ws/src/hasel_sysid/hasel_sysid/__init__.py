@@ -8,21 +8,19 @@ imports only what it needs.
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from hasel_common.lazy_version import lazy_version
+
 if TYPE_CHECKING:
     from hasel_sysid.api import *  # noqa: F403
 
 
 def __getattr__(name: str) -> Any:
-    missing = f"module 'hasel_sysid' has no attribute {name!r}"
-    if name == "__version__":
-        from importlib.metadata import version  # takes a while, and few ask
-
-        return version("hasel_sysid")
     if name.startswith("_"):
-        raise AttributeError(missing)
+        return lazy_version(__name__)(name)
     facade = import_module("hasel_sysid.api")
     if name not in facade.__all__:
-        raise AttributeError(f"{missing}; expected one of {', '.join(facade.__all__)}")
+        expected = ", ".join(facade.__all__)
+        raise AttributeError(f"module 'hasel_sysid' has no attribute {name!r}; expected one of {expected}")
     return getattr(facade, name)
 
 

@@ -17,8 +17,6 @@ from hasel_sysid.experiment import Experiment
 
 from hasel_workbench.state import Banner, Unread
 
-DEFAULT_MODEL = "swimmer"
-
 
 @dataclass(frozen=True)
 class ReadingChoices:
@@ -65,12 +63,6 @@ def read(
             if names:
                 unread.append(Unread(Path(path), names, unseen))
     return found, banners, unread
-
-
-def chosen_name(asked: str | None, recordings: Sequence[Recording]) -> str:
-    """The model asked for, else the one that all headers name, else the swimmer."""
-    named = {recording.metadata.get("model") for recording in recordings}
-    return asked or (named.pop() if len(named) == 1 else None) or DEFAULT_MODEL
 
 
 def checked(

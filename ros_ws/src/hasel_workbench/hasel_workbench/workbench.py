@@ -8,9 +8,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from hasel_recording import Recording
-from hasel_sim.model import Model, load_model, save_model
+from hasel_sim.model import Model, save_model
 from hasel_sim.run import Simulation
 from hasel_sim.simulate import simulate
+from hasel_sysid.command_line.chosen_model import chosen_model
 from hasel_sysid.compare.compare import with_amplitudes
 from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment
@@ -21,7 +22,7 @@ from hasel_workbench.evaluate import Progress, evaluated, silent
 from hasel_workbench.export import export
 from hasel_workbench.ledger import StepLedger
 from hasel_workbench.prediction import Prediction, predicted
-from hasel_workbench.recordings import ReadingChoices, checked, chosen_name, read
+from hasel_workbench.recordings import ReadingChoices, checked, read
 from hasel_workbench.state import SessionState
 from hasel_workbench.step import Step
 
@@ -185,7 +186,7 @@ class Workbench:
     def model(self) -> Model:
         """The model that is shown; before any run, the one to begin with."""
         state = self.state
-        return state.shown.model if state.steps else load_model(chosen_name(self._asked, ()))
+        return state.shown.model if state.steps else chosen_model(self._asked, ())[1]
 
     def dismiss(self) -> None:
         """Forget the banners that were read."""
@@ -213,8 +214,7 @@ class Workbench:
 
     def _take(self, recordings: Sequence[Recording], unseen: bool, progress: Progress) -> None:
         state = self.state
-        name = chosen_name(self._asked, recordings)
-        model = load_model(name, own_code=bool(self._asked)) if not state.steps else state.current.model
+        model = state.current.model if state.steps else chosen_model(self._asked, recordings)[1]
         found, said = checked(model, recordings, state.every)
         state = replace(state, banners=(*state.banners, *said))
         self._commit(state)

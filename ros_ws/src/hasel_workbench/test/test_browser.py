@@ -15,6 +15,7 @@ from urllib.parse import urlsplit
 import pytest
 from hasel_workbench.bench.browser import Browser, find_browser
 from hasel_workbench.bench.browser_page import BrowserPage
+from hasel_workbench.page.redirect_file import RedirectFile
 
 pytest.importorskip("nicegui", reason="NiceGUI is not installed: the extra `page` of hasel_workbench")
 pytestmark = [
@@ -161,6 +162,12 @@ def test_only_this_machine_is_answered(server):
         with closing(http.client.HTTPConnection("127.0.0.1", port, timeout=_PATIENCE_S)) as connection:
             connection.request("GET", f"/?{urlsplit(server.address).query}", headers={"Host": host})
             assert connection.getresponse().status == status
+
+
+def test_the_file_given_to_a_browser_leads_to_the_page(server_without_runs, browser, tmp_path):
+    """Where no cookie was kept yet."""
+    file = RedirectFile(server_without_runs.address, tmp_path)
+    browser.open(file.uri).until("document.querySelector('.wb-head')", _PATIENCE_S)
 
 
 def test_everything_has_a_name(page):

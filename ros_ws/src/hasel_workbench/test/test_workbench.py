@@ -3,11 +3,12 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hasel_recording import read_recording
-from hasel_sim.model import load_model
+from hasel_sim.model import load_model, save_model
 from hasel_sysid.errors import SysidError
 from hasel_workbench.prediction import beyond_first_order
 from hasel_workbench.script import script
@@ -292,3 +293,19 @@ def test_beyond_first_order_is_told(loaded):
         values = {"slope": factor * value}
         true = loaded.true(run, values, False).result().sin_theta
         assert beyond_first_order(loaded.predict(run, values).sin_theta, true, shown) is told
+
+
+def test_a_header_does_not_run_code(new_session, short_runs, tmp_path, monkeypatch):
+    """A recording that names a model with an effect of its own is refused, unless the model is asked for."""
+    monkeypatch.chdir(tmp_path)
+    save_model(load_model("swimmer"), tmp_path / "x.yaml")
+    (tmp_path / "x.yaml").write_text(
+        (tmp_path / "x.yaml").read_text().replace("effects: []", "effects: ['x.py:X']")
+    )
+    (tmp_path / "x.py").write_text("raise SystemExit('it ran')")
+    run = read_recording(short_runs[0][0])
+    stranger = replace(run, path=None, metadata={"model": "x.yaml"})
+    with pytest.raises(SysidError, match=r"x\.py:X, which is code that would run: give --model x.yaml"):
+        new_session().take([stranger])
+    with pytest.raises(SystemExit, match="it ran"):
+        new_session(model="x.yaml").take([stranger])

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from hasel_common.declared_parameters import declare
 from hasel_common.endpoints import Role, subscription
+from hasel_common.inside_folder import inside_folder
 from hasel_common.managed_node import ManagedNode, start_and_spin
 from hasel_common.provenance import provenance
 from hasel_common.topics import ERROR, MEASURED, NAMESPACE, SIMULATED, STATE, relative
@@ -61,11 +62,8 @@ class RecorderNode(ManagedNode):
             raise BringupError("The recorder is not active: activate it (lifecycle) first.")
         if self._recorder is not None:
             raise BringupError(f"{self._path} is being recorded: stop that first (recorder/stop).")
-        folder, name = Path(self._value("folder")).expanduser(), self._value("name")
-        if name in ("", "..") or Path(name).name != name:
-            raise BringupError(f"name is '{name}', but a name without folders is expected: set another one.")
-        folder.mkdir(parents=True, exist_ok=True)
-        self._path = folder / f"{name}.mcap"
+        self._path = _path(self._value("folder"), self._value("name"))
+        self._path.parent.mkdir(parents=True, exist_ok=True)
         if self._path.exists():
             raise BringupError(
                 f"{self._path} exists already, and no recording is overwritten: set another name."
@@ -116,6 +114,16 @@ class RecorderNode(ManagedNode):
         """Finish what is being recorded and leave."""
         self._interrupt()
         super().destroy_node()
+
+
+def _path(folder: str, name: str) -> Path:
+    try:
+        path = inside_folder(folder, name)
+        if path.name != name:
+            raise ValueError(f"{name!r} is no file of {folder} itself")
+    except ValueError as error:
+        raise BringupError(f"name: {error}; a name without folders is expected: set one.") from None
+    return path.with_name(f"{name}.mcap")
 
 
 def _is_unknown(message) -> bool:

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from hasel_common.inside_folder import inside_folder
+
 from hasel_sim.errors import ModelError
 
 
@@ -15,10 +17,7 @@ def within(folder: str, name: str) -> str:
             f"'{name}' is a file, and a request may name the catalogue's only: start the node with own_files set to the"
             " folder in which yours are"
         )
-    root = Path(folder).expanduser().resolve()
-    file = (root / Path(path)).resolve()
-    if root not in file.parents:
-        raise ModelError(
-            f"'{name}' is not below {root}; expected a file there: it was given at the start as own_files"
-        )
-    return f"{file}{colon}{kind}"
+    try:
+        return f"{inside_folder(folder, path)}{colon}{kind}"
+    except ValueError as error:
+        raise ModelError(f"{error}: name one there; the folder was given as own_files") from None

@@ -14,7 +14,7 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import YAMLError
 
 from hasel_sim.effects.base import Effect
-from hasel_sim.errors import ModelError
+from hasel_sim.errors import ModelError, OwnCodeError
 from hasel_sim.model.constants import constants, unit_of
 from hasel_sim.model.description import Description, ParameterEntry
 from hasel_sim.model.former import is_former, translated
@@ -37,8 +37,8 @@ def model_names() -> list[str]:
 def load_model(name_or_path: str | Path, own_code: bool = True) -> Model:
     """Read a model by the name of one that comes with the package, or from a file.
 
-    own_code: whether it may have effects of one's own, which are code that runs: False where nobody chose this model,
-    as with the one that a recording names. Raises ModelError with one sentence for a missing file, an unknown key (with
+    own_code: whether it may have effects of one's own, which are code that runs: False where nobody chose this model.
+    Raises OwnCodeError where it has and may not, ModelError with one sentence for a missing file, an unknown key (with
     the nearest known one) or a bad value.
     """
     name = str(name_or_path)
@@ -79,10 +79,7 @@ def _parse(text: str, source: str, folder: Path, own_code: bool = True) -> Model
         raise ModelError(f"{source}: {fault}")
     code = [effect for effect in description.effects if ":" in effect]
     if code and not own_code:
-        raise ModelError(
-            f"{source} is named by the recording and has the effect {code[0]}, which is code that would run: "
-            f"give --model {source} if that is meant"
-        )
+        raise OwnCodeError(f"{source} has the effect {code[0]}, which is code that would run")
     bare = Model(description.model_copy(update={"effects": (), "parameters": {}}))
     bare = replace(bare, parameters=response_parameters(description))
     model = bare.with_effects(*(_located(effect, folder) for effect in description.effects))

@@ -4,7 +4,7 @@ from importlib import resources
 
 import numpy as np
 import pytest
-from hasel_sim.errors import ModelError
+from hasel_sim.errors import ModelError, OwnCodeError
 from hasel_sim.model import load_model, model_names, save_model
 from hasel_sim.simulate import simulate
 from ruamel.yaml import YAML
@@ -277,5 +277,5 @@ def test_a_model_that_nobody_chose_brings_no_code(tmp_path, content):
     """As one that a recording names: its effect's file is not run."""
     (tmp_path / "effect.py").write_text("raise SystemExit('it ran')")
     YAML(typ="safe").dump({**content, "effects": ["effect.py:Evil"]}, tmp_path / "model.yaml")
-    with pytest.raises(ModelError, match=r"has the effect effect.py:Evil, which is code .* give --model"):
+    with pytest.raises(OwnCodeError, match=r"model.yaml has the effect effect.py:Evil, which is code"):
         load_model(tmp_path / "model.yaml", own_code=False)

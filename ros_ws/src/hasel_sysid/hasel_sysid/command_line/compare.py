@@ -8,7 +8,8 @@ from hasel_common.progress import progress_bar
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
-from hasel_sysid.command_line.inputs import chosen_model, load_all
+from hasel_sysid.command_line.chosen_model import chosen_model
+from hasel_sysid.command_line.inputs import load_all
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import compare_parser
 from hasel_sysid.command_line.running import run_command
@@ -38,7 +39,8 @@ def _compare(options: argparse.Namespace) -> int:
     experiments, unseen = load_all(options)
     names = options.model or [None]
     seen = len(experiments)
-    models = [chosen_model(name, [*experiments, *unseen]) for name in names]
+    recordings = [each.recording for each in (*experiments, *unseen)]
+    models = [chosen_model(name, recordings) for name in names]
     comparisons: list[Comparison] = []
     firsts: list[str] = []
     try:

@@ -1,16 +1,15 @@
 """What commands on recordings begin with: the runs and the model."""
 
 import argparse
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hasel_recording.reading import distinct_names, drive_of_each
-from hasel_sim.model import Model, load_model
+from hasel_sim.model import Model
 
-from hasel_sysid.command_line.options import DEFAULT_MODEL
+from hasel_sysid.command_line.chosen_model import chosen_model
 from hasel_sysid.command_line.shown import announce
 from hasel_sysid.data_gate import DataFinding
 from hasel_sysid.dataset import for_model, load_experiments, prepared, simulable
@@ -39,7 +38,7 @@ def load_inputs(options: argparse.Namespace, decided_later: Collection[str] = ()
     """Read the recordings, tell what the data gate finds but for what is `decided_later`, and choose the model."""
     experiments, unseen = load_all(options)
     noise = _noise(getattr(options, "noise", None))
-    label, model = chosen_model(options.model, [*experiments, *unseen])
+    label, model = chosen_model(options.model, [each.recording for each in (*experiments, *unseen)])
     every = for_model(model.with_levels([]), [*experiments, *unseen])
     experiments, unseen = every[: len(experiments)], every[len(experiments) :]
     said = announce(every, decided_later)
@@ -74,13 +73,3 @@ def load_all(
     experiments = load_experiments(fitted, options.map, drives[:count], names[:count])
     unseen = load_experiments(validated, options.map, drives[count:], names[count:]) if validated else []
     return experiments, unseen
-
-
-def chosen_model(name: str | None, experiments: Sequence[Experiment]) -> tuple[str, Model]:
-    """The model asked for, else the one all headers name, else the swimmer; with what to call it."""
-    named = {experiment.recording.metadata.get("model") for experiment in experiments}
-    header = named.pop() if len(named) == 1 else None
-    asked, name = bool(name), name or header or DEFAULT_MODEL
-    model = load_model(name, own_code=asked)
-    label = Path(name).stem if Path(name).suffix in (".yaml", ".yml") else name
-    return label, model

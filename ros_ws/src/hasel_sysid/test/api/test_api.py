@@ -6,7 +6,6 @@ import os
 import re
 import subprocess
 import sys
-from importlib.metadata import version
 from pathlib import Path
 
 import hasel_sysid as h
@@ -130,8 +129,3 @@ def test_everything_prints_in_short_sentences():
         assert repr(each) == str(each)
         assert len(str(each)) < 2000
         assert "array(" not in repr(each)
-
-
-def test_it_has_the_version_of_the_package():
-    """As `--version` says."""
-    assert h.__version__ == version("hasel_sysid")

@@ -119,7 +119,7 @@ def test_no_request_brings_code_with_it(talk, tmp_path):
     future = client.call_async(Diagnose.Request(effects=[f"{file}:Effect"]))
     talk.until(future.done)
     assert not future.result().success
-    assert f"is not below {tmp_path}/own" in future.result().message
+    assert f"is no file below {tmp_path}/own" in future.result().message
     for name, value in (("effects", [f"{file}:Effect"]), ("model", str(file)), ("output", "/etc")):
         (result,) = talk.node.set_parameters([Parameter(name, value=value)])
         assert not result.successful

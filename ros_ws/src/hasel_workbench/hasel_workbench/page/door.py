@@ -69,12 +69,15 @@ class Door:
         return secrets.compare_digest(given.encode(), self._token.encode())
 
     def _with_cookie(self, scope: Scope) -> RedirectResponse:
-        """To the same page without the token, which the browser keeps from now on and shows to no other site."""
+        """To the same page without the token, which the browser keeps from now on and shows to no other site.
+
+        Not strict: where a file or a link led here, the browser would not show it to that page either.
+        """
         query = parse_qs(scope["query_string"].decode("latin-1"))
         query.pop("token")
         rest = urlencode(query, doseq=True)
         answer = RedirectResponse("/" + scope["path"].lstrip("/") + (f"?{rest}" if rest else ""), 303)
         answer.set_cookie(
-            self._cookie, self._token, httponly=True, samesite="strict", secure=scope["scheme"] == "https"
+            self._cookie, self._token, httponly=True, samesite="lax", secure=scope["scheme"] == "https"
         )
         return answer

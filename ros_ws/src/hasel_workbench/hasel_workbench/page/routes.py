@@ -1,15 +1,18 @@
 """What the page's canvases fetch: arrays of 32-bit numbers."""
 
 import asyncio
+import reprlib
 from collections import OrderedDict
+from typing import Any
 
 import numpy as np
-from fastapi import Request, Response
-from fastapi.responses import PlainTextResponse
+from fastapi import APIRouter, FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from fastapi.routing import APIRoute
 from hasel_sim.errors import HaselSimError
 from hasel_sim.run import Simulation
 from hasel_sysid.errors import SysidError
-from nicegui import app
+from pydantic import FiniteFloat
 
 from hasel_workbench.curves import curves
 from hasel_workbench.failure_map import stretch
@@ -24,50 +27,39 @@ from hasel_workbench.workbench import Workbench
 _KEPT_FILMS = 40
 
 
-def add_routes(session: Workbench, rig: RunningRig) -> None:
+def add_routes(app: FastAPI, session: Workbench, rig: RunningRig) -> None:
     """`/data/…` of a session and of a rig."""
     films: OrderedDict[tuple[int, str], bytes] = OrderedDict()
+    data = APIRouter(prefix="/data", route_class=_InASentence)
 
-    @app.get("/data/curves/{run}")
+    @data.get("/curves/{run}")
     def of_run(run: str) -> Response:
-        return _answer(lambda: _curves(session.state, run))
+        return _bytes(_curves(session.state, run))
 
-    @app.get("/data/stretch/{run}/{cell}")
+    @data.get("/stretch/{run}/{cell}")
     def of_cell(run: str, cell: int) -> Response:
-        return _answer(lambda: _stretch(session.state, run, cell))
+        return _bytes(_stretch(session.state, run, cell))
 
-    @app.get("/data/film/{run}")
+    @data.get("/film/{run}")
     async def moving(run: str) -> Response:
-        try:
-            state = session.state
-            key = (id(state.shown), run)
-            if key not in films:
-                films[key] = _film(state, run, await asyncio.wrap_future(session.true(run)))
-                if len(films) > _KEPT_FILMS:
-                    films.popitem(last=False)
-        except (HaselSimError, SysidError) as error:
-            return PlainTextResponse(str(error), 409)
+        state = session.state
+        key = (id(state.shown), run)
+        if key not in films:
+            films[key] = _film(state, run, await asyncio.wrap_future(session.true(run)))
+            if len(films) > _KEPT_FILMS:
+                films.popitem(last=False)
         return _bytes(films[key])
 
-    @app.post("/data/predict/{run}")
-    async def foretold(run: str, request: Request) -> Response:
-        values = await request.json()
+    @data.post("/predict/{run}")
+    async def foretold(run: str, values: dict[str, FiniteFloat]) -> Response:
+        found = session.predict(run, values)
+        return _bytes(packet({"error": found.error, "errorUnseen": found.error_unseen}, found.sin_theta))
 
-        def made() -> bytes:
-            found = session.predict(run, values)
-            return packet({"error": found.error, "errorUnseen": found.error_unseen}, found.sin_theta)
-
-        return _answer(made)
-
-    @app.post("/data/truth/{run}")
-    async def simulated(run: str, request: Request) -> Response:
-        values = await request.json()
-        try:
-            state = session.state
-            found = await asyncio.wrap_future(session.true(run, values))
-            foretold = session.predict(run, values).sin_theta
-        except (HaselSimError, SysidError) as error:
-            return PlainTextResponse(str(error), 409)
+    @data.post("/truth/{run}")
+    async def simulated(run: str, values: dict[str, FiniteFloat]) -> Response:
+        state = session.state
+        found = await asyncio.wrap_future(session.true(run, values))
+        foretold = session.predict(run, values).sin_theta
         before = state.shown.simulations[state.number_of(run)].sin_theta
         header = {
             "film": len(found.sin_theta),
@@ -75,9 +67,36 @@ def add_routes(session: Workbench, rig: RunningRig) -> None:
         }
         return _bytes(packet(header, found.sin_theta) + _film(state, run, found))
 
-    @app.post("/data/live")
-    async def heard(request: Request) -> Response:
-        return _bytes(_heard(rig, await request.json()))
+    @data.post("/live")
+    async def heard(seen: dict[str, int]) -> Response:
+        return _bytes(_heard(rig, seen))
+
+    app.include_router(data)
+
+
+class _InASentence(APIRoute):
+    """What is not as the route's types say is refused with status 400, what cannot be answered with 409."""
+
+    def get_route_handler(self):
+        answer = super().get_route_handler()
+
+        async def answered(request: Request) -> Response:
+            try:
+                return await answer(request)
+            except (HaselSimError, SysidError) as error:
+                said, status = str(error), 409
+            except RequestValidationError as error:
+                said, status = _unexpected(error.errors()[0]), 400
+            return Response(said.encode(errors="replace"), status, media_type="text/plain")
+
+        return answered
+
+
+def _unexpected(found: dict[str, Any]) -> str:
+    if found["type"] == "json_invalid":
+        return f"The request's body is no JSON, which was expected: {found['ctx']['error']}."
+    place = " ".join(map(str, found["loc"]))
+    return f"The request's {place} is {reprlib.repr(found['input'])}: {found['msg']}."
 
 
 def _curves(state: SessionState, run: str) -> bytes:
@@ -108,13 +127,6 @@ def _heard(rig: RunningRig, seen: dict[str, int]) -> bytes:
         "recent": None if error is None else error.recent,
     }
     return packet(header, np.concatenate([rows[kind] for kind in KINDS]))
-
-
-def _answer(made) -> Response:
-    try:
-        return _bytes(made())
-    except (HaselSimError, SysidError) as error:
-        return PlainTextResponse(str(error), 409)
 
 
 def _bytes(content: bytes) -> Response:

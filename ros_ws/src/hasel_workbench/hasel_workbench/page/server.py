@@ -3,8 +3,10 @@
 import asyncio
 import secrets
 import socket
+import webbrowser
 from collections.abc import Callable
 from pathlib import Path
+from threading import Thread
 
 from fastapi.middleware.trustedhost import TrustedHostMiddleware
 from hasel_sysid.errors import SysidError
@@ -14,6 +16,7 @@ from hasel_workbench.jobs import Jobs
 from hasel_workbench.live.rig import RunningRig
 from hasel_workbench.page.door import Door
 from hasel_workbench.page.page import Page
+from hasel_workbench.page.redirect_file import RedirectFile
 from hasel_workbench.page.routes import add_routes
 from hasel_workbench.workbench import Workbench
 
@@ -59,7 +62,7 @@ def serve(
     where the port is taken.
     """
     port = _free_port(host, port)
-    add_routes(session, rig)
+    add_routes(app, session, rig)
     (session.folder / "export").mkdir(parents=True, exist_ok=True)
     app.add_static_files("/workbench", _STATIC)
     app.add_static_files("/export", session.folder / "export")
@@ -82,6 +85,10 @@ def serve(
     async def opened() -> None:
         await _until_open(host, port)
         print(told, flush=True)
+        if show:
+            file = RedirectFile(address, session.folder)
+            app.on_shutdown(file.remove)
+            Thread(target=webbrowser.open, args=[file.uri], daemon=True).start()
         if visit is not None:
             try:
                 await run.io_bound(visit, address)
@@ -93,7 +100,7 @@ def serve(
         host=host,
         port=port,
         reload=False,
-        show=f"/?token={token}" if show else False,
+        show=False,
         dark=None,
         title="HASEL workbench",
         favicon="〰️",
