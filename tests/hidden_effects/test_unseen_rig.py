@@ -5,7 +5,9 @@ from pathlib import Path
 import pytest
 from hasel_benchmark.bench_hidden.explain import answer
 from hasel_sim.model import load_model
-from hasel_sysid.dataset import load_experiments
+from hasel_sysid.dataset import load_experiments, prepared
+from hasel_sysid.improvement import improve
+from hasel_sysid.problem import Problem
 
 RIG = Path(__file__).resolve().parents[2] / "data" / "unseen_rig"
 NEAR_THE_NOISE = 1.15 * 0.0024
@@ -51,3 +53,23 @@ def test_hidden_effect_is_named_first_and_added(effect, pool):
     assert last["mae_validation"] < 1.2 * NEAR_THE_NOISE
     for name, truth in HIDDEN[effect].items():
         assert last["parameters"][name]["value"] == pytest.approx(truth, rel=0.15)
+
+
+@pytest.mark.timeout(300)
+def test_four_runs_at_two_voltages_and_two_frequencies_are_enough(pool):
+    """Without the drag one of them leaves so much more than the others that the sum scatters more than it is large."""
+    fitted, unseen = (
+        load_experiments([RIG / "quadratic_drag" / f"{name}.csv" for name in names])
+        for names in (
+            ("fit_4500V_2.0Hz", "fit_4500V_3.5Hz", "fit_5500V_0.5Hz", "fit_5500V_3.5Hz"),
+            ("val_4250V_2.5Hz", "val_5200V_2.5Hz"),
+        )
+    )
+    model = prepared(load_model("swimmer"), fitted)
+    only = ("quadratic_drag", "linear_drag")
+    found = improve(Problem(fitted, pool), model, Problem(unseen, pool), only).to_json()
+    assert found["verdict"]["missing"] == ["quadratic_drag"]
+    assert found["verdict"]["set_up"] is None
+    last = found["stages"][-1]
+    assert last["parameters"]["quadratic_drag.coefficient"]["value"] == pytest.approx(0.25, rel=0.03)
+    assert last["mae_validation"] < NEAR_THE_NOISE

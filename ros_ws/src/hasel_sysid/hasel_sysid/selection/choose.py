@@ -119,8 +119,7 @@ def smallest(models: Models, policy: Policy, threshold: float, excused: Excused)
 
 def is_better(models: Models, one: Names, other: Names, policy: Policy) -> bool:
     """Whether one set predicts left-out runs better than another, by more than the error of the difference."""
-    difference = models[one].elpd.over(models[other].elpd)
-    return difference.total > policy.standard_errors * difference.error
+    return models[one].elpd.over(models[other].elpd).exceeds(policy.standard_errors)
 
 
 def _is_needed(

@@ -35,22 +35,30 @@ class Elpd:
     def over(self, other: "Elpd") -> "Difference":
         """By how much this model predicts better than another."""
         by_run = self.densities - other.densities
-        scatter = (
-            0.0 if self.powers is None or len(by_run) < POLICY.fewest_runs else _scatter(by_run, self.powers)
-        )
+        few = self.powers is None or len(by_run) < POLICY.fewest_runs
         by_noise = float(np.linalg.norm(self.residual - other.residual))
-        return Difference(float(by_run.sum()), max(scatter, by_noise), by_noise)
+        error = by_noise if few else max(_scatter(by_run, self.powers), by_noise)
+        return Difference(float(by_run.sum()), error, by_noise, not few and bool((by_run > 0).all()))
 
 
 @dataclass(frozen=True)
 class Difference:
     """Of two elpd. error: standard error, of runs that disagree, and no less than by_noise: what noise alone makes of a
-    log-likelihood ratio (Vuong 1989).
+    log-likelihood ratio (Vuong 1989). in_every_run: whether enough runs were left out, and all are predicted better.
     """
 
     total: float
     error: float
     by_noise: float
+    in_every_run: bool
+
+    def exceeds(self, standard_errors: float) -> bool:
+        """Whether it is larger than so many standard errors, or than those by noise where no run disagrees.
+
+        Of few runs one may gain so much more than the others that the scatter exceeds the sum; that all of four gain by
+        chance is less likely (sign test, one in sixteen) than that one standard error is exceeded.
+        """
+        return self.total > standard_errors * (self.by_noise if self.in_every_run else self.error)
 
 
 def _scatter(gains: np.ndarray, powers: np.ndarray) -> float:

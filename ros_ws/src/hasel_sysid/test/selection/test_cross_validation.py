@@ -95,3 +95,13 @@ def test_the_scatter_of_unequal_runs_is_how_their_sum_varies():
     gains = [Elpd(gain, np.zeros(60), power).over(nothing) for gain in drawn]
     variance = np.var([gain.total for gain in gains])
     assert np.mean([gain.error**2 for gain in gains]) == pytest.approx(variance, rel=0.05)
+
+
+def test_a_gain_of_every_run_is_one_however_much_a_single_run_gains():
+    """Of few runs the scatter exceeds the sum where a small one gains most; where a run loses, they disagree."""
+    power = np.array([1.0, 2.0, 2.0, 2.0])
+    nothing = Elpd(np.zeros(4), np.zeros(60), power)
+    for gains, better in (([12000.0, 200, 150, 100], True), ([12000.0, 200, 150, -1], False)):
+        gain = Elpd(np.array(gains), np.zeros(60), power).over(nothing)
+        assert gain.total < gain.error
+        assert gain.exceeds(1.0) is better
