@@ -1,9 +1,10 @@
-"""When a drive switched, where rows around the switch are missing or farther apart than usual."""
+"""When a drive switched of which a recording knows the rows only: between two of them, or where some are missing."""
 
 import warnings
 from dataclasses import replace
 
 import numpy as np
+from scipy.optimize import linprog
 
 from hasel_recording.errors import RecordingWarning
 from hasel_recording.recording import Recording
@@ -16,10 +17,12 @@ SWITCHING = 0.5
 
 
 def with_placed_switches(recording: Recording) -> Recording:
-    """Place the switches that fall between rows with others missing; a RecordingWarning says each.
+    """Place the switches that fall between rows.
 
-    A switch from one value to another recurs with the drive's period; where the instants of the seen ones say when it
-    was due, and that lies in the gap, it is put there, otherwise it stays at the row after the gap.
+    A switch from one value to another recurs with the drive's period. Where rows are missing around one, and the seen
+    ones say when it was due, and that lies in the gap, it is put there, otherwise it stays at the row after the gap; a
+    RecordingWarning says each. Where the distances of the rows show that the drive switches between them, every switch
+    is put where the period wants it, as far as the rows tell.
     """
     if recording.drive_signal is None or recording.drive_time_s is not None:
         return recording
@@ -29,8 +32,25 @@ def with_placed_switches(recording: Recording) -> Recording:
     if len(steps) == 0 or len(changes) == 0 or len(changes) > SWITCHING * len(steps):
         return recording
     uncertain = steps[changes - 1] > LOST_ROW * float(np.median(steps))
-    if not uncertain.any():
+    if uncertain.any():
+        placed, said = _in_gaps(recording, time_s, values, changes, uncertain), ()
+    else:
+        placed, said = _between_rows(time_s, values, changes)
+    if np.array_equal(placed, time_s):
         return recording
+    kept = slice(None) if recording.ripple else np.concatenate([[0], changes])
+    return replace(
+        recording,
+        drive_time_s=placed[kept],
+        drive_values=recording.drive_signal[kept],
+        understood=(*recording.understood, *said),
+    )
+
+
+def _in_gaps(
+    recording: Recording, time_s: np.ndarray, values: np.ndarray, changes: np.ndarray, uncertain: np.ndarray
+) -> np.ndarray:
+    """Times of the rows [s] [n], those of the uncertain changes where they were due."""
     placed = time_s.copy()
     for row in changes[uncertain]:
         before, after = float(time_s[row - 1]), float(time_s[row])
@@ -43,11 +63,48 @@ def with_placed_switches(recording: Recording) -> Recording:
         else:
             placed[row] = due
             said = f"{gap}; the switch is placed at {due:.6g} s by the drive's period of {period:.6g} s."
-        warnings.warn(f"{recording.path or recording.name}: {said}", RecordingWarning, stacklevel=3)
-    if np.array_equal(placed, time_s):
-        return recording
-    kept = slice(None) if recording.ripple else np.concatenate([[0], changes])
-    return replace(recording, drive_time_s=placed[kept], drive_values=recording.drive_signal[kept])
+        warnings.warn(f"{recording.path or recording.name}: {said}", RecordingWarning, stacklevel=4)
+    return placed
+
+
+def _between_rows(
+    time_s: np.ndarray, values: np.ndarray, changes: np.ndarray
+) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Times of the rows [s] [n], those of the changes where a period puts them, and a sentence that says so.
+
+    All switches are equally spaced, or else those between the same two values. The rows stay where no period puts every
+    switch after the row before it, or all distances are alike, as of a drive that switches with the rows.
+    """
+    seen, before = time_s[changes], time_s[changes - 1]
+    frame = float(np.median(np.diff(time_s)))
+    kinds = [values[row - 1 : row + 1].tobytes() for row in changes]
+    for which in (np.zeros(len(seen), dtype=int), np.array([kinds.index(kind) for kind in kinds])):
+        apart = np.concatenate([np.diff(seen[which == kind]) for kind in np.unique(which)])
+        if len(apart) < 2 or not 0.5 * frame < np.ptp(apart) < LOST_ROW * frame:
+            continue
+        found = _equally_spaced(before, seen, which, float(apart.mean()))
+        if found is not None:
+            placed = time_s.copy()
+            placed[changes], spacing = found
+            said = f"the drive switches between rows; each switch is placed there by its spacing of {spacing:.6g} s"
+            return placed, (said,)
+    return time_s, ()
+
+
+def _equally_spaced(
+    before: np.ndarray, after: np.ndarray, which: np.ndarray, about: float
+) -> tuple[np.ndarray, float] | None:
+    """Instants [s] within these [n] at which one spacing, `about` so large, puts them from a first one of every kind
+    on, and the spacing: in the middle of all that do so (Chebyshev centre). None where none does.
+    """
+    each = np.unique(which)
+    first = np.array([after[which == kind][0] for kind in which])
+    where = np.column_stack([which[:, None] == each, np.round((after - first) / about)]).astype(float)
+    within = np.column_stack([np.vstack([where, -where]), np.ones(2 * len(after))])
+    bounds = [(None, None)] * where.shape[1] + [(0.0, None)]
+    wanted = np.append(np.zeros(where.shape[1]), -1.0)
+    found = linprog(wanted, within, np.concatenate([after, -before]), bounds=bounds)
+    return (where @ found.x[:-1], float(found.x[-2])) if found.status == 0 else None
 
 
 def _due(

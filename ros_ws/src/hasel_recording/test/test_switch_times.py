@@ -51,6 +51,27 @@ def test_switches_that_lie_on_frames_are_placed_exactly():
     np.testing.assert_allclose(switches(placed), switches(run), atol=1e-9)
 
 
+@pytest.mark.parametrize(("frequency", "duty"), [(1.1, 0.5), (1.8, 0.5), (2.3, 0.5), (1.7, 0.3)])
+def test_switches_between_frames_are_placed_by_their_period(frequency, duty):
+    """Rows tell of a switch up to a frame late; its period tells it to a third of a frame and is not biased."""
+    run = box(frequency, duty, periods=6)
+    instants = 12 / RATE + np.arange(6)[:, None] / frequency + [0.0, duty / frequency]
+    late = switches(run) - instants.ravel()
+    placed = with_placed_switches(run)
+    off = switches(placed) - instants.ravel()
+    assert late.max() > 0.6 / RATE
+    assert np.abs(off).max() < 0.4 / RATE
+    assert "placed there by its spacing of" in placed.understood[-1]
+
+
+def test_a_drive_without_a_period_stays_as_it_was_recorded():
+    """No spacing puts every switch after the row before it."""
+    time_s = np.arange(400) / RATE
+    on = np.isin(np.arange(400), np.r_[30:71, 130:201, 215:260])
+    run = Recording("run", time_s, np.zeros(400), 5500.0 * np.stack([on, ~on], axis=1))
+    assert with_placed_switches(run) is run
+
+
 def test_rows_lost_elsewhere_say_nothing():
     """Where no switch falls into a gap nothing is changed or said."""
     run = without(box(2.0), [80, 81, 82])
