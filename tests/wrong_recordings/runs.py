@@ -5,12 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 from hasel_recording import HASEL_PAIR, DriveChannel, Recording
+from hasel_recording.switch_times import with_placed_switches
 from hasel_sim.model import load_model
 from hasel_sim.parallel import SerialExecutor
 from hasel_sysid.data_gate import check_against_model, check_recording, refusal
 from hasel_sysid.dataset import prepared, simulable, usable
 from hasel_sysid.drive_match import check_levels, matched
 from hasel_sysid.experiment import experiment_of
+from hasel_sysid.repeated_runs import check_unseen
 from scipy.signal import lsim
 
 TIME = np.arange(0, 2, 1 / 120)
@@ -151,6 +153,9 @@ def inputs() -> Iterator[Callable]:
     yield lambda: experiment_of(_with(metadata={"initial_state": "moving"}))
     yield lambda: experiment_of(_with(metadata={"initial_time_s": "soon"}))
     yield lambda: usable([_only(_rows[:10])])
+    copy = replace(GOOD, name="other")
+    yield lambda: usable([GOOD, copy])
+    yield lambda: check_unseen([experiment_of(copy)], [experiment_of(GOOD)])
     yield from _models()
 
 
@@ -179,3 +184,6 @@ def _models() -> Iterator[Callable]:
     yield _with(drive_signal=BOX[:, :1], channels=(CHAMBER,)).check_hasel_pair
     ripple = BOX + 20.0 * np.random.default_rng(1).normal(size=BOX.shape)
     yield lambda: list(_with(drive_signal=ripple).ripple)
+    turned = np.mod(1.1 * TIME + 1e-9, 1) < 0.5
+    between = _with(drive_signal=4500.0 * np.column_stack([turned, ~turned]))
+    yield lambda: list(with_placed_switches(between).understood)

@@ -23,7 +23,7 @@ READERS = [
     *_modules("hasel_recording", "bag.py", "column_map.py", "csv_*.py", "drive_*.py", "mcap_*.py"),
     *_modules("hasel_recording", "plateaus.py", "reading.py", "stand_in.py"),
     *_modules("hasel_tracker", "sources/*.py", "offline/drive*.py"),
-    *_modules("hasel_sysid", "dataset.py", "drive_match.py", "experiment.py"),
+    *_modules("hasel_sysid", "dataset.py", "drive_match.py", "experiment.py", "repeated_runs.py"),
 ]
 OTHERS = {
     "of writing": (
@@ -33,7 +33,7 @@ OTHERS = {
         "is closed:",
     )
     + ("simulated angle was left out", "could not be finished", "holds {}, so no", "The type of topic"),
-    "of a call in Python": ("gives its", "Skipped: "),
+    "of a call in Python": ("gives its", "Skipped: ", "for the names of columns"),
     "how columns are understood": ("cells are separated by", "time is column", "sin θ ", "{} is column"),
 }
 """Sentences of these modules that are not about a fault of a recording."""

@@ -18,6 +18,7 @@ setup(
         "numpy>=1.26",
         "PyYAML",
         "rosbags>=0.11",
+        "scipy>=1.11",
     ],
     extras_require={"test": ["hypothesis", "pytest", "pytest-timeout"]},
     zip_safe=False,

@@ -88,9 +88,10 @@ def _refusal(parameter: NodeParameter, value: object) -> str:
         type(parameter.default), "a list"
     )
     span = "" if parameter.low is None else f" from {parameter.low:g} to {parameter.high:g}"
+    unit = "" if parameter.unit in ("", "1") else f" {parameter.unit}"
     return (
-        f"the parameter {parameter.name} is {value!r}; expected {kind}{span}{' ' * bool(parameter.unit)}"
-        f"{parameter.unit} ({parameter.description}), such as {parameter.default!r}"
+        f"the parameter {parameter.name} is {value!r}; expected {kind}{span}{unit} ({parameter.description}), such as "
+        f"{parameter.default!r}"
     )
 
 

@@ -73,7 +73,8 @@ def test_usage_tells_unit_and_range():
 
 SOURCE = NodeParameter("source", "topic:/x", "camera, file or topic")
 COUNT = NodeParameter("queue_size", 8, "of frames", "", 1, 100)
-TABLE = [RATE, METHOD, NAMES, SOURCE, COUNT, NodeParameter("offsets", [0.0], "of channels", "V")]
+JOBS = NodeParameter("jobs", 0, "processes", "1", 0, 256)
+TABLE = [RATE, METHOD, NAMES, SOURCE, COUNT, JOBS, NodeParameter("offsets", [0.0], "of channels", "V")]
 
 
 def started(**given):
@@ -119,6 +120,7 @@ def test_values_are_taken_as_they_are_typed(name, given, taken):
     [
         ("queue_size", 0, "the parameter queue_size is 0; expected a whole number from 1 to 100"),
         ("rate", "fast", "the parameter rate is 'fast'; expected a number from 1 to 1000 1/s"),
+        ("jobs", 300, r"the parameter jobs is 300; expected a whole number from 0 to 256 \(processes\)"),
         ("queue_size", 2.5, "the parameter queue_size is 2.5; expected a whole number"),
         ("sorce", "x", "there is no parameter sorce: did you mean source"),
     ],

@@ -50,7 +50,7 @@ def test_a_map_names_the_columns(csv):
         RecordingError, match="nothing is called 'contracton' here: did you mean 'contraction'"
     ):
         read_bench(path, {**mapping, "contracton": "x"})
-    with pytest.raises(RecordingError, match=r"no column 'y' for --map contraction=y: choose among t \[ms\]"):
+    with pytest.raises(RecordingError, match=r"no column 'y' for contraction=y: choose among t \[ms\]"):
         read_bench(path, {**mapping, "contraction": "y"})
 
 

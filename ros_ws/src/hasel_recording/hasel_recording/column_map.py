@@ -26,12 +26,26 @@ def parse_map(text: str) -> dict[str, str]:
         meant, equals, column = (piece.strip() for piece in part.partition("="))
         if not (equals and meant and column):
             raise RecordingError(
-                f"--map has {part!r}, expected pairs such as time=t,sin_theta=angle_deg: write NAME=COLUMN."
+                f"{part!r} names no column, expected pairs such as time=t,sin_theta=angle_deg: write NAME=COLUMN."
             )
         if meant in found:
-            raise RecordingError(f"--map gives {meant!r} twice: keep one of them.")
+            raise RecordingError(f"{meant!r} is named twice: keep one of the columns.")
         found[meant] = column
     return found
+
+
+def as_mapping(given: Mapping[str, str] | str | None) -> Mapping[str, str]:
+    """What is meant, however it is given: as pairs in a text, as a mapping, or not at all; raises RecordingError."""
+    if isinstance(given, str):
+        return parse_map(given)
+    names = {} if given is None else given
+    if not isinstance(names, Mapping) or not all(
+        isinstance(word, str) for pair in names.items() for word in pair
+    ):
+        raise RecordingError(
+            f"found {given!r} for the names of columns: give pairs such as {{'time': 't', 'sin_theta': 'angle_deg'}}."
+        )
+    return names
 
 
 def meant_names(
@@ -66,7 +80,7 @@ def own_column(meant: str, column: str, columns: Sequence[str], source: str) -> 
     if found is None:
         near = nearest(column, columns)
         hint = f"did you mean {near!r}?" if near else f"choose among {', '.join(columns)}."
-        raise RecordingError(f"{source} has no column {column!r} for --map {meant}={column}: {hint}")
+        raise RecordingError(f"{source} has no column {column!r} for {meant}={column}: {hint}")
     return found
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from hasel_common.names import nearest
 
+from hasel_recording.column_map import as_mapping
 from hasel_recording.csv_reader import read_csv
 from hasel_recording.csv_text import TEXT_SUFFIXES
 from hasel_recording.csv_writer import write_csv
@@ -22,14 +23,14 @@ WRITERS = {".csv": write_csv, ".mcap": write_mcap}
 
 
 def read_recording(
-    path: str | Path, mapping: Mapping[str, str] | None = None, drive: str | Path | None = None
+    path: str | Path, mapping: Mapping[str, str] | str | None = None, drive: str | Path | None = None
 ) -> Recording:
     """Read a `.csv`, `.mcap` or `.db3` file, or the folder that `ros2 bag record` made; raises RecordingError.
 
-    mapping: {name that is known here: the file's own column} for CSV files, as of column_map.parse_map.
+    mapping: {name that is known here: the file's own column} for CSV files, or the text of column_map.parse_map.
     drive: the file that holds the drive, instead of what the recording or its header line `drive` says.
     """
-    path = Path(path)
+    path, mapping = Path(path), as_mapping(mapping)
     if path.suffix.lower() not in SUFFIXES and not path.is_dir():
         raise RecordingError(
             f"{path} is not a recording: give a .mcap, .db3 or .csv file, or a bag's folder."
@@ -50,7 +51,7 @@ def read_recording(
         raise RecordingError(f"{path} cannot be read ({error.strerror}): check its permissions.") from None
 
 
-def _read(path: Path, mapping: Mapping[str, str] | None, drive: Path | None) -> Recording:
+def _read(path: Path, mapping: Mapping[str, str], drive: Path | None) -> Recording:
     in_rows = path.suffix.lower() in TEXT_SUFFIXES
     recording = read_csv(path, mapping, drive is None) if in_rows else read_mcap(path)
     if drive is None and DRIVE_KEY in recording.metadata:
@@ -64,7 +65,7 @@ def _read(path: Path, mapping: Mapping[str, str] | None, drive: Path | None) -> 
 
 def read_recordings(
     paths: Iterable[str | Path],
-    mapping: Mapping[str, str] | None = None,
+    mapping: Mapping[str, str] | str | None = None,
     drives: Sequence[str | Path | None] | None = None,
     names: Sequence[str] | None = None,
 ) -> list[Recording]:
@@ -74,7 +75,7 @@ def read_recordings(
     as of distinct_names). Raises RecordingError when none can be read.
     """
     recordings, errors = [], []
-    paths = list(paths)
+    paths, mapping = list(paths), as_mapping(mapping)
     names = names or distinct_names(paths)
     for path, drive, name in zip(paths, drive_of_each(paths, drives), names, strict=True):
         try:

@@ -4,7 +4,6 @@ import warnings
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import linprog
 
 from hasel_recording.errors import RecordingWarning
 from hasel_recording.recording import Recording
@@ -97,6 +96,8 @@ def _equally_spaced(
     """Instants [s] within these [n] at which one spacing, `about` so large, puts them from a first one of every kind
     on, and the spacing: in the middle of all that do so (Chebyshev centre). None where none does.
     """
+    from scipy.optimize import linprog  # takes a while, and few drives need it
+
     each = np.unique(which)
     first = np.array([after[which == kind][0] for kind in which])
     where = np.column_stack([which[:, None] == each, np.round((after - first) / about)]).astype(float)

@@ -31,7 +31,11 @@ def test_a_unit_that_is_not_given_is_read_from_the_files_own_name(meant, column,
 
 @pytest.mark.parametrize(
     ("text", "said"),
-    [("time", "expected pairs such as time=t"), ("time=a,time=b", "'time' twice"), ("=t", "expected pairs")],
+    [
+        ("time", "expected pairs such as time=t"),
+        ("time=a,time=b", "'time' is named twice"),
+        ("=t", "expected pairs"),
+    ],
 )
 def test_what_is_no_pair_is_refused(text, said):
     """A missing equals sign or a name given twice is one sentence."""
@@ -56,6 +60,6 @@ def test_a_column_that_is_not_there_is_named(tmp_path):
     """A misspelt column of a map is refused with the nearest one."""
     path = tmp_path / "lab.csv"
     path.write_text("zeit,sin_theta\n0,0\n")
-    with pytest.raises(RecordingError, match="no column 'zeitt' for --map time=zeitt: did you mean 'zeit'"):
+    with pytest.raises(RecordingError, match="no column 'zeitt' for time=zeitt: did you mean 'zeit'"):
         read_recording(path, {"time": "zeitt"})
     assert np.array_equal(read_recording(path, {"time": "zeit"}).time_s, [0.0])

@@ -13,6 +13,7 @@ from concurrent.futures import (
 )
 from contextlib import contextmanager
 from functools import partial
+from numbers import Integral
 from typing import TypeVar
 
 from threadpoolctl import threadpool_limits
@@ -52,8 +53,14 @@ def _end_with_parent() -> None:
 
 
 def worker_count(jobs: int | None) -> int:
-    """How many processes `jobs` asks for; without it one per core."""
-    return jobs or os.cpu_count() or 1
+    """How many processes `jobs` asks for; without it one per core. Raises SimulationError for what is no number."""
+    if jobs is None:
+        return os.cpu_count() or 1
+    if not isinstance(jobs, Integral) or jobs < 1:
+        raise SimulationError(
+            f"jobs={jobs!r} is no whole number from 1 on: give one, or None for one per core"
+        )
+    return int(jobs)
 
 
 @contextmanager

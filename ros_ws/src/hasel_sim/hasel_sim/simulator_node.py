@@ -24,6 +24,7 @@ from hasel_sim.live.own_files import within
 from hasel_sim.live.pace import Pace
 from hasel_sim.live.repeated_warnings import RepeatedWarnings
 from hasel_sim.model import Model
+from hasel_sim.model.value_text import value_with_error
 from hasel_sim.model_parameters import ModelParameters
 from hasel_sim.node_process import run_node
 from hasel_sim.simulator_messages import BodyMessage, angle_message, rig_voltage, to_nanoseconds
@@ -165,7 +166,8 @@ class SimulatorNode(ManagedNode):
             model = self.live.model.with_effects(within(self._value("own_files"), request.effect))
             added = model.effects[-1]
             names = [
-                f"parameters.{added.id}.{p.name} (typically {p.typical:g} {p.unit})" for p in added.parameters
+                f"parameters.{added.id}.{p.name} (typically {value_with_error(p.typical, None, p.unit)})"
+                for p in added.parameters
             ]
             self._change(model)
             return f"Effect '{added.id}' is in the model, so far without influence: set {', '.join(names)}."

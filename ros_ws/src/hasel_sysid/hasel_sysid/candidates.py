@@ -91,6 +91,11 @@ def compatible(candidates: Collection[Candidate]) -> bool:
     return len(words) == len(set(words))
 
 
+def named_effects(only: Iterable[str] | None) -> tuple[Effect, ...]:
+    """The effects of these names, with or without a + before them. Raises ModelError for an unknown one."""
+    return find_effects(tuple(name.removeprefix("+") for name in only or ()))
+
+
 def candidate_effects(model: Model, only: Iterable[str] | None = None) -> list[Effect]:
     """Effects that could be added to this model, less those that do not fit it.
 
@@ -98,7 +103,7 @@ def candidate_effects(model: Model, only: Iterable[str] | None = None) -> list[E
     the catalogue. Raises ModelError for an unknown effect.
     """
     named = tuple(only or ())
-    own = find_effects(tuple(name.removeprefix("+") for name in named))
+    own = named_effects(named)
     every = not named or any(name.startswith("+") for name in named)
     effects = {effect.id: effect for effect in (*(catalogue().values() if every else ()), *own)}
     present = {effect.id for effect in model.effects}

@@ -16,6 +16,7 @@ from hasel_sysid.data_gate import refusal
 from hasel_sysid.drive_match import check_levels, matched
 from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment, experiment_of
+from hasel_sysid.repeated_runs import counted_once
 
 _MOST_LEVELS = 8
 """More voltages than this (a ramp, a sine) share so many amplitudes, spread over their range."""
@@ -23,7 +24,7 @@ _MOST_LEVELS = 8
 
 def load_experiments(
     paths: Iterable[str | Path],
-    mapping: Mapping[str, str] | None = None,
+    mapping: Mapping[str, str] | str | None = None,
     drives: Sequence[str | Path] | None = None,
     names: Sequence[str] | None = None,
 ) -> list[Experiment]:
@@ -36,7 +37,8 @@ def load_experiments(
 
 
 def usable(recordings: Iterable[Recording]) -> list[Experiment]:
-    """The recordings that can be simulated, as experiments; the others are skipped, each with a RecordingWarning.
+    """The recordings that can be simulated, as experiments; the others are skipped, each with a RecordingWarning, and
+    a run that is given twice counts once.
 
     Raises RecordingError when none is left.
     """
@@ -51,7 +53,7 @@ def usable(recordings: Iterable[Recording]) -> list[Experiment]:
         raise RecordingError(" ".join(refused))
     for sentence in refused:
         warnings.warn(f"Skipped: {sentence}", RecordingWarning, stacklevel=2)
-    return good
+    return counted_once(good)
 
 
 def simulable(

@@ -41,6 +41,8 @@ class SysidNode(ManagedNode):
     Inactive, it hears nothing and fits nothing.
     """
 
+    expected_errors = (HaselSimError,)
+
     def __init__(self) -> None:
         super().__init__("hasel_sysid", namespace=NAMESPACE)
         declare(self, PARAMETERS)
@@ -68,6 +70,10 @@ class SysidNode(ManagedNode):
         self.create_timer(1.0, self._report, callback_group=hearing, clock=STEADY)
         self.create_service(FitModel, "fit", self._serve_fit, callback_group=working)
         self.create_service(Diagnose, "diagnose", self._serve_diagnosis, callback_group=working)
+
+    def configure(self) -> None:
+        """Refuse a model or effects that nothing could be fitted with."""
+        self._model()
 
     def activate(self) -> None:
         """Say what is compared from now on."""

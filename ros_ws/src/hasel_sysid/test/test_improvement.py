@@ -252,7 +252,7 @@ def test_who_stops_a_search_keeps_the_fitted_baseline():
     problem = world.measured(world.with_typical("payload"))
 
     def stopped(text, share):
-        if "each alone" in text:
+        if "every effect alone" in text:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from hasel_sim.effects.base import ForceEffect, SiteState, Surroundings
-from hasel_sim.effects.check_tools import called, expect, same
+from hasel_sim.effects.check_tools import called, check_depends_on, expect, same
 
 _SITES = ("body", "skin", "line", "points")
 _QUANTITIES = ("position", "velocity", "acceleration", "tangent", "tangent_rate")
@@ -18,8 +18,7 @@ def check_force(effect: ForceEffect, null: SimpleNamespace, typical: SimpleNames
         effect.sites in _SITES, effect, f"acts at sites '{effect.sites}'", f"use one of {', '.join(_SITES)}"
     )
     known = (*_QUANTITIES, "contraction")
-    unknown = [name for name in effect.depends_on if name not in known]
-    expect(not unknown, effect, f"depends on {unknown}", f"name some of {', '.join(known)} in depends_on")
+    check_depends_on(effect, known)
     at = _example(effect)
     if effect.sites == "points":
         markers = np.array([[0.005, 0.0], [0.094, 0.0], [0.19, 0.0]])

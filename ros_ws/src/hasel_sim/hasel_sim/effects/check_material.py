@@ -6,11 +6,12 @@ from types import SimpleNamespace
 import numpy as np
 
 from hasel_sim.effects.base import Coefficients, MaterialEffect, MaterialPoints
-from hasel_sim.effects.check_tools import called, expect, repeatable, same
+from hasel_sim.effects.check_tools import called, check_depends_on, expect, repeatable, same
 from hasel_sim.effects.guarded import guarded
 from hasel_sim.mesh.mesh import Region
 
 _OF_CONSTANTS = ("modify", "branches", "fading")
+_QUANTITIES = ("deformation", "rate")
 
 
 def check_material(effect: MaterialEffect, null: SimpleNamespace, typical: SimpleNamespace) -> None:
@@ -40,9 +41,8 @@ def _check_stress(effect: MaterialEffect, null: SimpleNamespace, typical: Simple
     few = MaterialPoints(**{name: part[:2] for name, part in parts.items()}, time=0.3)
     off = called(effect, "first_piola", (n, 2, 2), at, null)
     on = called(effect, "first_piola", (n, 2, 2), at, typical)
-    unknown = [name for name in effect.depends_on if name not in ("deformation", "rate")]
-    expect(not unknown, effect, f"depends on {unknown}", "name deformation, rate or both in depends_on")
-    for name in {"deformation", "rate"} - set(effect.depends_on):
+    check_depends_on(effect, _QUANTITIES)
+    for name in set(_QUANTITIES) - set(effect.depends_on):
         moved = replace(at, **{name: parts[name] + 0.01 * rng.standard_normal((n, 2, 2))})  # type: ignore[arg-type]
         expect(
             same(called(effect, "first_piola", (n, 2, 2), moved, typical), on),

@@ -1,10 +1,11 @@
 """What the checks of an effect share: the one sentence, a call whose result is looked at, and equality to round-off."""
 
+from collections.abc import Collection
 from copy import deepcopy
 
 import numpy as np
 
-from hasel_sim.effects.base import Effect
+from hasel_sim.effects.base import Effect, ForceEffect, MaterialEffect
 from hasel_sim.effects.guarded import guarded
 from hasel_sim.errors import ModelError
 
@@ -13,6 +14,19 @@ def expect(right: object, effect: Effect, found: str, change: str) -> None:
     """Raise ModelError "effect X found; change" unless right."""
     if not right:
         raise ModelError(f"effect '{effect.source or effect.id}' {found}: {change}")
+
+
+def check_depends_on(effect: ForceEffect | MaterialEffect, known: Collection[str]) -> None:
+    """Refuse a depends_on that is no tuple, or that names what is not known."""
+    given, names = effect.depends_on, ", ".join(known)
+    expect(
+        isinstance(given, (tuple, list)),
+        effect,
+        f"has depends_on = {given!r}, where a tuple of names is expected",
+        f"name some of {names} in it, such as ({next(iter(known))!r},) with its comma",
+    )
+    unknown = [name for name in given if name not in known]
+    expect(not unknown, effect, f"depends on {unknown}", f"name some of {names} in depends_on")
 
 
 def called(effect: Effect, method: str, shape: tuple[int, ...], *arguments) -> np.ndarray:

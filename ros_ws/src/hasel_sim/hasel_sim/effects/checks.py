@@ -1,6 +1,8 @@
 """What is asked of an effect before it may act: declarations, null is null, a response, finite values, right shapes."""
 
+import math
 from collections.abc import Callable
+from numbers import Real
 from types import SimpleNamespace
 
 import numpy as np
@@ -53,17 +55,28 @@ def _check_declarations(effect: Effect) -> None:
     )
     for p in parameters:
         where = f"declares the parameter '{p.name}'"
-        expect(p.name.isidentifier(), effect, where, "use a name of letters, digits and underscores")
+        plain = isinstance(p.name, str) and p.name.isidentifier()
+        expect(plain, effect, where, "use a name of letters, digits and underscores")
         expect(p.unit, effect, f"{where} without unit", 'give its SI unit, or "1" for none')
         expect(
-            is_unit(p.unit),
+            isinstance(p.unit, str) and is_unit(p.unit),
             effect,
             f"{where} in '{p.unit}', which is no unit",
             "give SI units such as s, Pa, 1/s, kg/m^3 or N s/m, or 1 for none",
         )
-        numbers = np.isfinite([p.null, p.lower, p.upper, p.typical]).all()
+        for name in ("null", "lower", "upper", "typical", "difference"):
+            value = getattr(p, name)
+            expect(
+                _is_number(value),
+                effect,
+                f"{where} with {name}={value!r}, where a number is expected",
+                "give one",
+            )
         expect(
-            numbers, effect, f"{where} with a null, bound or typical value that is no number", "give numbers"
+            isinstance(p.scan, tuple) and all(map(_is_number, p.scan)),
+            effect,
+            f"{where} with scan={p.scan!r}, where a tuple of numbers is expected",
+            "give the values from which fits begin, such as (0.01, 0.1)",
         )
         inside = p.lower <= p.null <= p.upper and p.lower <= p.typical <= p.upper
         expect(
@@ -79,6 +92,10 @@ def _check_declarations(effect: Effect) -> None:
         "has no parameter that is typically off its null",
         "give one a typical value other than null",
     )
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, Real) and math.isfinite(value)
 
 
 def _check_observation(effect: ObservationEffect, null: SimpleNamespace, typical: SimpleNamespace) -> None:

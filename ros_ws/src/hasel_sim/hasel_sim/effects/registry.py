@@ -40,6 +40,11 @@ def find_effects(names: tuple[str, ...]) -> tuple[Effect, ...]:
 
 
 def _built_in(name: str) -> Effect:
+    if name.endswith(".py"):
+        raise ModelError(
+            f"'{name}' names a file and no class in it; expected path/to/file.py:ClassName: write {name}:CLASS, with "
+            "the name of the effect's class"
+        )
     if name not in catalogue():
         raise ModelError(
             f"unknown effect '{name}'; {nearest_name(name, catalogue())}; an effect of your own is named "

@@ -191,6 +191,10 @@ _CHANGES = {
     "without unit": ('"kg/m^3"', '""'),
     "outside 1 to 5000": ("0.0, 0.0, 5000.0", "0.0, 1.0, 5000.0"),
     "typically off its null": ("5000.0, 115.0", "5000.0, 0.0"),
+    "with null=None, where a number is expected": ("0.0, 0.0, 5000.0", "None, 0.0, 5000.0"),
+    "with typical='big', where a number is expected": ("5000.0, 115.0", "5000.0, 'big'"),
+    "with scan=115.0, where a tuple of numbers is expected": ("5000.0, 115.0", "5000.0, 115.0, scan=115.0"),
+    "has depends_on = 'velocity', where a tuple": ('("velocity", "tangent")', '("velocity")'),
     "use one of body, skin, line, points": ('"skin"', '"everywhere"'),
     "in depends_on": ('("velocity", "tangent")', '("speed", "tangent")'),
     "uses the velocity without saying so": ('("velocity", "tangent")', '("tangent",)'),
@@ -309,6 +313,8 @@ def test_missing_files_and_classes_are_named(written):
         find_effects(("nowhere.py:MyDrag",))
     with pytest.raises(ModelError, match="has no class 'MyDrga'; the nearest known one is 'MyDrag'"):
         find_effects((name.replace(":MyDrag", ":MyDrga"),))
+    with pytest.raises(ModelError, match=r"names a file and no class in it; .* write .*my_effect[.]py:CLASS"):
+        find_effects((name.removesuffix(":MyDrag"),))
 
 
 def _median_time(call, repeats: int = 15) -> float:

@@ -162,7 +162,7 @@ def test_effects_come_and_go_while_running(rig):
     """An added effect has no influence until its parameter is set, and none after it is removed."""
     answer = rig.call(AddEffect, "/hasel/add_effect", effect="quadratic_drag")
     assert answer.success
-    assert "parameters.quadratic_drag.coefficient" in answer.message
+    assert "parameters.quadratic_drag.coefficient (typically 0.3)." in answer.message
     assert rig.node.live.model.values["quadratic_drag.coefficient"] == 0.0
     assert rig.set("parameters.quadratic_drag.coefficient", 0.25).successful
     assert rig.node.live.model.values["quadratic_drag.coefficient"] == 0.25

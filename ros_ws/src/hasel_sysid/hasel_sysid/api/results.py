@@ -11,6 +11,7 @@ from hasel_sysid.compare import Comparison
 from hasel_sysid.diagnosis import Diagnosis, Verdict
 from hasel_sysid.estimation import FittedModel
 from hasel_sysid.experiment import Experiment
+from hasel_sysid.found_values import found_values
 from hasel_sysid.result import Improvement
 
 _MOST_SAID = 8
@@ -108,7 +109,7 @@ class Improved:
         return self.improvement.model
 
     def __str__(self) -> str:
-        return str(self.improvement)
+        return "\n".join([str(self.improvement), *found_values(self.improvement)])
 
     __repr__ = __str__
 

@@ -17,6 +17,7 @@ from hasel_sysid.data_gate.understood import Summary, summary
 from hasel_sysid.dataset import for_model
 from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import experiment_of
+from hasel_sysid.repeated_runs import is_repeat
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -36,6 +37,7 @@ def _check(options: argparse.Namespace, refused: list[str]) -> None:
     drives = drive_of_each(options.recordings, options.drive)
     model = load_model(options.model) if options.model else None
     shown: list[Summary] = []
+    earlier: list[Recording] = []
     names = distinct_names(options.recordings)
     for path, drive, name in zip(options.recordings, drives, names, strict=True):
         try:
@@ -43,6 +45,8 @@ def _check(options: argparse.Namespace, refused: list[str]) -> None:
         except RecordingError as error:
             _refuse(name, str(error), refused)
             continue
+        is_repeat(recording, earlier)
+        earlier.append(recording)
         fits: tuple[str, ...] = ()
         misfit = False
         try:

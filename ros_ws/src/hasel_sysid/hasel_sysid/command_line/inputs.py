@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING
 from hasel_recording.reading import distinct_names, drive_of_each
 from hasel_sim.model import Model
 
+from hasel_sysid.candidates import named_effects
 from hasel_sysid.command_line.chosen_model import chosen_model
 from hasel_sysid.command_line.shown import announce
 from hasel_sysid.data_gate import DataFinding
 from hasel_sysid.dataset import for_model, load_experiments, prepared, simulable
 from hasel_sysid.drive_match import check_levels
 from hasel_sysid.experiment import GENTLEST, Experiment
+from hasel_sysid.repeated_runs import check_unseen
 
 if TYPE_CHECKING:
     from hasel_sysid.noise.model import NoiseModel
@@ -35,7 +37,11 @@ class Inputs:
 
 
 def load_inputs(options: argparse.Namespace, decided_later: Collection[str] = ()) -> Inputs:
-    """Read the recordings, tell what the data gate finds but for what is `decided_later`, and choose the model."""
+    """Read the recordings, tell what the data gate finds but for what is `decided_later`, and choose the model.
+
+    Raises ModelError for an effect of --effects or --add that is not known.
+    """
+    named_effects(getattr(options, "effects", None))
     experiments, unseen = load_all(options)
     noise = _noise(getattr(options, "noise", None))
     label, model = chosen_model(options.model, [each.recording for each in (*experiments, *unseen)])
@@ -66,10 +72,14 @@ def _noise(given: float | None) -> "NoiseModel | None":
 def load_all(
     options: argparse.Namespace,
 ) -> tuple[list[Experiment], list[Experiment]]:
-    """The experiments to fit and the unseen ones. Raises RecordingError when there are none to read."""
+    """The experiments to fit and the unseen ones.
+
+    Raises RecordingError when there are none to read, SysidError where one is both.
+    """
     fitted, validated = list(options.recordings), list(options.validate)
     drives = drive_of_each([*fitted, *validated], options.drive)
     names, count = distinct_names([*fitted, *validated]), len(fitted)
     experiments = load_experiments(fitted, options.map, drives[:count], names[:count])
     unseen = load_experiments(validated, options.map, drives[count:], names[count:]) if validated else []
+    check_unseen(unseen, experiments)
     return experiments, unseen

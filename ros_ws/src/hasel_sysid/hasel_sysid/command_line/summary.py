@@ -1,19 +1,14 @@
 """What a person needs of an answer on the terminal: verdict, values, error before and after, doubt, next run."""
 
-import math
 from collections.abc import Sequence
-
-from hasel_sim.model import Parameter
 
 from hasel_sysid.compare import Comparison
 from hasel_sysid.diagnosis import Diagnosis, Verdict
+from hasel_sysid.found_values import found_values, value_line
 from hasel_sysid.report.from_improvement import what_is_missing
-from hasel_sysid.report.numbers import error_text, interval_text
+from hasel_sysid.report.numbers import error_text
 from hasel_sysid.result import Improvement
 from hasel_sysid.suggest import Suggestion
-
-_ON_BOUND = 1e-6
-"""Share of a parameter's range; a fit comes so near a bound that it wants to go beyond."""
 
 
 def improvement_lines(
@@ -21,7 +16,7 @@ def improvement_lines(
 ) -> list[str]:
     """Of an improvement; comparisons: of every stage, the fitted baseline first."""
     lines = [str(found.set_up)] if found.set_up else []
-    lines += [_headline(found), *_values(found, comparisons[-1])]
+    lines += [_headline(found), *found_values(found)]
     lines += _errors(comparisons[0], comparisons[-1], found.noise_floor)
     if not found.constant:
         lines += [*_doubt(found.diagnosis, found.missing), found.reason]
@@ -40,7 +35,7 @@ def diagnosis_lines(found: Diagnosis, comparison: Comparison) -> list[str]:
     for each in named:
         if each.fit is not None:
             model = each.fit.model
-            lines += [_interval(model.parameters[name]) for name in each.expected]
+            lines += [value_line(model.parameters[name]) for name in each.expected]
     lines += _errors(None, comparison, found.measured.mean_absolute)
     doubt = _doubt(found, [each.effect for each in named])
     lines += doubt
@@ -59,21 +54,6 @@ def _headline(found: Improvement) -> str:
     if found.constant:
         return found.reason
     return what_is_missing(found) or f"{found.status.value.replace('_', ' ').capitalize()}."
-
-
-def _values(found: Improvement, last: Comparison) -> list[str]:
-    names = [name for name in last.model.parameters if name.rpartition(".")[0] in found.missing]
-    names += [found.constant.name] if found.constant else []
-    return [_interval(last.model.parameters[name]) for name in names]
-
-
-def _interval(parameter: Parameter) -> str:
-    span = parameter.upper - parameter.lower
-    for which, bound in (("lower", parameter.lower), ("upper", parameter.upper)):
-        if abs(parameter.value - bound) < _ON_BOUND * span < math.inf:
-            unit = "" if parameter.unit == "1" else f" {parameter.unit}"
-            return f"  {parameter.name} is on its {which} bound, {bound:g}{unit}"
-    return f"  {parameter.name} = {interval_text(parameter.value, parameter.standard_error, parameter.unit)}"
 
 
 def _errors(before: Comparison | None, after: Comparison, noise: float) -> list[str]:

@@ -11,7 +11,8 @@ from pathlib import Path
 import hasel_sysid as h
 import hasel_sysid.api
 import pytest
-from hasel_sim.errors import ModelError
+from hasel_recording import RecordingError
+from hasel_sim.errors import ModelError, SimulationError
 from hasel_sysid.errors import SysidError
 
 PACKAGE = Path(__file__).parents[2]
@@ -129,3 +130,74 @@ def test_everything_prints_in_short_sentences():
         assert repr(each) == str(each)
         assert len(str(each)) < 2000
         assert "array(" not in repr(each)
+
+
+def test_lists_texts_and_single_names_will_do(tmp_path):
+    """Wherever it is plain what is meant."""
+    path = tmp_path / "lab.csv"
+    path.write_text(RUN.read_text(encoding="utf-8").replace("time_s,", "Zeit,", 1))
+    (run,) = h.load([path], columns="time_s=Zeit")
+    assert run.run.time.tolist() == h.load(RUN)[0].run.time.tolist()
+    assert str(h.model("swimmer", ["quadratic_drag"])) == str(h.model("swimmer", "quadratic_drag"))
+    (only,) = h.diagnose("swimmer", RUN, effects="quadratic_drag").diagnosis.findings
+    assert only.effect == "quadratic_drag"
+
+
+@pytest.mark.parametrize(
+    ("slip", "error", "said"),
+    [
+        (lambda folder: h.load(3), SysidError, "found a int where the path of a recording is expected"),
+        (lambda folder: h.load(RUN, columns=["t"]), RecordingError, "found .'t'. for the names of columns"),
+        (
+            lambda folder: h.load(RUN, columns="time_s=Zeti"),
+            RecordingError,
+            "no column 'Zeti' for time_s=Zeti",
+        ),
+        (
+            lambda folder: h.simulate("swimmer", RUN, jobs="2"),
+            SimulationError,
+            "'2' is no whole number from 1 on",
+        ),
+        (
+            lambda folder: h.simulate("swimmer", RUN, jobs=-1),
+            SimulationError,
+            "-1 is no whole number from 1 on",
+        ),
+        (
+            lambda folder: h.improve("swimmer", RUN, effects=[3]),
+            SysidError,
+            "found a int where the name of an",
+        ),
+        (lambda folder: h.save("swimmer", 3), SysidError, "found a int where a path is expected"),
+        (
+            lambda folder: h.save("swimmer", folder / "gone" / "m.yaml"),
+            SysidError,
+            "gone/m.yaml: No such file",
+        ),
+        (lambda folder: h.load(RUN).plot().save(folder / "f.xyz"), SysidError, "ends in .png, .svg or .pdf"),
+        (
+            lambda folder: h.load(RUN).plot().save(folder / "gone" / "f.png"),
+            SysidError,
+            "gone/f.png: No such",
+        ),
+    ],
+)
+def test_a_slip_is_answered_by_a_sentence(slip, error, said, tmp_path):
+    """Nothing of how it is made inside."""
+    with pytest.raises(error, match=said):
+        slip(tmp_path)
+
+
+def test_an_unknown_effect_is_refused_before_anything_is_simulated(monkeypatch):
+    """Not when the fit has been waited for."""
+    monkeypatch.setattr("hasel_sysid.api.steps.executor", None)
+    for step in (h.diagnose, h.improve):
+        with pytest.raises(ModelError, match="the nearest known one is 'quadratic_drag'"):
+            step("swimmer", RUN, effects="+quadratic_drg")
+
+
+def test_a_picture_prints_as_a_sentence():
+    """How many panels, and what to do with it."""
+    assert str(h.load(RUN).plot()) == (
+        "A picture of 1 panel: a notebook shows it, and save('picture.png') writes it."
+    )

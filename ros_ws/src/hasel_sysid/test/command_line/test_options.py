@@ -1,6 +1,7 @@
 """What the options of a command mean."""
 
 import pytest
+from hasel_sysid.command_line import diagnose, improve, inputs, suggest
 from hasel_sysid.command_line.parsers import check_parser, compare_parser, diagnose_parser, improve_parser
 
 
@@ -10,6 +11,16 @@ def test_effects_of_ones_own_are_added_to_the_catalogue():
         assert list(improve_parser().parse_args(["run.csv", *given]).effects) == ["+mine.py:Mine", "+tether"]
     assert list(improve_parser().parse_args(["run.csv", "--effects", "tether"]).effects) == ["tether"]
     assert improve_parser().parse_args(["run.csv"]).effects is None
+
+
+@pytest.mark.parametrize("command", [diagnose, improve, suggest])
+def test_a_wrong_effect_is_refused_before_a_recording_is_read(command, monkeypatch, capsys):
+    """A misspelt one, and a file without its class."""
+    monkeypatch.setattr(inputs, "load_all", None)
+    assert command.main(["run.csv", "--add", "quadratic_darg"]) == 2
+    assert "the nearest known one is 'quadratic_drag'" in capsys.readouterr().err
+    assert command.main(["run.csv", "--add", "own/cubic_drag.py"]) == 2
+    assert "expected path/to/file.py:ClassName: write own/cubic_drag.py:CLASS" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("parser", [check_parser, compare_parser, diagnose_parser])

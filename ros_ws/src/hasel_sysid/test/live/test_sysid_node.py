@@ -1,5 +1,7 @@
 """The identification as a node on real DDS, in this process."""
 
+import signal
+import sys
 import threading
 import time
 from dataclasses import replace
@@ -9,12 +11,14 @@ import numpy as np
 import pytest
 import rclpy
 from hasel_common.endpoints import Role
+from hasel_common.managed_node import ManagedNode
 from hasel_common.topics import MEASURED, SIMULATED, STATE
 from hasel_interfaces.msg import BendingAngle, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import Recording
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import load_model, save_model
+from hasel_sim.node_process import run_node
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 from hasel_sim.simulator_messages import angle_message, to_nanoseconds, to_time
@@ -108,6 +112,21 @@ class Talk:
         self.client = self.user.create_client(FitModel, "/hasel/fit")
         assert self.client.wait_for_service(timeout_sec=10.0)
         return self.client.call_async(FitModel.Request(**request))
+
+
+@pytest.mark.parametrize(
+    ("given", "nearest"), [("model:=swimer", "swimmer"), ("effects:=['quadratic_darg']", "quadratic_drag")]
+)
+def test_a_misspelt_model_or_effect_ends_the_node(given, nearest, capsys):
+    """In the sentence of the simulator, and not when the first fit is asked for."""
+    usual, arguments = signal.getsignal(signal.SIGINT), sys.argv
+    try:
+        sys.argv = ["sysid", "--ros-args", "-p", given]
+        assert run_node(SysidNode, ManagedNode.begin) == 1
+    finally:
+        sys.argv = arguments
+        signal.signal(signal.SIGINT, usual)
+    assert f"the nearest known one is '{nearest}'" in capsys.readouterr().err
 
 
 def test_no_request_brings_code_with_it(talk, tmp_path):
