@@ -1,6 +1,7 @@
 """`workbench [RECORDING…]`: a page in the browser on which the four steps are done by hand."""
 
 import argparse
+import signal
 import sys
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -50,6 +51,7 @@ def _serve(options: argparse.Namespace) -> int:
     folder = options.output.resolve()
     jobs, rig = Jobs(), RunningRig()
     with ExitStack() as open_:
+        open_.callback(signal.signal, signal.SIGTERM, signal.signal(signal.SIGTERM, _end))
         pool = open_.enter_context(workers(options))
         hand = open_.enter_context(
             executor(2)
@@ -73,6 +75,10 @@ def _serve(options: argparse.Namespace) -> int:
         port = 0 if options.bench else options.port
         serve(session, jobs, rig, options.host, port, browser, visit, certificate)
     return 0
+
+
+def _end(number: int, _frame: object) -> None:
+    raise SystemExit(128 + number)  # what is open is closed on the way, also the processes
 
 
 def _certificate(options: argparse.Namespace) -> tuple[Path, Path] | None:

@@ -91,7 +91,7 @@ class Jobs:
             if done:
                 self.say("positive", done)
         except Cancelled:
-            self.say("warning", f"{self._title}: cancelled, nothing was changed")
+            self._say_cancelled()
         except (HaselSimError, SysidError, RecordingError) as error:
             self.say("negative", str(error))
         except BrokenProcessPool:
@@ -105,7 +105,13 @@ class Jobs:
                 f"{error.filename or 'a file'}: {error.strerror or error}; choose another --output",
             )
         except BaseException as error:
+            if self._cancel.is_set():  # what it works with may be closed by now
+                self._say_cancelled()
+                return
             self.say("negative", f"{self._title} failed, please report it: {type(error).__name__}: {error}")
             raise
         finally:
             self._thread = None
+
+    def _say_cancelled(self) -> None:
+        self.say("warning", f"{self._title}: cancelled, nothing was changed")

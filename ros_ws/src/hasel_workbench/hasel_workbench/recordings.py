@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from hasel_recording import Recording, RecordingError, RecordingWarning, read_recording
+from hasel_recording.column_map import meant_names
 from hasel_recording.csv_columns import understand
 from hasel_recording.csv_text import TEXT_SUFFIXES, read_text
 from hasel_recording.reading import distinct_names
@@ -16,6 +17,11 @@ from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment
 
 from hasel_workbench.state import Banner, Unread
+
+_NEEDED = (
+    "It cannot be read so: expected a time and an angle, or the markers head, middle and tail, each column once; "
+    "choose again."
+)
 
 
 @dataclass(frozen=True)
@@ -33,6 +39,16 @@ class ReadingChoices:
         return self.own.get(str(path), self.mapping)
 
 
+def place_of(recording: Recording) -> str:
+    """That of its file; of one that is in no file, its name."""
+    return recording.name if recording.path is None else file_place(recording.path)
+
+
+def file_place(path: str | Path) -> str:
+    """Where a file is, however its path is written."""
+    return str(Path(path).resolve())
+
+
 def columns_of(path: str | Path) -> tuple[str, ...]:
     """Names of the columns of a file of rows where they are not understood; none of any other file."""
     path = Path(path)
@@ -42,59 +58,76 @@ def columns_of(path: str | Path) -> tuple[str, ...]:
         names = read_text(path).names
     except (RecordingError, OSError):
         return ()
+    return () if _are_understood(names, {}) else tuple(names)
+
+
+def _are_understood(names: Sequence[str], mapping: Mapping[str, str]) -> bool:
     try:
-        understand(names, {}, str(path))
+        understand(list(names), meant_names(mapping, names, "", all_here=False), "")
     except RecordingError:
-        return tuple(names)
-    return ()
+        return False
+    return True
 
 
 def read(
     paths: Sequence[str | Path], reading: ReadingChoices, unseen: bool = False
 ) -> tuple[list[Recording], list[Banner], list[Unread]]:
-    """What can be read, a sentence for each that cannot, and those of them that have columns to choose from."""
+    """What can be read, those of the others that have columns to choose from, and a sentence for each that has not."""
     found, banners, unread = [], [], []
     for path in paths:
         try:
             found.append(read_recording(path, reading.of(path) or None, reading.drives.get(str(path))))
         except RecordingError as error:
-            banners.append(Banner("error", str(error)))
+            said = str(error).replace(str(path), Path(path).name)
             names = columns_of(path)
-            if names:
-                unread.append(Unread(Path(path), names, unseen))
+            if not names:
+                banners.append(Banner("error", said, file_place(path)))
+                continue
+            if not _are_understood(names, reading.of(path)):
+                said = _NEEDED if str(path) in reading.own else ""
+            unread.append(Unread(Path(path), names, unseen, said))
     return found, banners, unread
 
 
 def checked(
     model: Model, recordings: Sequence[Recording], known: Sequence[Experiment]
-) -> tuple[list[Experiment], list[Banner]]:
-    """Those that this model can be compared with, and what the data check finds in them.
+) -> tuple[list[Experiment], list[Experiment], list[Banner]]:
+    """Those known already, those of the others that this model can be compared with, and what is to be said of these.
 
-    known: what is loaded already; no file is loaded twice, and files of one name get names that differ.
+    No file is loaded twice, and files of one name get names that differ, as the commands name them.
     """
+    places = [place_of(each.recording) for each in known]
+    new: list[Recording] = []
     found: list[Experiment] = []
     banners: list[Banner] = []
     for recording in recordings:
-        others = [*known, *found]
-        same = [each for each in others if each.name == recording.name]
-        if (
-            same
-            and recording.path is not None
-            and all(e.recording.path not in (None, recording.path) for e in same)
-        ):
-            paths = [each.recording.path for each in others if each.recording.path is not None]
-            recording = replace(recording, name=distinct_names([*paths, recording.path])[-1])
-        elif same:
-            banners.append(Banner("warning", f"{recording.name} is loaded already."))
-            continue
+        place = place_of(recording)
+        if place in places:
+            banners.append(Banner("warning", f"{recording.name} is loaded already.", place))
+        else:
+            places.append(place)
+            new.append(recording)
+    names = _names([*(each.recording for each in known), *new])
+    for recording, name in zip(new, names[len(known) :], strict=True):
+        place = place_of(recording)
         try:
             with warnings.catch_warnings(record=True) as said:
                 warnings.simplefilter("always", RecordingWarning)
-                (experiment,) = for_model(model.with_levels([]), usable([recording]))
+                (experiment,) = for_model(model.with_levels([]), usable([replace(recording, name=name)]))
         except (RecordingError, SysidError) as error:
-            banners.append(Banner("error", str(error)))
+            banners.append(Banner("error", str(error), place))
             continue
         found.append(experiment)
-        banners += [Banner("warning", str(each.message)) for each in said]
-        banners += [Banner(f.severity.value, str(f)) for f in check_recording(experiment.recording)]
-    return found, banners
+        banners += [Banner("warning", str(each.message), place) for each in said]
+        banners += [Banner(f.severity.value, str(f), place) for f in check_recording(experiment.recording)]
+    return [_called(each, name) for each, name in zip(known, names, strict=False)], found, banners
+
+
+def _names(recordings: Sequence[Recording]) -> list[str]:
+    """Names that differ; one that is in no file keeps its own."""
+    names = iter(distinct_names([each.path for each in recordings if each.path is not None]))
+    return [each.name if each.path is None else next(names) for each in recordings]
+
+
+def _called(experiment: Experiment, name: str) -> Experiment:
+    return Experiment(replace(experiment.recording, name=name), replace(experiment.run, name=name))

@@ -14,7 +14,8 @@ START_FILE, AGAIN_FILE = "start.yaml", "model_again.yaml"
 
 _SCRIPT = '''"""What was done in the workbench, step by step; run it where the workspace is sourced.
 
-Writes {again} beside itself, the model that the session ended with.
+Reads {start} beside itself, the model that the session began with, and the recordings named below; writes {again}
+beside itself, the model that it ended with.
 """
 
 from pathlib import Path

@@ -1,5 +1,6 @@
 """All that a session of the workbench knows; never changed, only replaced as a whole."""
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,19 +14,23 @@ from hasel_workbench.step import Step
 
 @dataclass(frozen=True)
 class Banner:
-    """A sentence that must be seen before any number; severity: error or warning."""
+    """A sentence that must be seen before any number; severity: error or warning; about: the place of a recording."""
 
     severity: str
     text: str
+    about: str = ""
 
 
 @dataclass(frozen=True)
 class Unread:
-    """A file of rows that could not be read, and the names of its columns; unseen: what it is to be loaded as."""
+    """A file of rows that could not be read, and the names of its columns; unseen: what it is to be loaded as; said:
+    why it could not be read with the columns that were named, empty before any was.
+    """
 
     path: Path
     names: tuple[str, ...]
     unseen: bool = False
+    said: str = ""
 
 
 @dataclass(frozen=True)
@@ -76,6 +81,14 @@ class SessionState:
                 f"there is no run '{run}'; expected one of: {', '.join(names) or 'none is loaded'}"
             )
         return names.index(run)
+
+    def with_banners(self, said: Sequence[Banner]) -> "SessionState":
+        """With more banners; none is there twice."""
+        return replace(self, banners=tuple(dict.fromkeys((*self.banners, *said))))
+
+    def without_word_of(self, places: Collection[str]) -> "SessionState":
+        """Without the banners about these recordings."""
+        return replace(self, banners=tuple(each for each in self.banners if each.about not in places))
 
     def with_step(self, step: Step) -> "SessionState":
         """With one more step in the history, after the current one."""

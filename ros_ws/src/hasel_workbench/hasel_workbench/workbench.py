@@ -22,7 +22,7 @@ from hasel_workbench.evaluate import Progress, evaluated, silent
 from hasel_workbench.export import export
 from hasel_workbench.ledger import StepLedger
 from hasel_workbench.prediction import Prediction, predicted
-from hasel_workbench.recordings import ReadingChoices, checked, read
+from hasel_workbench.recordings import ReadingChoices, checked, file_place, place_of, read
 from hasel_workbench.state import SessionState
 from hasel_workbench.step import Step
 
@@ -58,7 +58,9 @@ class Workbench:
         found, said, unread = read(paths, self.reading, unseen)
         with self._change() as state:
             others = tuple(each for each in state.unread if each.path not in map(Path, paths))
-            self._commit(replace(state, banners=(*state.banners, *said), unread=(*others, *unread)))
+            again = {file_place(path) for path in paths} - {place_of(each.recording) for each in state.every}
+            state = state.without_word_of(again).with_banners(said)
+            self._commit(replace(state, unread=(*others, *unread)))
             if found:
                 self._take(found, unseen, progress)
 
@@ -71,12 +73,14 @@ class Workbench:
     def pass_over(self, path: Path) -> None:
         """Do without a file that could not be read."""
         with self._change() as state:
-            self._commit(replace(state, unread=tuple(each for each in state.unread if each.path != path)))
+            others = tuple(each for each in state.unread if each.path != path)
+            self._commit(replace(state.without_word_of([file_place(path)]), unread=others))
 
     def remove(self, run: str, progress: Progress = silent) -> None:
         """Do without a run; every step is judged anew. Raises SysidError for the last one that is fitted."""
         with self._change() as state:
             number = state.number_of(run)
+            state = state.without_word_of([place_of(state.every[number].recording)])
             others = [each for each in state.every if each.name != run]
             fitted = len(state.experiments) - (number < len(state.experiments))
             self._regroup(state, others[:fitted], others[fitted:], progress)
@@ -101,8 +105,8 @@ class Workbench:
         Raises SysidError where none is new.
         """
         with self._change() as state:
-            known = [each.name for each in state.every]
-            new = [each for each in recordings if each.name not in known]
+            known = [place_of(each.recording) for each in state.every]
+            new = [each for each in recordings if place_of(each) not in known]
             if not new:
                 raise SysidError(f"nothing new: all {len(recordings)} runs are loaded already")
             self._take(new, unseen, progress)
@@ -215,13 +219,14 @@ class Workbench:
     def _take(self, recordings: Sequence[Recording], unseen: bool, progress: Progress) -> None:
         state = self.state
         model = state.current.model if state.steps else chosen_model(self._asked, recordings)[1]
-        found, said = checked(model, recordings, state.every)
-        state = replace(state, banners=(*state.banners, *said))
+        known, found, said = checked(model, recordings, state.every)
+        state = state.with_banners(said)
         self._commit(state)
         if not found:
             return
-        fitted = state.experiments if unseen else (*state.experiments, *found)
-        others = (*state.unseen, *found) if unseen else state.unseen
+        count = len(state.experiments)
+        fitted = tuple(known[:count]) if unseen else (*known[:count], *found)
+        others = (*known[count:], *found) if unseen else tuple(known[count:])
         state = replace(state, experiments=fitted, unseen=others)
         if not fitted:
             self._commit(state)

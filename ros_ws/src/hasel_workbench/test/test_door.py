@@ -102,11 +102,12 @@ def test_a_request_that_does_not_say_its_length_is_refused(client, how):
     "name", ["a.csv", "../../a.csv", "/etc/a.csv", "a\0.csv", 300 * "x" + "a.csv", "..", "", "."]
 )
 def test_an_upload_stays_below_its_folder(tmp_path, name):
-    """Whatever it is called, a file can be written there, and none that is there is overwritten."""
-    for _ in range(2):
-        path = free_path(tmp_path, name)
-        assert path.resolve().parent == tmp_path
+    """Whatever it is called, a file can be written there, and one of its name stands in a folder beside it."""
+    for folder in ("uploads", "uploads_2"):
+        path = free_path(tmp_path / "uploads", name)
+        assert path.resolve().parent == tmp_path / folder
         assert not path.exists()
+        path.parent.mkdir()
         path.write_text("1")
 
 

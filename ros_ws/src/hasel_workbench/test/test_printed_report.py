@@ -61,3 +61,15 @@ def test_it_is_six_pages_at_most(tmp_path):
         folded = page.run("document.querySelector('details.folded').innerText")
     assert "30 effects" in folded
     assert 1 < len(re.findall(rb"/Type\s*/Page[^s]", printed)) <= MOST_PAGES
+
+
+def test_the_button_for_a_picture_stays_on_the_screen(tmp_path):
+    """Paper has no buttons."""
+    path = write_report(report(), tmp_path)
+    with Browser() as browser:
+        page = browser.open(path.as_uri())
+        page.until("document.documentElement.dataset.drawn")
+        shown = "getComputedStyle(document.querySelector('.modebar-container')).display"
+        assert page.run(shown) != "none"
+        page.send("Emulation.setEmulatedMedia", media="print")
+        assert page.run(shown) == "none"

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hasel_recording import read_recording
+from hasel_recording.reading import distinct_names
 from hasel_sim.model import load_model, save_model
 from hasel_sysid.errors import SysidError
 from hasel_workbench.prediction import beyond_first_order
@@ -151,18 +152,75 @@ def test_what_cannot_be_read_is_a_banner(loaded, unseen_rig, tmp_path):
 
 def test_what_the_data_check_finds_is_a_banner(new_session, short_runs, tmp_path):
     """With how bad it is; the run is shown all the same."""
-    lines = short_runs[0][0].read_text().splitlines()
-    dead = tmp_path / "one_sided.csv"
-    rows = (line.split(",") for line in lines[1:])
-    dead.write_text(
-        "\n".join([lines[0], *(",".join([time, upper, "0", sine]) for time, upper, _, sine in rows)])
-    )
+    dead = dead_channel(short_runs[0][0], tmp_path / "one_sided.csv")
     session = new_session()
     session.load([dead])
     assert [
         (b.severity, "the lower muscle never gets a voltage" in b.text) for b in session.state.banners
     ] == [("warning", True)]
     assert len(session.state.every) == 1
+
+
+def dead_channel(run, path):
+    """The run with a lower muscle that gets no voltage."""
+    lines = run.read_text().splitlines()
+    rows = (line.split(",") for line in lines[1:])
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("\n".join([lines[0], *(",".join([time, up, "0", sine]) for time, up, _, sine in rows)]))
+    return path
+
+
+def test_a_banner_goes_with_what_it_is_about(loaded, short_runs, tmp_path):
+    """A removed run's warning, and the error of a file that can be read now; said twice, it is there once."""
+    known = loaded.state.every[0].recording.path
+    loaded.load([dead_channel(short_runs[0][0], tmp_path / "dead.csv")])
+    loaded.load([known])
+    loaded.load([known])
+    assert ["is loaded already" in each.text for each in loaded.state.banners] == [False, True]
+    loaded.remove("dead")
+    assert ["is loaded already" in each.text for each in loaded.state.banners] == [True]
+    late = tmp_path / "late.csv"
+    loaded.load([late])
+    assert len(loaded.state.banners) == 2
+    late.write_text(short_runs[0][0].read_text())
+    loaded.load([late])
+    assert ["is loaded already" in each.text for each in loaded.state.banners] == [True]
+
+
+def test_a_file_whose_columns_are_asked_for_is_no_banner(loaded, short_runs, tmp_path):
+    """The question says what is needed, without an option of a command or a folder, until it is answered or left."""
+    path = tmp_path / "lab.csv"
+    path.write_text(short_runs[0][0].read_text().replace("time_s", "t").replace("sin_theta", "bend"))
+    loaded.load([path])
+    assert loaded.state.banners == ()
+    assert [each.said for each in loaded.state.unread] == [""]
+    for columns, said in (
+        ({"time_s": "t"}, "expected a time and an angle"),
+        ({"time_s": "bend"}, "expected a time"),
+    ):
+        loaded.read_as(path, columns)
+        assert said in loaded.state.unread[0].said
+    loaded.read_as(path, {"time_s": "bend", "sin_theta": "t"})  # times that go back
+    (unread,) = loaded.state.unread
+    assert "lab.csv" in unread.said and str(tmp_path) not in unread.said
+    assert loaded.state.banners == ()
+    loaded.pass_over(path)
+    assert (loaded.state.unread, loaded.state.banners) == ((), ())
+
+
+def test_runs_of_two_folders_are_called_as_by_the_commands(new_session, short_runs, tmp_path):
+    """Also those that were there first, in what is said of them and in every step."""
+    paths = [tmp_path / f"day{n}" / "a.csv" for n in (1, 2)]
+    for path, run in zip(paths, short_runs[0], strict=True):
+        dead_channel(run, path)
+    session = new_session()
+    for path in paths:
+        session.load([path])
+    expected = distinct_names(paths)
+    assert expected == ["day1_a", "day2_a"]
+    assert [each.name for each in session.state.every] == expected
+    assert [each.name for each in session.state.current.comparison.runs] == expected
+    assert session.state.banners[-1].text.startswith("day2_a")
 
 
 def test_what_was_taken_is_not_taken_twice(new_session, short_runs):
@@ -262,6 +320,7 @@ def test_columns_are_named_for_a_file_that_could_not_be_read(loaded, short_runs,
     assert [each.name for each in loaded.state.unseen] == ["val_5200V_2.5Hz", "lab"]
     said = script(loaded.state, loaded.reading)
     assert said.count("h.load(") == 3
+    assert "start.yaml" in said.split('"""')[1]
     assert "columns={'time_s': 't', 'sin_theta': 'bend'}" in said
     broken = tmp_path / "broken.csv"
     broken.write_text(text.replace("bend", "sin_theta").replace("t,", "time_s,", 1) + "x,y\n")

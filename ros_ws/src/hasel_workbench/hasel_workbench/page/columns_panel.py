@@ -1,6 +1,6 @@
 """Which column is which, of files that could not be read for the names of their columns."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from hasel_recording.csv_columns import THETA_UNITS, TIME_UNITS
@@ -18,11 +18,15 @@ class ColumnsPanel:
 
     def __init__(self, page: Any) -> None:
         self._page = page
+        self._asked = page.session.state.unread
         self._files()
 
     def refresh(self) -> None:
-        """Draw it again."""
+        """Draw it again; a new question comes into view."""
         self._files.refresh()
+        before, self._asked = self._asked, self._page.session.state.unread
+        if set(self._asked) - set(before):
+            ui.run_javascript("bench.ask()")
 
     @ui.refreshable_method
     def _files(self) -> None:
@@ -31,12 +35,16 @@ class ColumnsPanel:
 
     def _file(self, unread: Unread) -> None:
         page, session = self._page, self._page.session
+        meant = session.reading.of(unread.path)
         chosen: dict[str, tuple[ui.select, ui.select]] = {}
-        with ui.element("section").classes("wb-card").props('aria-label="columns of a file"'):
+        card = ui.element("section").classes("wb-card")
+        with card.props('tabindex=-1 data-question aria-label="columns of a file"'):
             ui.label(f"Which column is which in {unread.path.name}?").classes("wb-title")
+            if unread.said:
+                ui.label(unread.said).classes("wb-banner error").props('role="alert"')
             for role, units in roles(session.model()):
                 with ui.element("div").classes("wb-column-of"):
-                    known, its_unit = already_known(role, units, unread.names)
+                    known, its_unit = already_known(role, units, unread.names, meant)
                     column = ui.select([_NONE, *unread.names], value=known, label=role).props("dense")
                     unit = ui.select(list(units), value=its_unit, label="in").props("dense")
                 chosen[role] = column, unit
@@ -62,13 +70,14 @@ def roles(model: Model) -> list[tuple[str, tuple[str, ...]]]:
     ]
 
 
-def already_known(role: str, units: Sequence[str], names: Sequence[str]) -> tuple[str, str]:
-    """The column that is called as expected, and its unit; a dash and the first unit where none is."""
-    for unit in units:
-        ((name, _),) = named({role: ("", unit)}).items()
-        if name in names:
-            return name, unit
-    return _NONE, units[0]
+def already_known(
+    role: str, units: Sequence[str], names: Sequence[str], meant: Mapping[str, str]
+) -> tuple[str, str]:
+    """The column that was named, else the one called as expected, and its unit; a dash and the first unit for none."""
+    expected = [(next(iter(named({role: ("", unit)}))), unit) for unit in units]
+    known = [(meant[name], unit) for name, unit in expected if name in meant]
+    known += [(name, unit) for name, unit in expected if name in names]
+    return next((each for each in known if each[0] in names), (_NONE, units[0]))
 
 
 def named(chosen: dict[str, tuple[str, str]]) -> dict[str, str]:

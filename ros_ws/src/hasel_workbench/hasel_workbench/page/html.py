@@ -81,25 +81,16 @@ def sliders_list(shown: Sequence[Slider]) -> str:
 def _slider(each: Slider) -> str:
     unit = "" if each.unit == "1" else f" {each.unit}"
     hint = " · ".join(filter(None, [each.meaning, each.plausible and f"plausible {each.plausible}"]))
+    name, said = escape(each.name), escape(each.name + unit)
     return (
-        f'<label class="tune" title="{escape(hint)}"><span>{escape(each.name).replace(".", ".<wbr>")}</span>'
-        f'<input type="range" min="0" max="1000" step="1" value="{_position(each)}" data-name="{escape(each.name)}" '
-        f'data-low="{each.lowest!r}" data-high="{each.highest!r}" data-log="{int(each.logarithmic)}" '
-        f'data-value="{each.value!r}" data-unit="{escape(unit)}" aria-label="{escape(each.name)}{escape(unit)}" '
+        f'<div class="tune" title="{escape(hint)}"><span>{name.replace(".", ".<wbr>")}</span>'
+        f'<input type="range" min="0" max="1000" step="any" value="{1000 * each.share!r}" data-name="{name}" '
+        f'data-low="{each.lowest!r}" data-high="{each.highest!r}" data-centre="{each.centre!r}" '
+        f'data-size="{each.size!r}" data-value="{each.value!r}" data-unit="{escape(unit)}" aria-label="{said}" '
         f'aria-valuetext="{each.value:.4g}{escape(unit)}">'
-        f"<output>{each.value:.4g}{escape(unit)}</output></label>"
+        f'<input type="number" step="any" value="{each.value:.4g}" data-exact="{name}" aria-label="{said}, exactly">'
+        f"<small>{escape(unit.strip())}</small></div>"
     )
-
-
-def _position(each: Slider) -> int:
-    width = each.highest - each.lowest
-    if width <= 0:
-        return 0
-    if each.logarithmic:
-        share = math.log(each.value / each.lowest) / math.log(each.highest / each.lowest)
-    else:
-        share = (each.value - each.lowest) / width
-    return round(1000 * share)
 
 
 def card_text(card: Card) -> str:

@@ -79,11 +79,10 @@ class Page:
 
     async def uploaded(self, event: MultiUploadEventArguments, unseen: bool) -> None:
         """Keep the files that were dropped and load them."""
-        folder = self.session.folder / "uploads"
-        folder.mkdir(parents=True, exist_ok=True)
         paths = []
         for file in event.files:
-            path = free_path(folder, file.name)
+            path = free_path(self.session.folder / "uploads", file.name)
+            path.parent.mkdir(parents=True, exist_ok=True)
             await file.save(path)
             paths.append(path)
         self.do("load", lambda progress: self.session.load(paths, unseen, progress))
@@ -169,12 +168,13 @@ LONGEST_NAME = 120
 
 
 def free_path(folder: Path, name: str) -> Path:
-    """A path below the folder that no file has yet, of the end of this name, numbered where one has it."""
-    name = Path(name.replace("\0", "")).name[-LONGEST_NAME:] or "recording"
+    """A path in a folder, of the end of this name, that no file has yet; the folder is numbered where one has it."""
+    name = Path(name.replace("\0", "")).name[-LONGEST_NAME:]
+    name = name if name.strip(".") else "recording"
     path, number = folder / name, 1
     while path.exists():
         number += 1
-        path = folder / f"{Path(name).stem}_{number}{Path(name).suffix}"
+        path = folder.with_name(f"{folder.name}_{number}") / name
     return path
 
 

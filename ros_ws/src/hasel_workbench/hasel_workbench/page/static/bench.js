@@ -13,6 +13,8 @@ const bench = {
     new ResizeObserver(() => this.draw()).observe(this.curve.canvas);
     document.addEventListener("click", event => this.clicked(event));
     document.addEventListener("keydown", event => this.pressed(event));
+    document.addEventListener("focusin", event => { this.held = event.target; });
+    document.addEventListener("pointerdown", () => { this.held = null; });
     document.addEventListener("input", event => this.moved(event.target));
     document.addEventListener("change", event => this.chosen(event.target));
     document.addEventListener("dragover", event => event.preventDefault());
@@ -30,10 +32,27 @@ const bench = {
   dress() {
     this.body.dress(); this.curve.dress(); this.draw();
   },
+  // What was drawn again while it had the keyboard has it still.
+  hold() {
+    const {name, exact} = this.held?.dataset || {};
+    if (this.held?.isConnected || !(name || exact)) return;
+    const found = name ? `[data-name="${CSS.escape(name)}"]` : `[data-exact="${CSS.escape(exact)}"]`;
+    document.querySelector(found)?.focus({preventScroll: true});
+  },
+  // A question about a file comes into view, once it is drawn.
+  ask() {
+    setTimeout(() => {
+      const cards = document.querySelectorAll("[data-question]"), card = cards[cards.length - 1];
+      if (!card) return;
+      card.scrollIntoView({block: "center"});
+      card.focus({preventScroll: true});
+    });
+  },
   // The session has changed: fetch what is shown again.
   async refresh(version, runs) {
     if (!this.ready) this.begin();
     this.version = version;
+    setTimeout(() => this.hold());
     this.runs = runs;
     document.body.classList.toggle("wb-empty", !runs.length);
     if (!runs.length) return;
@@ -129,6 +148,11 @@ const bench = {
   pressed(event) {
     const target = event.target;
     if (target.matches && target.matches("td[data-cell]")) return this.walk(event, target);
+    if (target.dataset && target.dataset.name && /^Arrow/.test(event.key)) {
+      tuning.step(target, event.key === "ArrowRight" || event.key === "ArrowUp");
+      event.preventDefault();
+      return;
+    }
     if (target.matches && target.matches("input, textarea, select, button, a, [role=tab], [role=combobox]")) return;
     if (event.key === " ") { this.toggle(); event.preventDefault(); }
     else if (event.key === "ArrowRight" || event.key === "ArrowLeft") {
@@ -162,7 +186,8 @@ const bench = {
   chosen(target) {
     if (target.id === "wb-speed") this.speed = +target.value;
     else if (target.id === "wb-colour") { this.body.colourBy = target.value; this.draw(); }
-    else if (target.dataset && target.dataset.name) tuning.drop(target);
+    else if (target.dataset && target.dataset.name) tuning.drop();
+    else if (target.dataset && target.dataset.exact) tuning.enter(target);
   },
 };
 window.bench = bench;

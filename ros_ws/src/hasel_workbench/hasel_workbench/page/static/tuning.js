@@ -1,17 +1,31 @@
 // Dragging a value: at once what the derivatives foretell, and behind it the true simulation of this run.
 "use strict";
+const KEY = 0.1;
 const tuning = {
   values: {}, asking: false, again: false, truths: 0,
+  // The scale is asinh((value - centre) / size), see sliders.py; a value is as round as a pixel allows.
+  scale(slider) {
+    const {low, high, centre, size} = slider.dataset, scaled = value => Math.asinh((value - centre) / size);
+    return {first: scaled(low), last: scaled(high), centre: +centre, size: +size};
+  },
   value(slider) {
-    const low = +slider.dataset.low, high = +slider.dataset.high, share = slider.value / 1000;
-    return +slider.dataset.log ? low * (high / low) ** share : low + share * (high - low);
+    const {first, last, centre, size} = this.scale(slider), {low, high} = slider.dataset;
+    const at = first + (last - first) * slider.value / 1000, pixel = (last - first) / (slider.clientWidth || 1000);
+    const grain = 10 ** Math.floor(Math.log10(size * Math.cosh(at) * Math.min(pixel, KEY)));
+    const round = Math.round((centre + size * Math.sinh(at)) / grain) * grain;
+    return Math.min(+high, Math.max(+low, +round.toPrecision(12)));
+  },
+  // An arrow key moves it by a tenth of the size near the centre, beyond it by a tenth of itself.
+  step(slider, up) {
+    const {first, last} = this.scale(slider);
+    slider.value = +slider.value + (up ? 1000 : -1000) * KEY / (last - first);
+    for (const kind of ["input", "change"]) slider.dispatchEvent(new Event(kind, {bubbles: true}));
   },
   drag(slider) {
     const began = performance.now(), value = this.value(slider);
     this.values[slider.dataset.name] = value;
-    const text = `${+value.toPrecision(4)}${slider.dataset.unit}`;
-    slider.setAttribute("aria-valuetext", text);
-    slider.nextElementSibling.textContent = text;
+    slider.setAttribute("aria-valuetext", `${+value.toPrecision(4)}${slider.dataset.unit}`);
+    slider.nextElementSibling.value = +value.toPrecision(6);
     this.began = began;
     this.predict(began);
     this.simulate(began);
@@ -65,6 +79,11 @@ const tuning = {
     document.querySelectorAll(".wb-numbers b[data-how]").forEach(each => { each.dataset.how = beyond ? "beyond" : "foretold"; });
     const place = document.getElementById("wb-beyond");
     if (place) place.hidden = !beyond;
+  },
+  enter(field) {
+    if (!field.checkValidity() || field.value === "") return;
+    this.values[field.dataset.exact] = +field.value;
+    this.drop();
   },
   // The value is let go: the session takes it, and simulates all runs with it.
   drop() {
