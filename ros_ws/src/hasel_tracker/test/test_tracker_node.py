@@ -5,6 +5,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import cv2
@@ -92,7 +93,10 @@ def start() -> Iterator[Callable[..., subprocess.Popen]]:
     def started(*parameters: str) -> subprocess.Popen:
         arguments = [part for each in parameters for part in ("-p", each)]
         command = [sys.executable, "-m", "hasel_tracker.tracker_node", "--ros-args", *arguments]
-        processes.append(subprocess.Popen(command, stderr=subprocess.PIPE, text=True))
+        hear = partial(
+            signal.signal, signal.SIGINT, signal.SIG_DFL
+        )  # of a run in the background it is ignored
+        processes.append(subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=hear))
         return processes[-1]
 
     yield started
