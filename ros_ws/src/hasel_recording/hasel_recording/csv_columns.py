@@ -81,7 +81,9 @@ def understand(names: list[str], meant: Mapping[str, str], source: str, angle: b
     marker_names = tuple(dict.fromkeys(marker for marker, _ in markers))
     for marker, axis in product(marker_names, "xy"):
         if (marker, axis) not in markers:
-            raise missing(f"{marker}_{axis}_{unit}", "a marker has both coordinates in one unit")
+            factor = next(column.factor for (name, _), column in markers.items() if name == marker)
+            own = unit if factor == 1 else next(u for u, each in MARKER_UNITS.items() if each == factor)
+            raise missing(f"{marker}_{axis}_{own}", "a marker has both coordinates in one unit")
     if angle and not (sin_theta or theta or set(MARKER_NAMES) <= set(marker_names)):
         raise missing(SIN_THETA, "or theta_deg, theta_rad, or the markers head, middle and tail")
     in_order = tuple(markers[place] for place in product(marker_names, "xy"))
@@ -112,7 +114,7 @@ def _markers(left: dict[str, str]) -> tuple[dict[tuple[str, str], Column], str]:
 
 
 def _drive(left: dict[str, str], source: str, needed: bool) -> dict[DriveChannel, Column]:
-    """The channels; where others are there, or nothing is missing without it, one that has no name is left over."""
+    """The channels; one without a name is left over where others are there and nothing is missing without it."""
     found: dict[DriveChannel, Column] = {}
     nameless = None
     for name in filter(is_drive_column, list(left)):

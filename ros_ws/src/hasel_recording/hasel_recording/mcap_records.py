@@ -15,7 +15,7 @@ from mcap.data_stream import ReadDataStream
 from mcap.exceptions import EndOfFile
 from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, DataEnd, McapRecord, Message, Metadata, Schema
-from mcap.stream_reader import breakup_chunk
+from mcap.stream_reader import get_chunk_data_stream
 
 MAGIC = b"\x89MCAP0\r\n"
 HEAD = struct.Struct("<BQ")
@@ -96,7 +96,7 @@ def whole_records(data: Bytes, damage: Damage) -> Iterator[McapRecord]:
         elif isinstance(content, Chunk):
             try:
                 yield from _of_chunk(content)
-            except ValueError:
+            except UNREADABLE:
                 damage.lost.append((content.message_start_time, content.message_end_time))
         elif content is not None:
             yield content
@@ -133,14 +133,29 @@ def _next_record(data: Bytes, place: int) -> int | None:
     return None
 
 
-def _of_chunk(chunk: Chunk) -> list[McapRecord]:
-    """The records of a chunk; raises ValueError where it is damaged."""
+def _of_chunk(chunk: Chunk) -> Iterator[McapRecord]:
+    """The records of a chunk; raises one of UNREADABLE where it is damaged, before any is given."""
+    data = _unpacked(chunk)
+    place, records = 0, []
+    while place < len(data):
+        record = _whole(data, place)
+        if record is None:
+            raise EndOfFile()
+        _, content, place = record
+        records.append(content)
+    yield from (content for content in records if content is not None)
+
+
+def _unpacked(chunk: Chunk) -> bytes:
     if chunk.uncompressed_size > LARGEST_CHUNK:
         raise ValueError("larger than any chunk")
     try:
-        return breakup_chunk(chunk, validate_crc=True)
+        stream, length = get_chunk_data_stream(chunk, validate_crc=True)
     except Exception as error:  # noqa: BLE001  what unpacks a chunk raises what it likes
         raise ValueError(str(error)) from None
+    if length != chunk.uncompressed_size:
+        raise ValueError("of another size than it says")
+    return stream.read(length)
 
 
 def _checksum_differs(data: Bytes, end: int, content: DataEnd) -> bool:

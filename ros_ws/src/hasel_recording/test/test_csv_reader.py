@@ -77,6 +77,7 @@ BAD_FILES = {
         r"voltage of upper \[V\] twice, as 'voltage_upper_v' and 'voltage_upper_kv'",
     ),
     "one marker": ("time_s,head_x_m,sin_theta\n0,1,0.1\n", r"no column 'head_y_m'"),
+    "one in its unit": ("time_s,head_x_mm,sin_theta\n0,1,0.1\n", r"no column 'head_y_mm'"),
     "twice": ("time_s,time_s,sin_theta\n0,0,0.1\n", r"'time_s' twice"),
     "no time in a row": (GOOD + ",3500,0,0.1\n", r"line 3: a blank cell in column time_s"),
     "unknown voltage": (GOOD + "0.1,nan,0,0.1\n", r"line 3: voltage_upper_v is nan"),

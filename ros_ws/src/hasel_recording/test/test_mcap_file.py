@@ -147,3 +147,25 @@ def test_a_damaged_name_of_a_type_does_not_break_the_sentence(tmp_path):
     with pytest.raises(RecordingError, match=r"holds \\nasel/msg/Angle\\x1b, but") as caught:
         read_recording(path)
     assert str(caught.value).isprintable()
+
+
+def test_a_chunk_of_another_size_than_it_says_is_left_out(tmp_path):
+    """Without a checksum nothing but its size tells that a chunk ends in the middle of a message."""
+    path = tmp_path / "run.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file, compression=CompressionType.NONE, enable_crcs=False)
+        writer.start(profile="ros2")
+        schema = writer.register_schema("a/msg/B", "ros2msg", b"uint8[8] data")
+        writer.add_message(writer.register_channel("/b", "cdr", schema), 0, b"\0\1\0\0" + bytes(range(8)), 0)
+        writer.finish()
+    content = bytearray(path.read_bytes())
+    with path.open("rb") as file:
+        (chunk,) = (r for r in StreamReader(file, emit_chunks=True).records if isinstance(r, Chunk))
+    at = content.index(chunk.data) + len(chunk.data)
+    head = content.rindex(bytes([6]) + (len(chunk.data) + 40).to_bytes(8, "little"), 0, at)
+    short = chunk.data[:-4]
+    content[head + 1 : head + 9] = (len(short) + 40).to_bytes(8, "little")
+    content[at - len(chunk.data) - 8 : at] = len(short).to_bytes(8, "little") + short
+    path.write_bytes(bytes(content))
+    with pytest.warns(RecordingWarning, match="1 chunks"):
+        assert read_file(path).messages == {}
