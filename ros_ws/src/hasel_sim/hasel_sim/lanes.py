@@ -8,11 +8,9 @@ from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.generalised_alpha import StepCoefficients
 from hasel_sim.mechanics.marcher import Drives, Marcher
 from hasel_sim.mechanics.motion import DriveState, Motion
-from hasel_sim.mechanics.part import Part
 from hasel_sim.mechanics.residual_slopes import NoSlope
 from hasel_sim.mechanics.seen import Seen
 from hasel_sim.mechanics.state import State, StateSlopes
-from hasel_sim.mechanics.step_slopes import StepSlopes
 from hasel_sim.mechanics.stepper import Stepper
 from hasel_sim.mechanics.system import System
 from hasel_sim.prepared_run import PreparedRun
@@ -43,17 +41,11 @@ class Lane:
 
         Raises SimulationError where that fails too.
         """
-        alone = Stepper(self.system, marcher.tolerance)
+        alone = Stepper(self.system, marcher.tolerance, self.parameters)
         alone.begin(marcher.jerk[..., [lane]], marcher.stress[..., [lane]])
         own, own_slopes = marcher.state.lane(lane), slopes.lane(lane)
-        parts = alone.follow(own, self.drive(step), self.plan.coefficients[step])
-        if self.parameters:
-            derivatives, by_contraction = (
-                StepSlopes(self.system, self.parameters),
-                self.contraction_slopes[step],
-            )
-            for part in parts:
-                derivatives.advance(part, own_slopes, by_contraction[..., None], np.ones(1, dtype=bool))
+        derivatives = own_slopes, self.contraction_slopes[step]
+        parts = alone.follow(own, self.drive(step), self.plan.coefficients[step], derivatives)
         marcher.state.put(lane, parts[-1].after)
         slopes.put(lane, own_slopes)
         marcher.jerk[..., lane], marcher.stress[..., lane] = alone.jerk[..., 0], alone.stress[..., 0]
@@ -92,7 +84,7 @@ def step_together(
     seen.note(0, state, slopes)
     if steps == 0:
         return seen, errors
-    marcher, derivatives = Marcher(system, tolerance), StepSlopes(system, columns)
+    marcher = Marcher(system, tolerance, columns)
     start = DriveState.beside([lane.prepared.start_drive for lane in filled])
     motion = Motion(state.position, state.velocity, state.acceleration)
     stress = system.second_piola(motion, start, system.memory(state))
@@ -100,18 +92,14 @@ def step_together(
     drives = Drives(*(_beside(filled, name, steps) for name in ("voltage", "contraction", "time")))
     kinds, coefficients = _coefficients(filled, steps)
     ends = np.array([*map(len, lanes), *[0] * (count - len(lanes))])
-    marcher.plan(drives, kinds, coefficients, ends, seen)
-    by_contraction = _beside(filled, "contraction_slopes", steps)
+    marcher.plan(
+        drives, kinds, coefficients, ends, seen, slopes, _beside(filled, "contraction_slopes", steps)
+    )
     step, last = 0, int(ends.max())
     while step < last:
-        before, until = state.copy() if columns else state, step + 1 if columns else last
-        reached = marcher.advance(step, until)
-        step = min(reached + 1, until)
-        if columns:
-            part = Part.between(before, state, drives.at(step - 1), marcher.coefficients_of(step - 1))
-            derivatives.advance(part, slopes, by_contraction[step - 1], marcher.arrived)
-            seen.note_slopes(step, slopes)
-        if reached == until:
+        reached = marcher.advance(step, last)
+        step = min(reached + 1, last)
+        if reached == last:
             continue
         for index in np.flatnonzero((step <= ends) & ~marcher.arrived).tolist():
             try:
@@ -121,6 +109,12 @@ def step_together(
         seen.note(step, state, slopes)
         last = int(ends.max())
     marcher.say_what_runs_as_python()
+    for index in range(len(lanes)):
+        if errors[index] is None and not np.isfinite(slopes.position[..., index]).all():
+            errors[index] = SimulationError(
+                "the motion was found, its derivatives were not: the matrix of a step is singular; expected parameters "
+                "at which the body stays whole: move extreme values back into their plausible range"
+            )
     return seen, errors
 
 

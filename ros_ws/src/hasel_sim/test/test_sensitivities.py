@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from hasel_sim.build import Builder
 from hasel_sim.effects.base import (
     DriveEffect,
     DriveStage,
@@ -12,6 +13,8 @@ from hasel_sim.effects.base import (
     MaterialEffect,
     ObservationEffect,
 )
+from hasel_sim.errors import SimulationError
+from hasel_sim.mechanics.residual_slopes import SolidSlope
 from hasel_sim.mesh.mesh import Region
 from hasel_sim.model import Model, Parameter
 from hasel_sim.run import Run
@@ -178,3 +181,19 @@ def test_a_parameter_that_is_not_used_has_no_derivative(swimmer, boxes):
     """The amplitude of a voltage that does not occur."""
     model = swimmer.with_levels(np.array([5500.0, 9000.0]))
     assert not simulate(model, boxes(duration=0.2), ["amplitude_9000"]).slopes.any()
+
+
+def test_derivatives_that_are_no_numbers_are_an_error_and_no_result(swimmer, boxes, monkeypatch):
+    """Where the matrix of a step is singular, or a law has no derivative; the run itself is found."""
+    run, name = boxes(duration=0.1), "soft_modulus.scale"
+    model = swimmer.with_effects("soft_modulus")
+    assert np.isfinite(simulate(model, run).sin_theta).all()
+
+    def without_width(builder, asked):
+        known = residual_slope(builder, asked)
+        return SolidSlope(known.more, known.less, np.nan) if asked == name else known
+
+    residual_slope = Builder.residual_slope
+    monkeypatch.setattr(Builder, "residual_slope", without_width)
+    with pytest.raises(SimulationError, match="its derivatives were not"):
+        simulate(model, run, [name])

@@ -10,6 +10,7 @@ from hasel_sim.adjoint.reverse import reverse_start, reverse_step
 from hasel_sim.adjoint.step_back import StepBack
 from hasel_sim.adjoint.trajectory import Trajectory
 from hasel_sim.adjoint.weights import no_weights
+from hasel_sim.mechanics.residual_columns import ResidualColumns
 from hasel_sim.mechanics.residual_slopes import ResidualSlope
 from hasel_sim.model.constants import outline_names
 from hasel_sim.simulate import slope_by_observation
@@ -67,6 +68,7 @@ def _reversed(
     coefficients = len(outline_names(prepared.model.description.body)) if with_outline else 0
     slopes: list[ResidualSlope] = list(prepared.residual_slopes)
     slopes += [builder.outline_slope(index) for index in range(coefficients)]
+    columns = ResidualColumns(prepared.stepper.system, slopes)
     totals = np.concatenate([direct, np.zeros(coefficients)])
     steps, back = trajectory.steps, StepBack(prepared.stepper.system)
     contraction = np.zeros((len(steps), prepared.muscles))
@@ -74,7 +76,7 @@ def _reversed(
     for step in range(len(steps) - 1, -1, -1):
         add_weights(step + 1, current.position[..., 0])
         for part in reversed(steps[step]):
-            current, by_contraction, by_parameter = reverse_step(back, part, current, slopes)
+            current, by_contraction, by_parameter = reverse_step(back, part, current, columns)
             contraction[step] += by_contraction
             totals += by_parameter
     add_weights(0, current.position[..., 0])
@@ -85,6 +87,6 @@ def _reversed(
         prepared.load_factor,
         prepared.held_shape is None,
         current,
-        slopes,
+        columns,
     )
     return Gradient(contraction, totals[: len(names)], totals[len(names) :])

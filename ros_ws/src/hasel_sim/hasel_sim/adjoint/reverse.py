@@ -13,7 +13,8 @@ from hasel_sim.adjoint.weights import StateWeights, green_pulled_back, history_p
 from hasel_sim.mechanics.initial import start_of_motion
 from hasel_sim.mechanics.linearisation import StrainedSystem, linearise
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
-from hasel_sim.mechanics.residual_slopes import NoSlope, ResidualSlope, SolidSlope
+from hasel_sim.mechanics.residual_columns import ResidualColumns
+from hasel_sim.mechanics.residual_slopes import ResidualSlope, solids_of
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.statics import equilibrium_multiplier
 from hasel_sim.mechanics.stepper import Part
@@ -24,7 +25,7 @@ def reverse_step(
     back: StepBack,
     part: Part,
     weights: StateWeights,
-    parameters: list[ResidualSlope],
+    columns: ResidualColumns,
 ) -> tuple[StateWeights, np.ndarray, np.ndarray]:
     """Weights of the state before, the contraction [muscles] and the parameters [n], from those of the state after."""
     before, after, motion, drive, c = part.before, part.after, part.motion, part.drive, part.coefficients
@@ -52,9 +53,9 @@ def reverse_step(
         earlier.green = -np.tensordot(gain[:, 0], weights.branch, 1) - gained.sum() * history
     by_muscle = at.by_contraction(drive)
     contraction = by_muscle.reshape(len(by_muscle), multiplier.size) @ multiplier.ravel()
-    by_parameter = _by_parameter(parameters, motion, drive, at, before, c.at, multiplier)
+    by_parameter = _times(columns.at(motion, drive, before, c.at), multiplier)
     if weights.branch is not None:
-        for column, parameter in enumerate(parameters):
+        for column, parameter in enumerate(columns.parameters):
             by_parameter[column] += _by_branch_parameter(parameter, before, after, c.step, weights)
     return earlier, contraction, by_parameter
 
@@ -66,12 +67,12 @@ def reverse_start(
     load_factor: float,
     in_equilibrium: bool,
     weights: StateWeights,
-    parameters: list[ResidualSlope],
+    columns: ResidualColumns,
 ) -> np.ndarray:
     """Weights of the parameters [n] from those of the first state, which is in static equilibrium or simply given."""
     motion, line, inertia = start_of_motion(system, state, drive)
     multiplier = -inertia.solve(weights.acceleration[None], transposed=True)[0]
-    out = _by_parameter(parameters, motion, drive, line, state, 0.0, multiplier)
+    out = _times(columns.at(motion, drive, state, 0.0), multiplier)
     position = weights.position + line.pulled_back(multiplier)[0]
     if weights.branch is not None:
         branch = weights.branch + history_pulled_back(system.solid, line.F, multiplier)
@@ -79,46 +80,29 @@ def reverse_start(
         position += green_pulled_back(
             system.solid, state.position, weights.green + np.tensordot(share, branch, 1)
         )
-        out += [_by_first_stress(parameter, state, weights.green, branch) for parameter in parameters]
+        out += [_by_first_stress(parameter, state, weights.green, branch) for parameter in columns.parameters]
     if not in_equilibrium:
         return out
     still = np.zeros_like(position)
     motion = Motion(state.position, still, still)
     line = linearise(system, motion, drive, Memory(), load_factor)
     multiplier = equilibrium_multiplier(line, system.held_to_zero(position[None])[0])
-    return out + _by_parameter(parameters, motion, drive, line, None, 0.0, multiplier, load_factor)
+    return out + _times(columns.at(motion, drive, None, 0.0, load_factor), multiplier)
 
 
-def _by_parameter(
-    parameters: list[ResidualSlope],
-    motion: Motion,
-    drive: DriveState,
-    line: StrainedSystem,
-    state: State | None,
-    at: float,
-    multiplier: np.ndarray,
-    load_factor: float = 1.0,
-) -> np.ndarray:
-    out = np.zeros(len(parameters))
-    for column, parameter in enumerate(parameters):
-        if isinstance(parameter, NoSlope):
-            continue
-        slope = np.zeros_like(multiplier)
-        parameter.add(motion, drive, line, state, at, slope, load_factor)
-        out[column] = (slope * multiplier).sum()
-    return out
+def _times(columns: np.ndarray, multiplier: np.ndarray) -> np.ndarray:
+    """Products of every column [columns, nodes, 2, lanes] with a multiplier, [columns]."""
+    return columns.reshape(len(columns), multiplier.size) @ multiplier.ravel()
 
 
 def _by_branch_parameter(
     parameter: ResidualSlope, before: State, after: State, step: float, weights: StateWeights
 ) -> float:
     total = 0.0
-    if isinstance(parameter, SolidSlope):
-        for solid, sign in parameter.solids:
-            green = solid.green_stress(solid.gradient(after.position))
-            branch = solid.branches.advance(before.branch, before.green, green, step)
-            share = (weights.green * green).sum() + (weights.branch * branch).sum()
-            total += sign / parameter.width[0] * share
+    for solid, factor in solids_of(parameter):
+        green = solid.green_stress(solid.gradient(after.position))
+        branch = solid.branches.advance(before.branch, before.green, green, step)
+        total += factor[0] * ((weights.green * green).sum() + (weights.branch * branch).sum())
     return total
 
 
@@ -127,9 +111,7 @@ def _by_first_stress(
 ) -> float:
     """By way of what the branches start with; of_green, of_branch: weights of C : E and of the branches' stresses."""
     total = 0.0
-    if isinstance(parameter, SolidSlope):
-        for solid, sign in parameter.solids:
-            green = solid.green_stress(solid.gradient(state.position))
-            share = (of_green * green).sum() + (of_branch * solid.branches.at_start(green)).sum()
-            total += sign / parameter.width[0] * share
+    for solid, factor in solids_of(parameter):
+        green = solid.green_stress(solid.gradient(state.position))
+        total += factor[0] * ((of_green * green).sum() + (of_branch * solid.branches.at_start(green)).sum())
     return total

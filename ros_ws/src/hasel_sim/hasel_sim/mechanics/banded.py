@@ -67,8 +67,10 @@ class BandFactors:
         padded = np.empty((count, n + k + 4, lanes))
         padded[:, n:] = 0.0
         padded[:, :n] = columns.reshape(count, held + n, lanes)[:, held:]
-        solve = banded_lu.solve_transposed if transposed else banded_lu.solve
-        solve(self._factors, n, k, self._reach, padded, lane_tuple(lanes))
+        if transposed:
+            banded_lu.solve_transposed(self._factors, n, k, self._reach, padded, lane_tuple(lanes))
+        else:
+            banded_lu.solve(self._factors, n, k, self._reach, padded, 0, lane_tuple(lanes))
         if held:
             padded = np.concatenate([np.zeros((count, held, lanes)), padded], axis=1)
         return padded[:, : held + n].reshape(columns.shape)

@@ -109,10 +109,10 @@ def _less_products(A, rows, x, place, count, y, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def solve(A, n, k, reach, x, lane):
-    """Solve in place for every right-hand side in x [columns, n + k + 4, lanes], which ends with k + 4 zeros."""
+def solve(A, n, k, reach, x, skipped, lane):
+    """Solve in place for the columns x [columns, skipped + n + k + 4, lanes], each of which ends with k + 4 zeros."""
     lanes, line, middle = len(lane), A.shape[1] * len(lane), LEFT + k
-    columns, height = x.shape[0], x.shape[1] * len(lane)
+    columns, height, begin = x.shape[0], x.shape[1] * len(lane), skipped * len(lane)
     first = 0
     for i in range(0, n, 4):
         while first + reach[first] < i:
@@ -125,7 +125,7 @@ def solve(A, n, k, reach, x, lane):
         f3, g3 = load(A, d + 3 * (line - lanes), lane), load(A, d + 3 * line - 2 * lanes, lane)
         h3 = load(A, d + 3 * line - lanes, lane)
         for c in range(columns):
-            at = c * height + i * lanes
+            at = begin + c * height + i * lanes
             y0, y1, y2, y3 = _less_products(A, rows, x, at + back, i - first, four(x, at, lane), lane)
             y1 = y1 - f1 * y0
             y2 = y2 - f2 * y0 - g2 * y1
@@ -141,7 +141,7 @@ def solve(A, n, k, reach, x, lane):
         i2, i3 = 1.0 / load(A, d + 2 * line, lane), 1.0 / load(A, d + 3 * line, lane)
         count = last + reach[last] - i - 3
         for c in range(columns):
-            at = c * height + i * lanes
+            at = begin + c * height + i * lanes
             place = at + 4 * lanes
             y0, y1, y2, y3 = _less_products(A, rows, x, place, count, four(x, at, lane), lane)
             y3 = y3 * i3
@@ -149,7 +149,7 @@ def solve(A, n, k, reach, x, lane):
             y1 = (y1 - f1 * y2 - g1 * y3) * i1
             _store_four(x, at, ((y0 - f0 * y1 - g0 * y2 - h0 * y3) * i0, y1, y2, y3), lane)
     for c in range(columns):
-        for at in range(c * height + n * lanes, (c + 1) * height, lanes):
+        for at in range(begin + c * height + n * lanes, (c + 1) * height, lanes):
             store(x, at, zero(lane))
 
 

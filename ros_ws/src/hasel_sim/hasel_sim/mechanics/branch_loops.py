@@ -12,6 +12,18 @@ from hasel_sim.simd import load, store, zero
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
+def carried(left, gain, stresses, green, out, lane):
+    """The part of the branches' stress after a step that no new strain changes, [elements, points, 3, lanes]."""
+    lanes = len(lane)
+    for at in range(0, out.size, lanes):
+        total = zero(lane)
+        for b in range(stresses.shape[0]):
+            total = total + load(left, b * lanes, lane) * load(stresses, b * out.size + at, lane)
+            total = total - load(gain, b * lanes, lane) * load(green, at, lane)
+        store(out, at, total)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
 def history(left, gain, stresses, green, out, lane):
     """Derivatives of what the branches carry over a step, [columns, elements, points, 3, lanes]."""
     lanes, branches = len(lane), stresses.shape[1]

@@ -8,7 +8,6 @@ import numpy as np
 from hasel_sim.mechanics.law_terms import SiteGroups, add_site_matrix, site_groups
 from hasel_sim.mechanics.motion import DriveState, Motion
 from hasel_sim.mechanics.site_force import NO_MESH, SiteForce
-from hasel_sim.mechanics.strained import Strained
 from hasel_sim.simd import lane_tuple
 
 
@@ -38,18 +37,6 @@ class ForceLaw(SiteForce):
             for muscle in range(len(drive.contraction))
         ]
         return np.array(found).reshape(-1, *self._reference.shape, len(self.values))
-
-    def add_slope(
-        self,
-        name: str,
-        at: Strained,
-        drive: DriveState,
-        factor: float | np.ndarray,
-        out: np.ndarray,
-    ) -> None:
-        """Subtract a factor times the derivative by a parameter from out [nodes, 2, lanes]."""
-        change = self.answers((("p", name), 0), at.motion, drive, NO_MESH)
-        self.sites.scatter(-factor * change.transpose(1, 0, 2), out)
 
     def keep(self, response: np.ndarray) -> None:
         """Keep derivatives found otherwise: the rows of the effect's response [rows, n, lanes]."""

@@ -6,7 +6,8 @@ from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.banded import BandFactors
 from hasel_sim.mechanics.linearisation import Linearisation, linearise
 from hasel_sim.mechanics.motion import DriveState, Memory, Motion
-from hasel_sim.mechanics.residual_slopes import ResidualSlope, SolidSlope
+from hasel_sim.mechanics.residual_columns import ResidualColumns
+from hasel_sim.mechanics.residual_slopes import ResidualSlope, solids_of
 from hasel_sim.mechanics.state import State, StateSlopes
 from hasel_sim.mechanics.statics import equilibrium, equilibrium_slope
 from hasel_sim.mechanics.strain import times_symmetric
@@ -38,7 +39,8 @@ def initial_state(
         state.green = system.solid.green_stress(system.solid.gradient(position))
         state.branch = branches.at_start(state.green)
     motion = Motion(position, still, still)
-    right = _residual_slopes(parameters, motion, drive, line, None, load_factor)
+    columns = ResidualColumns(system, parameters)
+    right = columns.at(motion, drive, None, 0.0, load_factor)
     moved = equilibrium_slope(line, right) if held_shape is None else np.zeros_like(right)
     slopes = StateSlopes(moved, np.zeros_like(right), np.zeros_like(right))
     if len(branches):
@@ -52,7 +54,7 @@ def initial_state(
     if parameters:
         motion, line, inertia = start_of_motion(system, state, drive)
         change = line.along(slopes.position, slopes.velocity, slopes.acceleration)
-        change += _residual_slopes(parameters, motion, drive, line, state, 1.0)
+        change += columns.at(motion, drive, state, 0.0)
         if slopes.branch is not None:
             change += system.held_to_zero(_forces_of_changed_memory(system, line, slopes.branch))
         slopes.acceleration = -inertia.solve(change)
@@ -80,21 +82,6 @@ def _held(system: System, drive: DriveState, shape: np.ndarray) -> tuple[np.ndar
     return position, linearise(system, Motion(position, still, still), drive, Memory())
 
 
-def _residual_slopes(
-    parameters: list[ResidualSlope],
-    motion: Motion,
-    drive: DriveState,
-    line: Linearisation,
-    state: State | None,
-    load_factor: float,
-) -> np.ndarray:
-    """state: None where the branches have relaxed."""
-    out = np.zeros((len(parameters), *motion.position.shape))
-    for column, parameter in enumerate(parameters):
-        parameter.add(motion, drive, line, state, 0.0, out[column], load_factor)
-    return line.system.held_to_zero(out)
-
-
 def _branch_slopes(
     system: System, state: State, parameters: list[ResidualSlope], slopes: StateSlopes
 ) -> None:
@@ -103,11 +90,10 @@ def _branch_slopes(
     slopes.green = solid.green_stress_along(solid.gradient(state.position), slopes.position)
     for column, parameter in enumerate(parameters):
         slopes.branch[column] = solid.branches.at_start(slopes.green[column])
-        if isinstance(parameter, SolidSlope):
-            for other, sign in parameter.solids:
-                green = other.green_stress(other.gradient(state.position))
-                slopes.green[column] += sign / parameter.width * green
-                slopes.branch[column] += sign / parameter.width * other.branches.at_start(green)
+        for other, factor in solids_of(parameter):
+            green = other.green_stress(other.gradient(state.position))
+            slopes.green[column] += factor * green
+            slopes.branch[column] += factor * other.branches.at_start(green)
 
 
 def _forces_of_changed_memory(system: System, line: Linearisation, change: np.ndarray) -> np.ndarray:

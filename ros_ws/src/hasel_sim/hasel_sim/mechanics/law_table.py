@@ -91,24 +91,7 @@ class LawTable:
             elif "rate" in law.moving:
                 add_slopes(tables, program, -1, further, rate_alone, tuple(sites), self.by_rate, lane)
 
-    def add_directions(self, rate: np.ndarray, acceleration: np.ndarray, out: np.ndarray) -> None:
-        """Add the change of the forces out of balance along velocities and accelerations [columns, nodes, 2, lanes]."""
-        for law in self._system.forces:
-            law.add_directions(None, rate, acceleration, out)
-
     def add_pulled_back(self, weights: np.ndarray, rate: np.ndarray, acceleration: np.ndarray) -> None:
         """Add to both [nodes, 2, lanes] the transposed derivatives of the forces out of balance times weights."""
         for law in self._system.forces:
             law.add_pulled_back(weights, (None, rate, acceleration))
-
-    def add_contraction(
-        self, at: StrainedSystem, drive: DriveState, by_contraction: np.ndarray, out: np.ndarray
-    ) -> None:
-        """Add what effects change with the contraction, by_contraction [columns, muscles, lanes], to out."""
-        if not self:
-            return
-        muscles = by_contraction.shape[1]
-        change = np.zeros((muscles, *self._system.weight.shape))
-        at.add_laws_by_contraction(drive, change)
-        if change.any():
-            out += np.einsum("cml,mndl->cndl", by_contraction, change)

@@ -9,32 +9,24 @@ tables and laws of `tape_loops.respond`.
 the end position, length.
 `memory`: internal branches: stresses, C : E, what a step leaves and adds up to the balance and up to its end, moduli.
 `progress`: which lanes are to make a step, which made it, whose stress is still due, their last correction [lanes].
+`derivatives`: of the state (positions, velocities, accelerations, branches' stresses, C : E) with the columns first, of
+the contraction at every step, `columns` of `column_loops`, and room, see `step_slopes.StepSlopes`; none where no
+columns are wanted.
 `room`: arrays to work in.
 """
 
+import numpy as np
 from numba import njit
 
+from hasel_sim.mechanics.branch_loops import carried
 from hasel_sim.mechanics.lane_loops import chosen_of, combine, copy_lanes
 from hasel_sim.mechanics.newton import newton
+from hasel_sim.mechanics.slope_system import differentiate
 from hasel_sim.mechanics.strain import deformation, green_stress
-from hasel_sim.simd import load, store, zero
+from hasel_sim.simd import load, store
 
-PREDICT, BALANCE, COMMIT = 1, 2, 4
+PREDICT, BALANCE, DIFFERENTIATE, COMMIT = 1, 2, 4, 8
 MOST_WITH_ONE_MATRIX, MOST_ITERATIONS = 5, 15
-
-
-@njit(cache=True, fastmath=True, error_model="numpy")
-def _history(memory, kind, out, lane):
-    """The part of the branches' stress at the balance that no new strain changes, [elements, points, 3, lanes]."""
-    stresses, green, left, gain, _, _, _ = memory
-    lanes, branches = len(lane), left.shape[1]
-    for at in range(0, out.size, lanes):
-        total = zero(lane)
-        for b in range(branches):
-            factor = (kind * branches + b) * lanes
-            total = total + load(left, factor, lane) * load(stresses, b * out.size + at, lane)
-            total = total - load(gain, factor, lane) * load(green, at, lane)
-        store(out, at, total)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -86,9 +78,12 @@ def _commit(moving, kind, scheme, solid, memory, guess, room, chosen, lane):
 
 
 @njit(inline="always")
-def _note(position, seen, boundary, lane):
-    """Keep what is seen at a boundary between steps: at the markers, and all positions where there is room."""
-    nodes, local, shapes = seen
+def _note(position, slopes, seen, boundary, lane):
+    """Keep what is seen at a boundary between steps: at the markers, and all positions where there is room.
+
+    slopes: derivatives of the positions [columns, nodes, 2, lanes].
+    """
+    nodes, local, shapes, changes = seen
     lanes, to = len(lane), boundary * nodes.size * 2 * len(lane)
     for m in range(nodes.shape[0]):
         for n in range(nodes.shape[1]):
@@ -99,6 +94,13 @@ def _note(position, seen, boundary, lane):
     if shapes.shape[0] > 0:
         for at in range(0, position.size, lanes):
             store(shapes, boundary * position.size + at, load(position, at, lane))
+    to = boundary * slopes.shape[0] * nodes.size * 2 * lanes
+    for c in range(slopes.shape[0]):
+        for node in nodes.flat:
+            at = 2 * lanes * (c * slopes.shape[1] + node)
+            store(changes, to, load(slopes, at, lane))
+            store(changes, to + lanes, load(slopes, at + lanes, lane))
+            to += 2 * lanes
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -112,6 +114,7 @@ def march(
     matrix,
     laws,
     memory,
+    derivatives,
     history,
     expected,
     guess,
@@ -123,14 +126,16 @@ def march(
 ):
     """Make steps from the first until before the last of `steps`, or to one that fails in a lane: this step comes back.
 
-    parts: which of PREDICT, BALANCE and COMMIT to do; how: see `newton`. moving: position, velocity, acceleration and
-    its rate [nodes, 2, lanes]. plan: the kind of every step, `scheme`, the solid's coefficients for every kind, the
-    drive [steps, 2 + 2 muscles, lanes] (see `DriveState.signals`), how many steps each lane makes [lanes]. Compiled as
-    one function, which takes a third of the time that many take.
+    parts: which of PREDICT, BALANCE, DIFFERENTIATE and COMMIT to do; how: see `newton`. moving: position, velocity,
+    acceleration and its rate [nodes, 2, lanes]. plan: the kind of every step, `scheme`, the solid's coefficients for
+    every kind, the drive [steps, 2 + 2 muscles, lanes] (see `DriveState.signals`), how many steps each lane makes
+    [lanes]. Compiled as one function, which takes a third of the time that many take.
     """
     kinds, scheme, tables, signals, ends = plan
     wanted, arrived, due, _ = progress
     state = moving[0], moving[1], moving[2]
+    slopes, by_contraction, columns, slope_room = derivatives
+    bad = np.full(len(lane), -1)
     for step in range(steps[0], steps[1]):
         kind = kinds[step]
         if parts & PREDICT:
@@ -138,9 +143,9 @@ def march(
                 wanted[k], arrived[k], due[k] = step < ends[k], False, False
             _predict(moving, kind, scheme[4], guess, lane)
             if memory[2].shape[1] > 0:
-                _history(memory, kind, history, lane)
+                carried(memory[2][kind], memory[3][kind], memory[0], memory[1], history, lane)
+        drive = tables[min(kind, len(tables) - 1)], signals[step], history
         if parts & BALANCE:
-            drive = tables[min(kind, len(tables) - 1)], signals[step], history
             newton(
                 state,
                 guess,
@@ -157,9 +162,28 @@ def march(
                 how,
                 lane,
             )
+        if parts & DIFFERENTIATE and slopes[0].shape[0] > 0 and arrived.any():
+            bad[:] = -1
+            differentiate(
+                state,
+                guess,
+                kind,
+                scheme,
+                drive,
+                body,
+                matrix,
+                laws,
+                memory,
+                expected,
+                (slopes, by_contraction[step], columns, slope_room),
+                (room[3], room[4]),
+                progress,
+                bad,
+                lane,
+            )
         if parts & COMMIT:
             _commit(moving, kind, scheme, body[0], memory, guess, room, arrived, lane)
-            _note(moving[0], seen, step + 1, lane)
+            _note(moving[0], slopes[0], seen, step + 1, lane)
             for k in range(len(ends)):
                 if step < ends[k] and not arrived[k]:
                     return step

@@ -13,6 +13,7 @@ from hasel_sim.mechanics.law_table import LawTable
 from hasel_sim.mechanics.march import (
     BALANCE,
     COMMIT,
+    DIFFERENTIATE,
     MOST_ITERATIONS,
     MOST_WITH_ONE_MATRIX,
     PREDICT,
@@ -21,8 +22,10 @@ from hasel_sim.mechanics.march import (
 from hasel_sim.mechanics.motion import DriveState
 from hasel_sim.mechanics.part import balance_motion
 from hasel_sim.mechanics.python_laws import say_once
+from hasel_sim.mechanics.residual_slopes import ResidualSlope
 from hasel_sim.mechanics.seen import Seen
-from hasel_sim.mechanics.state import State
+from hasel_sim.mechanics.state import State, StateSlopes
+from hasel_sim.mechanics.step_slopes import StepSlopes
 from hasel_sim.mechanics.system import System
 from hasel_sim.simd import lane_tuple
 
@@ -53,7 +56,8 @@ class Marcher:
     leaves about its square over the length of an element.
     """
 
-    def __init__(self, system: System, tolerance: float) -> None:
+    def __init__(self, system: System, tolerance: float, parameters: Sequence[ResidualSlope] = ()) -> None:
+        """parameters: those by which the motion is differentiated along the way."""
         self.system, self.tolerance, lanes = system, tolerance, system.lanes
         nodal, points = (*system.nodes.shape, lanes), system.solid.areas.shape
         self._lane = lane_tuple(lanes)
@@ -64,6 +68,7 @@ class Marcher:
         shape = matrix.diagonal, matrix.half_bandwidth, matrix.held
         self._matrix = matrix.entries, matrix.reach, shape, np.zeros(1, dtype=bool)
         self._laws = LawTable(system)
+        self._slopes = StepSlopes(system, parameters, self._laws.by_rate, matrix.half_bandwidth + 4)
         self._guess, self._history = np.empty(nodal), np.zeros((*points, 3, lanes))
         self._room = (
             *(np.empty(nodal) for _ in range(3)),
@@ -90,13 +95,17 @@ class Marcher:
         coefficients: Sequence[StepCoefficients],
         ends: np.ndarray,
         seen: Seen,
+        slopes: StateSlopes,
+        by_contraction: np.ndarray,
     ) -> None:
         """What to do from here.
 
-        kinds: of every step [steps], numbers among the coefficients; ends: how many steps each lane makes [lanes].
+        kinds: of every step [steps], numbers among the coefficients; ends: how many steps each lane makes [lanes];
+        slopes: derivatives of the state by the parameters, which are moved in place from now on; by_contraction: those
+        of the contraction [steps, columns, muscles, lanes].
         """
         self.drives, self.ends = drives, ends
-        self._seen, self._kinds = (seen.nodes, seen.local, seen.shapes), kinds
+        self._seen, self._kinds = (seen.nodes, seen.local, seen.shapes, seen.slopes), kinds
         if len(coefficients) != len(self.coefficients) or any(map(is_not, coefficients, self.coefficients)):
             self.coefficients = coefficients
             self._tabulate()
@@ -105,6 +114,7 @@ class Marcher:
         stresses = branches if len(solid.branches) else none
         self._memory = *stresses, *self._factors, (solid.shear, solid.linear_lame)
         self._plan = kinds, self._scheme, self._tables, drives.signals, ends
+        self._derivatives = self._slopes.plan(slopes, by_contraction, coefficients)
 
     def _tabulate(self) -> None:
         """What depends on the kind of a step."""
@@ -143,11 +153,11 @@ class Marcher:
     def advance_with_one_matrix(self, first: int, last: int) -> int:
         """The same, with a single matrix for every step."""
         if not self._laws.as_python:
-            return self._march(PREDICT | BALANCE | COMMIT, (first, last))
+            return self._march(PREDICT | BALANCE | DIFFERENTIATE | COMMIT, (first, last))
         for step in range(first, last):
             self._march(PREDICT, (step, step + 1))
             self._balance(step, one_matrix=True)
-            if self._march(COMMIT, (step, step + 1)) == step:
+            if self._end(step) == step:
                 return step
         return last
 
@@ -164,28 +174,25 @@ class Marcher:
                 self._guess[:] = start
             self._wanted &= ~made
             self._balance(step, one_matrix=False)
-            self._march(COMMIT, (step, step + 1))
+            self._end(step)
             made |= self.arrived
             self.arrived[:] = made
             if made[step < self.ends].all():
                 return True
         return False
 
-    def coefficients_of(self, step: int) -> StepCoefficients:
-        """Those of one step."""
-        return self.coefficients[self._kinds[step]]
-
     def _march(self, parts: int, steps: tuple[int, int], how: tuple[int, int, bool] | None = None) -> int:
         return march(
             parts,
             steps,
-            how or (0, MOST_WITH_ONE_MATRIX + 1, False),
+            (*(how or (0, MOST_WITH_ONE_MATRIX + 1, False)), len(self._slopes) > 0),
             (self.state.position, self.state.velocity, self.state.acceleration, self.jerk),
             self._plan,
             self._body,
             self._matrix,
             (self._laws.terms, self._laws.tapes.tables, self._laws.programs),
             self._memory,
+            self._derivatives,
             self._history,
             self.stress,
             self._guess,
@@ -195,6 +202,16 @@ class Marcher:
             self._progress,
             self._lane,
         )
+
+    def _end(self, step: int) -> int:
+        """Differentiate a step that was found, and go to its end; see `march`."""
+        if len(self._slopes) and self._laws.as_python and self.arrived.any():
+            drive = self.drives.at(step)
+            acceleration = np.where(self.arrived, self._guess, self.state.acceleration)
+            motion = balance_motion(self.state, acceleration, self._scheme[0][self._kinds[step]])
+            self._laws.call(motion, drive, with_slopes=True, exact=True)
+            self._slopes.call(motion, drive)
+        return self._march(DIFFERENTIATE | COMMIT, (step, step + 1))
 
     def _balance(self, step: int, one_matrix: bool) -> None:
         """Find the acceleration at the end of a step; effects that run as Python are called before every correction."""
@@ -206,7 +223,7 @@ class Marcher:
         start = time.process_time()
         for iteration in range(most + 1):
             more = bool((self._wanted & ~self.arrived).any())
-            if not more and not self._due.any():
+            if not more and (len(self._slopes) or not self._due.any()):
                 break
             fresh = more and (iteration == 0 or not one_matrix)
             motion = balance_motion(self.state, self._guess, self._scheme[0][kind])

@@ -46,7 +46,7 @@ def _judge(iteration, always, vector, unknowns, end_position, bad, progress, tak
 
 
 @njit(cache=True, error_model="numpy")
-def _is_spoilt(vector, unknowns, bad):
+def is_spoilt(vector, unknowns, bad):
     """Whether factors may have left what is no number beyond the band, where `clear_band` does not look."""
     spoilt = False
     for k in range(len(bad)):
@@ -87,8 +87,9 @@ def solve(matrix, columns, lane):
     band, reach, (_, half_bandwidth, held), _ = matrix
     n = len(reach)
     for c in range(columns.shape[0]):
-        own = _unknowns_of(columns, c, n, held, lane)
-        banded_lu.solve(band[held:], n - held, half_bandwidth, reach[held:], own, lane)
+        _unknowns_of(columns, c, n, held, lane)
+    every = columns.reshape(columns.shape[0], 2 * columns.shape[1], len(lane))
+    banded_lu.solve(band[held:], n - held, half_bandwidth, reach[held:], every, held, lane)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -116,7 +117,8 @@ def newton(
     """Correct a guess of the end-of-step acceleration in the lanes wanted; those that fail are wanted no more.
 
     expected: second Piola stress of the last balance, replaced by that of this one in the lanes that arrive.
-    how: (the first of the iterations to make, the one to end before, whether each has a matrix of its own).
+    how: (the first of the iterations to make, the one to end before, whether each has a matrix of its own, whether the
+    stress of lanes that arrived with their first correction is left to what follows).
     """
     to_balance, matrix_weights, _, end_position, _ = scheme
     solid, masses, weight = body
@@ -125,11 +127,11 @@ def newton(
     x, v, a, vector, found, _, _ = room
     band, reach, (diagonal, _, _), spoilt = matrix
     wanted, arrived, due, _ = progress
-    first, last, always = how
+    first, last, always, leave = how
     bad, taken = np.full(len(lane), -1), np.zeros(len(lane), dtype=np.bool_)
     for iteration in range(first, last):
         more = _wanted_yet(wanted, arrived)
-        if not more and not due.any():
+        if not more and (leave or not due.any()):
             break
         fresh = more and (iteration == 0 or always)
         combine(before[0], before[1], before[2], guess, to_balance[kind], x, v, a, lane)
@@ -163,7 +165,7 @@ def newton(
             factorise(matrix, bad, lane)
         solve(matrix, vector.reshape(1, *vector.shape), lane)
         if fresh:
-            spoilt[0] = _is_spoilt(vector, len(reach), bad)
+            spoilt[0] = is_spoilt(vector, len(reach), bad)
         _judge(iteration, always, vector, len(reach), end_position[kind], bad, progress, taken, limits)
         subtract_lanes(vector, guess, taken, lane)
         if not fresh:

@@ -36,7 +36,7 @@ def directions(slopes, weights, out, lane):
 
 @njit(cache=True, fastmath=True, error_model="numpy")
 def right_hand_sides(position, body, drive, moved, by_contraction, stress, further, out, lane):
-    """Add to out [columns, nodes, 2, lanes] what damping, inertia, contraction and further stress change.
+    """Add to out [columns, nodes or more, 2, lanes] what damping, inertia, contraction and further stress change.
 
     position: at the balance; body, drive: as in `march` and `balance`; moved: changes of velocity and acceleration
     [columns, nodes, 2, lanes]; by_contraction: of the contraction [columns, 1 + muscles, lanes]; stress: of the second
@@ -110,16 +110,7 @@ def right_hand_sides(position, body, drive, moved, by_contraction, stress, furth
                     m0, m1, m2, m3 = product(further_by_rate, at, (p, q, r, s), lane)
                     p0, p1, p2, p3 = p0 + m0, p1 + m1, p2 + m2, p3 + m3
                 add_stress(force, (p0, p1, p2, p3), gradients, e, g, area, area * along, lane)
-            add_to_nodes(force, elements, e, column * nodes, out, lane)
-
-
-@njit(cache=True, fastmath=True, error_model="numpy")
-def pad(columns, out, lane):
-    """Copy right-hand sides [columns, nodes, 2, lanes] to where they are solved for, [columns, more, 2, lanes]."""
-    size, height = 2 * columns.shape[1] * len(lane), 2 * out.shape[1] * len(lane)
-    for c in range(columns.shape[0]):
-        for at in range(0, size, len(lane)):
-            store(out, c * height + at, load(columns, c * size + at, lane))
+            add_to_nodes(force, elements, e, column * out.shape[1], out, lane)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")

@@ -127,19 +127,6 @@ class StressLaw:
         more, less = (self._answer(rows, drive, grouped([one.own for one in each])) for each in values)
         return by_point((more - less)[0]) / width
 
-    def add_slope(
-        self,
-        name: str,
-        at: Strained,
-        drive: DriveState,
-        factor: float | np.ndarray,
-        out: np.ndarray,
-    ) -> None:
-        """Add the nodal forces of the derivative by a parameter to out [nodes, 2, lanes]; no load, whatever factor."""
-        P = np.zeros_like(at.F)
-        P[self.elements] = self._by_element(self.answers((("p", name), 0), at.motion, drive, at.places))
-        at.solid.add_force(P, out)
-
     def _rows(self, motion: Motion, mesh: Places, copies: Copies = ALONE) -> Callable[[str], np.ndarray]:
         """F and its rate, by name, in copies of the points here, [copies, lanes, n, 4]."""
         made: dict[str, np.ndarray] = {}

@@ -228,14 +228,15 @@ def evaluate(tables, program, motion, mesh, signals, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def subtract_forces(tables, program, out, lane):
-    """Subtract forces at sites, rows 0 and 1 of what a program found, from nodal ones [nodes, 2, lanes]."""
+def subtract_forces(tables, program, factor, out, lane):
+    """Subtract a factor times forces at sites, rows 0 and 1 found by a program, from nodal ones [nodes, 2, lanes]."""
     heads, _, _, _, _, numbers, reals, _, found, _ = tables
     head, lanes = heads[program], len(lane)
     points, per, nodes = head[POINTS], head[PER], numbers[head[NUMBERS] :]
     weights, here = head[REALS] + 2 * points * per, head[FOUND]
     for s in range(points):
-        x, y = load(found, here + s * lanes, lane), load(found, here + (points + s) * lanes, lane)
+        x = factor * load(found, here + s * lanes, lane)
+        y = factor * load(found, here + (points + s) * lanes, lane)
         for k in range(s * per, (s + 1) * per):
             weight, at = -reals[weights + k], 2 * nodes[k] * lanes
             add(out, at, weight * x)
@@ -306,6 +307,7 @@ def respond(tables, laws, with_slopes, motion, mesh, signals, weights, terms, la
     terms: see `law_table.LawTable`.
     """
     forces, (_, by_value, by_tangent), (place, stress, matrix) = terms
+    one = zero(lane) + 1.0
     forces[:] = 0.0
     stress[:] = 0.0
     if with_slopes:
@@ -316,8 +318,73 @@ def respond(tables, laws, with_slopes, motion, mesh, signals, weights, terms, la
         program, first = laws[n, 1] if with_slopes else laws[n, 0], laws[n, 2]
         evaluate(tables, program, motion, mesh, signals, lane)
         if first >= 0:
-            subtract_forces(tables, program, forces, lane)
+            subtract_forces(tables, program, one, forces, lane)
         else:
             add_stresses(tables, program, place, stress, lane)
         if with_slopes:
             add_slopes(tables, program, first, place, weights, (by_value, by_tangent), matrix, lane)
+
+
+@njit(inline="always")
+def _interpolate_column(field, column, head, tables, weights, site, out, to, lane):
+    """Write the components of a nodal field [columns, nodes, 2, lanes] at a site."""
+    numbers, reals, per = tables[5], tables[6], head[PER]
+    lanes, x, y = len(lane), zero(lane), zero(lane)
+    for k in range(site * per, (site + 1) * per):
+        at = 2 * (column * field.shape[1] + numbers[head[NUMBERS] + k]) * lanes
+        x = x + reals[weights + k] * load(field, at, lane)
+        y = y + reals[weights + k] * load(field, at + lanes, lane)
+    store(out, 2 * to * lanes, x)
+    store(out, (2 * to + 1) * lanes, y)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def _subtract_direction(tables, program, looks, fields, column, height, out, lane):
+    heads, _, _, _, outputs, numbers, reals, _, found, _ = tables
+    head, lanes, (rate, acceleration) = heads[program], len(lane), fields
+    points, per, first = head[POINTS], head[PER], head[REALS]
+    moved = np.empty(2 * (TANGENT_RATE + 1) * lanes)
+    for s in range(points):
+        if looks[VELOCITY]:
+            _interpolate_column(rate, column, head, tables, first, s, moved, VELOCITY, lane)
+        if looks[ACCELERATION]:
+            _interpolate_column(acceleration, column, head, tables, first, s, moved, ACCELERATION, lane)
+        if looks[TANGENT_RATE]:
+            slope = first + points * per
+            _interpolate_column(rate, column, head, tables, slope, s, moved, TANGENT_RATE, lane)
+        x, y = zero(lane), zero(lane)
+        for n in range(head[OUTPUTS], head[OUTPUTS_END]):
+            row, i, of, j = outputs[n, 0], outputs[n, 2], outputs[n, 3], outputs[n, 4]
+            if of >= 0 and looks[of]:
+                slope = load(found, head[FOUND] + (row * points + s) * lanes, lane)
+                change = slope * load(moved, (2 * of + j) * lanes, lane)
+                if i == 0:
+                    x = x - change
+                else:
+                    y = y - change
+        weights = first + 2 * points * per
+        for k in range(s * per, (s + 1) * per):
+            at = 2 * (column * height + numbers[head[NUMBERS] + k]) * lanes
+            add(out, at, reals[weights + k] * x)
+            add(out, at + lanes, reals[weights + k] * y)
+
+
+@njit(cache=True, error_model="numpy")
+def subtract_directions(tables, laws, rate, acceleration, out, lane):
+    """Subtract what the forces at sites change along velocities and accelerations [columns, nodes, 2, lanes] from
+    columns of at least as many nodes; `respond` has found their derivatives.
+    """
+    heads, outputs = tables[0], tables[4]
+    looks = np.zeros(RATE + 1, dtype=np.bool_)
+    for n in range(laws.shape[0]):
+        if laws[n, 2] < 0:
+            continue
+        head, program = heads[laws[n, 1]], laws[n, 1]
+        looks[:] = False
+        for o in range(head[OUTPUTS], head[OUTPUTS_END]):
+            of = outputs[o, 3]
+            if of in (VELOCITY, TANGENT_RATE, ACCELERATION):
+                looks[of] = True
+        if looks.any():
+            for c in range(rate.shape[0]):
+                _subtract_direction(tables, program, looks, (rate, acceleration), c, out.shape[1], out, lane)
