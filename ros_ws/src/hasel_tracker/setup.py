@@ -17,12 +17,10 @@ setup(
         "numpy>=1.26",
         "opencv-contrib-python-headless>=4.10",
         "PyYAML",
-        "rich",
         "scipy",
     ],
     extras_require={
-        "bench": ["scikit-image"],
-        "test": ["hypothesis", "pytest", "pytest-timeout", "scikit-image"],
+        "test": ["hypothesis", "pytest", "pytest-timeout"],
     },
     zip_safe=False,
     maintainer="HASEL swimmer maintainers",
@@ -33,9 +31,7 @@ setup(
         "console_scripts": [
             "tracker_node = hasel_tracker.start_tracker:main",
             "track = hasel_tracker.commands.entry:track",
-            "render = hasel_tracker.commands.entry:render",
             "calibrate = hasel_tracker.commands.entry:calibrate",
-            "bench = hasel_tracker.commands.entry:bench",
         ]
     },
 )

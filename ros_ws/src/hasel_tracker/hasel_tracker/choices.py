@@ -3,6 +3,5 @@
 METHODS = ("contour", "moment", "midline", "apriltag", "csrt")
 DEFAULT_METHOD = "contour"
 BODY_KINDS = ("auto", "light", "dark")
-CODECS = ("mjpeg", "h264")
 VIEWS_FOR_LENS = 4
 """Fewest pictures of a board from which the lens is calibrated."""

@@ -1,1 +1,1 @@
-"""The command lines: track, render, calibrate, bench."""
+"""The command lines: track, calibrate."""

@@ -6,28 +6,10 @@ from hasel_tracker.commands import parsers
 
 
 @command
-def bench() -> int:
-    """`bench`."""
-    options = parsers.bench_parser().parse_args()
-    from hasel_tracker.commands.bench import run
-
-    return run(options)
-
-
-@command
 def calibrate() -> int:
     """`calibrate colour|body|board|distance`."""
     options = parsers.calibrate_parser().parse_args()
     from hasel_tracker.commands.calibrate import run
-
-    return run(options)
-
-
-@command
-def render() -> int:
-    """`render OUTPUT`."""
-    options = parsers.render_parser().parse_args()
-    from hasel_tracker.commands.render import run
 
     return run(options)
 
