@@ -20,7 +20,7 @@ setup(
     ],
     extras_require={
         "bench": ["scikit-image"],
-        "test": ["pytest", "pytest-timeout", "scikit-image"],
+        "test": ["PyYAML", "pytest", "pytest-timeout", "scikit-image"],
     },
     zip_safe=False,
     maintainer="HASEL swimmer maintainers",
@@ -29,8 +29,8 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "bench = hasel_tracker_lab.tracker_lab_commands:bench",
-            "render = hasel_tracker_lab.tracker_lab_commands:render",
+            "bench = hasel_tracker_lab.lab_commands:bench",
+            "render = hasel_tracker_lab.lab_commands:render",
         ]
     },
 )

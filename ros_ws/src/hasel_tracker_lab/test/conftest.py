@@ -3,11 +3,10 @@
 from pathlib import Path
 
 import pytest
-from hasel_tracker_lab.rendering.camera_view import CameraView
-from hasel_tracker_lab.rendering.degradation import Degradation
-from hasel_tracker_lab.rendering.motion import BendingMotion
-from hasel_tracker_lab.rendering.render_output import write_frames
+from hasel_tracker_lab.rendering.camera_model import CameraView, Degradation
+from hasel_tracker_lab.rendering.render import write_frames
 from hasel_tracker_lab.rendering.renderer import RenderedFrame, Renderer
+from hasel_tracker_lab.rendering.swimmer_motion import BendingMotion
 
 SMALL_VIEW = CameraView(640, 360, 2800.0)
 

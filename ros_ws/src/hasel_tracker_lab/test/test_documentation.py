@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-from hasel_tracker_lab import tracker_lab_commands
+from hasel_tracker_lab import lab_commands as tracker_lab_commands
 from hasel_tracker_lab.bench.accuracy import CONDITIONS
 from hasel_tracker_lab.bench.robustness import CASES
 

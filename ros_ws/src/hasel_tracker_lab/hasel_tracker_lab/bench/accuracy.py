@@ -14,11 +14,9 @@ from hasel_tracker.sources.video_source import VideoSource
 from hasel_tracker.tracking.bending_tracker import BendingTracker
 from hasel_tracker.video.video_writer import H264Writer
 
-from hasel_tracker_lab.rendering.background import filling
-from hasel_tracker_lab.rendering.camera_view import CameraView
-from hasel_tracker_lab.rendering.degradation import Degradation
-from hasel_tracker_lab.rendering.motion import BendingMotion
-from hasel_tracker_lab.rendering.renderer import RenderedFrame, Renderer
+from hasel_tracker_lab.rendering.camera_model import CameraView, Degradation
+from hasel_tracker_lab.rendering.renderer import RenderedFrame, Renderer, filling
+from hasel_tracker_lab.rendering.swimmer_motion import BendingMotion
 
 FRAME_RATE_HZ = 120.0
 

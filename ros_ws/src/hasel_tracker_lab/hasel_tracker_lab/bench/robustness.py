@@ -10,10 +10,9 @@ from hasel_tracker.sources.frame import Frame
 from hasel_tracker.tracking.bending_tracker import BendingTracker
 
 from hasel_tracker_lab.bench.accuracy import FRAME_RATE_HZ
-from hasel_tracker_lab.rendering.camera_view import CameraView
-from hasel_tracker_lab.rendering.degradation import Degradation
-from hasel_tracker_lab.rendering.motion import BendingMotion, SampledMotion
+from hasel_tracker_lab.rendering.camera_model import CameraView, Degradation
 from hasel_tracker_lab.rendering.renderer import RenderedFrame, Renderer
+from hasel_tracker_lab.rendering.swimmer_motion import BendingMotion, SampledMotion
 
 CAMERA = Degradation(noise_levels=2.0, jpeg_quality=75)
 HIDDEN_FROM, HIDDEN_FRAMES = 12, 10

@@ -13,8 +13,12 @@ from hasel_recording.csv_text import read_text
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.tracking.bending_angle import bending_angle
 
-from hasel_tracker_lab.rendering.body_shape import BodyShape
-from hasel_tracker_lab.rendering.motion import BendingMotion, SampledMotion, line_through_markers
+from hasel_tracker_lab.rendering.swimmer_motion import (
+    BendingMotion,
+    BodyShape,
+    SampledMotion,
+    line_through_markers,
+)
 
 LINE_COLUMN = re.compile(r"centre_(\d+)_([xy])_m")
 BEND_SAMPLES = np.linspace(-2.8, 2.8, 201)

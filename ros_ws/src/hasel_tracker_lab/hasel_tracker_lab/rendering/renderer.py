@@ -1,21 +1,29 @@
-"""Draw the swimmer as a camera would see it, together with where its markers truly are."""
+"""Draw the swimmer, or a calibration's board, as a camera would see it, together with where its markers truly are."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import cv2
 import numpy as np
+from hasel_tracker.errors import TrackerError
 from hasel_tracker.tracking.bending_angle import bending_angle
 
-from hasel_tracker_lab.rendering.body_shape import BodyShape
-from hasel_tracker_lab.rendering.camera_view import CameraView
-from hasel_tracker_lab.rendering.degradation import Degradation, add_glints, add_noise, compress, uneven_light
-from hasel_tracker_lab.rendering.marker_coverage import marker_coverage
-from hasel_tracker_lab.rendering.motion import RenderedMotion, points_at
+from hasel_tracker_lab.rendering.camera_model import (
+    CameraView,
+    Degradation,
+    add_glints,
+    add_noise,
+    compress,
+    uneven_light,
+)
+from hasel_tracker_lab.rendering.swimmer_motion import BodyShape, RenderedMotion, points_at
 
 SUB_EXPOSURES = 7
 POLYGON_SHIFT = 5
 WATER_COLOUR = (198, 196, 188)
+SUPERSAMPLING = 3
+PAPER, BLACK, TABLE = 235, 25, 150
 
 
 @dataclass(frozen=True)
@@ -161,3 +169,55 @@ def _carried(texture: np.ndarray, middle: np.ndarray, shape: tuple[int, int]) ->
 def _blend(picture: np.ndarray, box: tuple[slice, slice], coverage: np.ndarray, colour: np.ndarray) -> None:
     share = coverage[..., None]
     picture[box] = (1.0 - share) * picture[box] + share * colour
+
+
+def marker_coverage(
+    view: CameraView, centre_m: np.ndarray, radius_m: float, corner_px: tuple[int, int], size_px: int
+) -> np.ndarray:
+    """Share of each pixel covered by a disc in the plane, shape (size, size); `corner_px` is its top left."""
+    fine = SUPERSAMPLING
+    offsets = (np.arange(size_px * fine) + 0.5) / fine - 0.5
+    x, y = np.meshgrid(corner_px[0] + offsets, corner_px[1] + offsets)
+    plane = view.to_plane(np.column_stack([x.ravel(), y.ravel()]))
+    distance = np.hypot(*(plane - centre_m).T).reshape(x.shape)
+    by_row, by_column = np.gradient(distance)
+    # Distance to the edge in fine pixels; a linear ramp over one of them is the pixel's coverage.
+    to_edge = (distance - radius_m) / np.maximum(np.hypot(by_row, by_column), 1e-12)
+    covered = np.clip(0.5 - to_edge, 0.0, 1.0)
+    return covered.reshape(size_px, fine, size_px, fine).mean(axis=(1, 3)).astype(np.float32)
+
+
+def photograph(path: Path, width_px: int, height_px: int) -> np.ndarray:
+    """An image file scaled to fill a picture of this size, cropped in the middle; 8-bit BGR."""
+    image = cv2.imread(str(path), cv2.IMREAD_COLOR)
+    if image is None:
+        raise TrackerError(f"The background {path} is not a readable image; give a PNG or JPEG file.")
+    return filling(image, width_px, height_px)
+
+
+def filling(image: np.ndarray, width_px: int, height_px: int) -> np.ndarray:
+    """An 8-bit BGR or grey image scaled to fill a picture of this size, cropped in the middle; BGR."""
+    if image.ndim == 2:
+        image = cv2.cvtColor(image, cv2.COLOR_GRAY2BGR)
+    scale = max(width_px / image.shape[1], height_px / image.shape[0])
+    size = max(round(image.shape[1] * scale), width_px), max(round(image.shape[0] * scale), height_px)
+    large = cv2.resize(image, size, interpolation=cv2.INTER_CUBIC)
+    left, top = (size[0] - width_px) // 2, (size[1] - height_px) // 2
+    return np.ascontiguousarray(large[top : top + height_px, left : left + width_px])
+
+
+def board_picture(view: CameraView, columns: int, rows: int, square_m: float) -> np.ndarray:
+    """8-bit BGR picture of a board with so many inner corners, centred at the origin of the plane."""
+    fine = SUPERSAMPLING
+    x = (np.arange(view.width_px * fine) + 0.5) / fine - 0.5
+    y = (np.arange(view.height_px * fine) + 0.5) / fine - 0.5
+    pixels = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    plane = view.to_plane(pixels)
+    column = np.floor(plane[:, 0] / square_m + 0.5 * (columns + 1)).astype(int)
+    row = np.floor(-plane[:, 1] / square_m + 0.5 * (rows + 1)).astype(int)
+    inside = (column >= 0) & (column <= columns) & (row >= 0) & (row <= rows)
+    rim = (column >= -1) & (column <= columns + 1) & (row >= -1) & (row <= rows + 1)
+    grey = np.where(inside & ((column + row) % 2 == 0), BLACK, np.where(rim, PAPER, TABLE)).astype(np.float32)
+    picture = grey.reshape(view.height_px, fine, view.width_px, fine).mean(axis=(1, 3))
+    picture = cv2.GaussianBlur(picture, (0, 0), 0.8)
+    return cv2.cvtColor(np.rint(picture).astype(np.uint8), cv2.COLOR_GRAY2BGR)

@@ -5,11 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from hasel_tracker_lab.scenes.catalogue import LabCase
-from hasel_tracker_lab.scenes.lab_camera import LabCamera
-from hasel_tracker_lab.scenes.lab_scene import BlueDot, LabScene
+from hasel_tracker_lab.scenes.lab_scene import BlueDot, LabCamera, LabScene
 from hasel_tracker_lab.scenes.lab_swimmer import LabSwimmer
 from hasel_tracker_lab.scenes.lab_things import BLUE_CABLE, BLUE_GLOVE, SKIN, Bubble, Cable, Glare, Hand
+from hasel_tracker_lab.scenes.scene_catalogue import LabCase
 
 FRAMES = 24
 SIZE = np.array([1280.0, 720.0])

@@ -4,9 +4,9 @@ from hasel_tracker.calibration.board_calibration import Board, calibrate_camera,
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.tracking.bending_angle import bending_angle
-from hasel_tracker_lab.rendering.board_picture import board_picture
-from hasel_tracker_lab.rendering.camera_view import CameraView
-from hasel_tracker_lab.rendering.motion import BendingMotion
+from hasel_tracker_lab.rendering.camera_model import CameraView
+from hasel_tracker_lab.rendering.renderer import board_picture
+from hasel_tracker_lab.rendering.swimmer_motion import BendingMotion
 
 BOARD = Board(9, 6, 0.012)
 SIZE = (640, 360)

@@ -11,7 +11,7 @@ from hasel_recording import read_recording
 from hasel_tracker.commands.calibrate import main as calibrate
 from hasel_tracker.commands.track import main as track
 from hasel_tracker_lab.scenes.lab_scene import LabScene
-from hasel_tracker_lab.scenes.midline_catalogue import BARE
+from hasel_tracker_lab.scenes.scene_catalogue import BARE
 
 SCENE = LabScene(
     (replace(BARE, length_px=420.0, start_px=(110.0, 180.0)),), size_px=(640, 360), exposure_s=0.0

@@ -5,9 +5,9 @@ from hasel_recording import Recording, read_recording, write_recording
 from hasel_tracker.commands.calibrate import main as calibrate
 from hasel_tracker.commands.track import main as track
 from hasel_tracker.sources.video_source import VideoSource
-from hasel_tracker_lab.rendering.board_picture import board_picture
-from hasel_tracker_lab.rendering.camera_view import CameraView
+from hasel_tracker_lab.rendering.camera_model import CameraView
 from hasel_tracker_lab.rendering.render import main as render
+from hasel_tracker_lab.rendering.renderer import board_picture
 
 SMALL = ["--size", "640x360", "--scale", "2.8", "--frequency", "4", "--duration", "0.7", "--rest", "0.1"]
 

@@ -3,9 +3,8 @@ import pytest
 from hasel_recording import Recording, write_recording
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.tracking.bending_angle import bending_angle
-from hasel_tracker_lab.rendering.body_shape import BodyShape
-from hasel_tracker_lab.rendering.motion import points_at
 from hasel_tracker_lab.rendering.motion_file import read_motion
+from hasel_tracker_lab.rendering.swimmer_motion import BodyShape, points_at
 
 SHAPE = BodyShape()
 TIMES = np.linspace(0.0, 0.5, 11)

@@ -2,10 +2,9 @@ import numpy as np
 import pytest
 from hasel_tracker.tracking.body_link import BodyLink, body_link
 from hasel_tracker.tracking.head_side import head_word, nearer_to, on_side, thicker_first
-from hasel_tracker_lab.rendering.camera_view import CameraView
-from hasel_tracker_lab.rendering.degradation import Degradation
-from hasel_tracker_lab.rendering.motion import BendingMotion
+from hasel_tracker_lab.rendering.camera_model import CameraView, Degradation
 from hasel_tracker_lab.rendering.renderer import Renderer
+from hasel_tracker_lab.rendering.swimmer_motion import BendingMotion
 
 
 @pytest.mark.parametrize("roll", np.radians([0.0, 70.0, 180.0, 250.0]))

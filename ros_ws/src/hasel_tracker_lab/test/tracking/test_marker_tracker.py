@@ -9,9 +9,9 @@ from hasel_tracker.tracking.marker_contour import measure_contour
 from hasel_tracker.tracking.marker_moment import measure_marker
 from hasel_tracker.tracking.marker_tracker import MarkerTracker
 from hasel_tracker.tracking.tracker_settings import TrackerSettings
-from hasel_tracker_lab.rendering.degradation import Degradation
-from hasel_tracker_lab.rendering.motion import BendingMotion
+from hasel_tracker_lab.rendering.camera_model import Degradation
 from hasel_tracker_lab.rendering.renderer import Renderer
+from hasel_tracker_lab.rendering.swimmer_motion import BendingMotion
 
 WATER = (188, 196, 198)
 

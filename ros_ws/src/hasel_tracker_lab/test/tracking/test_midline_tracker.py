@@ -9,7 +9,7 @@ from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
 from hasel_tracker.tracking.doubt import Doubt
 from hasel_tracker.tracking.tracker_settings import TrackerSettings
 from hasel_tracker_lab.scenes.lab_scene import LabScene
-from hasel_tracker_lab.scenes.midline_catalogue import ALIKE, BARE, SHARES
+from hasel_tracker_lab.scenes.scene_catalogue import ALIKE, BARE, SHARES
 
 STRAIGHT = replace(BARE, bend_rad=0.0)
 

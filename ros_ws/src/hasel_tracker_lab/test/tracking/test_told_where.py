@@ -9,8 +9,8 @@ from hasel_tracker.errors import TrackerError
 from hasel_tracker.offline.tracked_run import TrackedRun, track_frames
 from hasel_tracker.sources.frame import Frame
 from hasel_tracker.tracking.bending_tracker import BendingTracker
-from hasel_tracker_lab.scenes.catalogue import ADVERSARIAL
 from hasel_tracker_lab.scenes.lab_scene import LabFrame
+from hasel_tracker_lab.scenes.scene_catalogue import ADVERSARIAL
 
 SCENES = {case.name: case for case in ADVERSARIAL}
 MARGIN_PX = 40

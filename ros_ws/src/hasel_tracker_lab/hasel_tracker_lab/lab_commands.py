@@ -13,7 +13,7 @@ CODECS = ("mjpeg", "h264")
 def bench() -> int:
     """`bench`."""
     options = bench_parser().parse_args()
-    from hasel_tracker_lab.bench.run_bench import run
+    from hasel_tracker_lab.bench.tracker_bench import run
 
     return run(options)
 

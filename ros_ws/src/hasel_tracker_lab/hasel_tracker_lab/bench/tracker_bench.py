@@ -1,25 +1,30 @@
-"""The benchmark's results beside the bars they must meet."""
+"""`bench`: accuracy, robustness, honesty, speed and latency of the tracker against drawn truth, beside the bars."""
 
-from collections.abc import Callable
+import argparse
+import json
+import sys
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 from hasel_common.measured_bar import MeasuredBar
+from hasel_tracker.commands.command import run_command
+from hasel_tracker.errors import TrackerError
 from rich.console import Console
 from rich.table import Table
 
 from hasel_tracker_lab.bench.accuracy import CONDITIONS, Accuracy, measure_accuracy
-from hasel_tracker_lab.bench.latency import Latency, measure_latency
+from hasel_tracker_lab.bench.honesty import Honesty, measure_honesty
 from hasel_tracker_lab.bench.robustness import CASES, Robustness, measure_robustness
-from hasel_tracker_lab.bench.speed import TrackerSpeed, measure_speed
-from hasel_tracker_lab.scenes.catalogue import ADVERSARIAL, REAL
-from hasel_tracker_lab.scenes.midline_catalogue import MIDLINE
+from hasel_tracker_lab.bench.tracker_speed import Latency, TrackerSpeed, measure_latency, measure_speed
+from hasel_tracker_lab.lab_commands import bench_parser
+from hasel_tracker_lab.scenes.scene_catalogue import ADVERSARIAL, MIDLINE, REAL
 from hasel_tracker_lab.scenes.unforeseen import DECEIVING, UNFORESEEN
-from hasel_tracker_lab.scenes.wrong_while_valid import Honesty, measure_honesty
 
 CSRT_FRAMES = 12
 LAB_SEEDS, DRAWN_SEEDS, DECEIVING_SEEDS = 10, 3, 20
+LEAST_FRAMES = 30
 
 
 @dataclass(frozen=True)
@@ -170,3 +175,29 @@ def _plain(result: Any) -> dict[str, Any]:
         key: np.asarray(value).tolist() if isinstance(value, (np.ndarray, np.generic)) else value
         for key, value in asdict(result).items()
     }
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit code."""
+    return run(bench_parser().parse_args(arguments))
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the command with these options; returns its exit code: 0 if every bar is met, 2 if not."""
+    missed: list[str] = []
+    return run_command(lambda: _bench(options, missed)) or (2 if missed else 0)
+
+
+def _bench(options: argparse.Namespace, missed: list[str]) -> None:
+    if options.frames < LEAST_FRAMES:
+        raise TrackerError(f"{options.frames} frames are too few; give at least {LEAST_FRAMES}.")
+    progress = Console(stderr=True)
+    report = run_bench(options.frames, lambda sentence: progress.print(sentence, style="dim"))
+    report.print(Console(width=110))
+    if options.json is not None:
+        options.json.write_text(json.dumps(report.values(), indent=1))
+    missed.extend(bar.what for bar in report.bars() if not bar.met)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

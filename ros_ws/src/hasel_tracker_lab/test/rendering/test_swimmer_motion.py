@@ -1,8 +1,13 @@
 import numpy as np
 import pytest
 from hasel_tracker.tracking.bending_angle import bending_angle
-from hasel_tracker_lab.rendering.body_shape import BodyShape
-from hasel_tracker_lab.rendering.motion import BendingMotion, SampledMotion, line_through_markers, points_at
+from hasel_tracker_lab.rendering.swimmer_motion import (
+    BendingMotion,
+    BodyShape,
+    SampledMotion,
+    line_through_markers,
+    points_at,
+)
 
 SHAPE = BodyShape()
 

@@ -12,8 +12,8 @@ from hasel_tracker.sources.video_source import VideoSource
 from hasel_tracker.tracking.bending_tracker import BendingTracker
 from hasel_tracker.video.video_writer import H264Writer
 
-from hasel_tracker_lab.scenes.catalogue import LabCase
 from hasel_tracker_lab.scenes.lab_scene import LabFrame
+from hasel_tracker_lab.scenes.scene_catalogue import LabCase
 
 WRONG_SINE = 0.01
 

@@ -1,16 +1,24 @@
-"""Scenes of another renderer in which a wrong angle was once called valid, and pictures of real laboratories."""
+"""Scenes in which a wrong angle was once called valid, pictures of real laboratories, and swimmers without dots."""
 
 from dataclasses import replace
 
 import pytest
-from hasel_tracker_lab.scenes.catalogue import ADVERSARIAL, REAL
+from hasel_tracker_lab.bench.honesty import measure_honesty
+from hasel_tracker_lab.scenes.scene_catalogue import ADVERSARIAL, MIDLINE, REAL
 from hasel_tracker_lab.scenes.unforeseen import DECEIVING, UNFORESEEN
-from hasel_tracker_lab.scenes.wrong_while_valid import measure_honesty
 
 QUICK = (
     "electrodes, H.264 crf 28", "textured ground", "exposure × 0.2", "dark tank", "dark body", "dots of 10 px",
     "640 × 480, dots of 12 px", "30 frames/s, 4 Hz",
 )  # fmt: skip
+BENCH_ONLY = (
+    "midline: dark body, MJPEG 75",
+    "midline: dark body, H.264 crf 28",
+    "midline: dark body, defocus σ 2 px",
+    "midline: exposure × 0.2",
+    "midline: dark tank",
+)
+QUICK_MIDLINE = [case for case in MIDLINE if case.name not in BENCH_ONLY]
 
 
 @pytest.mark.parametrize("case", ADVERSARIAL, ids=lambda case: case.name)
@@ -63,3 +71,16 @@ def test_the_standard_deviation_from_the_picture_is_about_the_error():
     case = next(each for each in REAL if each.name == "Bayer, 4:2:0, noise")
     honesty = measure_honesty(case, 12)
     assert honesty.sin_theta_rms / 3 < honesty.sin_theta_std < 3 * honesty.sin_theta_rms
+
+
+@pytest.mark.parametrize("case", QUICK_MIDLINE, ids=lambda case: case.name)
+def test_the_centre_line_gives_the_right_angle_or_none(case):
+    """No valid angle is off by more than 0.01; where one is due hardly a frame is lost; elsewhere none is given."""
+    honesty = measure_honesty(case, case.least_frames if case.least_frames > 8 else 4)
+    assert honesty.wrong == 0, str(honesty)
+    if case.expected:
+        assert honesty.lost_share < 0.1, str(honesty)
+        assert honesty.rms_px < 1.0
+        assert honesty.sin_theta_rms < 3e-3
+    else:
+        assert honesty.valid == 0, str(honesty)
