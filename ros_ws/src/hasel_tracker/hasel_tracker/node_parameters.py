@@ -2,9 +2,8 @@
 
 from hasel_common.node_parameter import AUTOSTART, NodeParameter
 
-from hasel_tracker.calibration.settings_file import COLOUR_KEYS, SEARCH_KEYS, flat
-from hasel_tracker.choices import BODY_KINDS, DEFAULT_METHOD, METHODS
-from hasel_tracker.tracking.tracker_settings import TrackerSettings
+from hasel_tracker.tracking import BODY_KINDS, DEFAULT_METHOD, METHODS
+from hasel_tracker.tracking.tracker_settings import COLOUR_KEYS, SEARCH_KEYS, TrackerSettings, flat
 
 DEFAULTS = flat(TrackerSettings())
 

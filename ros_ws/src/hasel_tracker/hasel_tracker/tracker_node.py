@@ -25,7 +25,6 @@ from sensor_msgs.msg import CompressedImage
 from std_srvs.srv import SetBool, Trigger
 
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
-from hasel_tracker.calibration.settings_file import settings_from
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.image_topic import ImageTopic
 from hasel_tracker.live.health_report import judge
@@ -43,6 +42,7 @@ from hasel_tracker.sources.camera_source import CameraFormat, CameraSource
 from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.open_source import open_recorded
 from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
+from hasel_tracker.tracking.tracker_settings import settings_from
 from hasel_tracker.video.annotation import preview
 
 TOPIC_PREFIX = "topic:"

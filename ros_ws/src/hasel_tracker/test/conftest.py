@@ -6,7 +6,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from hasel_tracker.tracking.bending_angle import bending_angle
+from hasel_tracker.tracking.marker_set import bending_angle
 from hasel_tracker.video.video_writer import JpegWriter
 
 FRAME_RATE_HZ = 120.0
@@ -27,9 +27,9 @@ class DrawnFrame:
 
 
 def drawn(time_s: float, index: int) -> DrawnFrame:
-    """A tapered body that rests for 0.1 s and then beats at 4 Hz, on 640 × 360 px."""
+    """A tapered body that rests for 0.1 s and then beats at 2 Hz, on 640 × 360 px."""
     share = np.linspace(0.0, 1.0, 200)
-    beat = 0.4 * np.sin(8.0 * np.pi * max(time_s - 0.1, 0.0))
+    beat = 0.36 * np.sin(4.0 * np.pi * max(time_s - 0.1, 0.0))
     turn = 2.0 * beat * (share - 0.5)
     steps = LENGTH_PX / (len(share) - 1) * np.column_stack([np.cos(turn), -np.sin(turn)])
     line = np.cumsum(steps, axis=0)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from hasel_tracker.calibration import VIEWS_FOR_LENS
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
-from hasel_tracker.choices import VIEWS_FOR_LENS
 from hasel_tracker.errors import TrackerError
 
 VIEWS_FOR_HIGHER_TERMS = 10

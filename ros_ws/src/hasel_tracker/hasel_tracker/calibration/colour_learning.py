@@ -6,11 +6,10 @@ import cv2
 import numpy as np
 
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.tracking.colour_gate import HUE_CIRCLE, ColourRange
 from hasel_tracker.tracking.marker_contour import measure_contour
-from hasel_tracker.tracking.marker_start import NUMBERS, search_start
+from hasel_tracker.tracking.marker_search import NUMBERS, search_start
 from hasel_tracker.tracking.marker_tracker import MarkerTracker
-from hasel_tracker.tracking.tracker_settings import TrackerSettings
+from hasel_tracker.tracking.tracker_settings import HUE_CIRCLE, ColourRange, TrackerSettings
 
 SEED_RADIUS_PX = 3
 HUE_MARGIN = 8

@@ -4,9 +4,8 @@ import cv2
 import numpy as np
 
 from hasel_tracker.calibration.colour_learning import LearnedColour
-from hasel_tracker.tracking.bending_angle import bending_angle
 from hasel_tracker.tracking.bending_tracker import TrackedFrame
-from hasel_tracker.tracking.marker_set import MarkerSet
+from hasel_tracker.tracking.marker_set import MarkerSet, bending_angle
 from hasel_tracker.video.annotation import annotate
 
 SELECTED = (255, 0, 255)

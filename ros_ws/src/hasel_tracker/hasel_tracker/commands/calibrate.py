@@ -8,19 +8,19 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from hasel_tracker.calibration import VIEWS_FOR_LENS
 from hasel_tracker.calibration.board_calibration import Board, calibrate_camera, find_corners
 from hasel_tracker.calibration.body_learning import body_picture, learn_body
 from hasel_tracker.calibration.camera_calibration import scale_calibration
 from hasel_tracker.calibration.colour_learning import learn_colour
 from hasel_tracker.calibration.learned_picture import learned_picture
-from hasel_tracker.calibration.settings_file import save_settings
-from hasel_tracker.choices import VIEWS_FOR_LENS
 from hasel_tracker.commands.command import run_command
 from hasel_tracker.commands.parsers import calibrate_parser
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.sources.folder_source import IMAGE_SUFFIXES
 from hasel_tracker.sources.video_source import VideoSource
 from hasel_tracker.tracking.bending_tracker import within
+from hasel_tracker.tracking.tracker_settings import save_settings
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -3,7 +3,8 @@
 import argparse
 from pathlib import Path
 
-from hasel_tracker.choices import BODY_KINDS, DEFAULT_METHOD, METHODS, VIEWS_FOR_LENS
+from hasel_tracker.calibration import VIEWS_FOR_LENS
+from hasel_tracker.tracking import BODY_KINDS, DEFAULT_METHOD, METHODS
 
 
 def calibrate_parser() -> argparse.ArgumentParser:

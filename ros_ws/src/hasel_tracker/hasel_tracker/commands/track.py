@@ -11,7 +11,6 @@ import numpy as np
 from hasel_common.progress import counted
 
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
-from hasel_tracker.calibration.settings_file import load_settings
 from hasel_tracker.commands.command import run_command
 from hasel_tracker.commands.parsers import track_parser
 from hasel_tracker.errors import TrackerError
@@ -33,7 +32,7 @@ from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.open_source import open_recorded
 from hasel_tracker.sources.video_source import VideoSource
 from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
-from hasel_tracker.tracking.tracker_settings import TrackerSettings
+from hasel_tracker.tracking.tracker_settings import TrackerSettings, load_settings
 from hasel_tracker.video.annotation import annotate
 from hasel_tracker.video.video_writer import H264Writer
 

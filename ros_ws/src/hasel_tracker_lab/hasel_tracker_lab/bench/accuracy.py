@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
-from hasel_tracker.choices import DEFAULT_METHOD
 from hasel_tracker.offline.tracked_run import track_frames
 from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.video_source import VideoSource
+from hasel_tracker.tracking import DEFAULT_METHOD
 from hasel_tracker.tracking.bending_tracker import BendingTracker
 from hasel_tracker.video.video_writer import H264Writer
 

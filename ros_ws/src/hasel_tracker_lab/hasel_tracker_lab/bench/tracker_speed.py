@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from hasel_tracker.choices import DEFAULT_METHOD
 from hasel_tracker.live.live_tracker import LiveTracker
 from hasel_tracker.sources.frame import Frame
+from hasel_tracker.tracking import DEFAULT_METHOD
 from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
-from hasel_tracker.tracking.trust import AGREEING_FRAMES
+from hasel_tracker.tracking.doubt import AGREEING_FRAMES
 
 from hasel_tracker_lab.bench.accuracy import CONDITIONS, FRAME_RATE_HZ, renderer_for
 from hasel_tracker_lab.scenes.lab_scene import LabScene

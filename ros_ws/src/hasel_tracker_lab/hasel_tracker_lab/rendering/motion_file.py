@@ -11,7 +11,7 @@ from hasel_recording.csv_columns import Column
 from hasel_recording.csv_numbers import CsvNumbers
 from hasel_recording.csv_text import read_text
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.tracking.bending_angle import bending_angle
+from hasel_tracker.tracking.marker_set import bending_angle
 
 from hasel_tracker_lab.rendering.swimmer_motion import (
     BendingMotion,

@@ -7,7 +7,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.tracking.bending_angle import bending_angle
+from hasel_tracker.tracking.marker_set import bending_angle
 
 from hasel_tracker_lab.rendering.camera_model import (
     CameraView,

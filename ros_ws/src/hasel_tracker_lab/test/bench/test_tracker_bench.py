@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hasel_tracker.choices import DEFAULT_METHOD
+from hasel_tracker.tracking import DEFAULT_METHOD
 from hasel_tracker.tracking.bending_tracker import BendingTracker
 from hasel_tracker_lab.bench.accuracy import CONDITIONS, Condition, measure_accuracy, renderer_for
 from hasel_tracker_lab.bench.robustness import CASES, measure_robustness

@@ -3,7 +3,7 @@ import pytest
 from hasel_tracker.calibration.board_calibration import Board, calibrate_camera, find_corners
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.tracking.bending_angle import bending_angle
+from hasel_tracker.tracking.marker_set import bending_angle
 from hasel_tracker_lab.rendering.camera_model import CameraView
 from hasel_tracker_lab.rendering.renderer import board_picture
 from hasel_tracker_lab.rendering.swimmer_motion import BendingMotion

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from hasel_recording import Recording, write_recording
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.tracking.bending_angle import bending_angle
+from hasel_tracker.tracking.marker_set import bending_angle
 from hasel_tracker_lab.rendering.motion_file import read_motion
 from hasel_tracker_lab.rendering.swimmer_motion import BodyShape, points_at
 

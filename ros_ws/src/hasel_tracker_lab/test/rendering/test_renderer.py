@@ -1,7 +1,7 @@
 import cv2
 import numpy as np
 import pytest
-from hasel_tracker.tracking.colour_gate import ColourRange
+from hasel_tracker.tracking.tracker_settings import ColourRange
 from hasel_tracker_lab.rendering.camera_model import CameraView, Degradation
 from hasel_tracker_lab.rendering.renderer import Renderer, filling, marker_coverage
 from hasel_tracker_lab.rendering.swimmer_motion import BendingMotion

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hasel_tracker.tracking.bending_angle import bending_angle
+from hasel_tracker.tracking.marker_set import bending_angle
 from hasel_tracker_lab.rendering.swimmer_motion import (
     BendingMotion,
     BodyShape,

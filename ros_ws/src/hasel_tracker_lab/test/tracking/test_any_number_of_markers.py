@@ -9,9 +9,8 @@ from hasel_tracker.calibration.camera_calibration import CameraCalibration
 from hasel_tracker.offline.run_output import write_run
 from hasel_tracker.offline.tracked_run import TrackedRun, track_frames
 from hasel_tracker.sources.frame import Frame
-from hasel_tracker.tracking.bending_angle import bending_angle
 from hasel_tracker.tracking.bending_tracker import BendingTracker
-from hasel_tracker.tracking.marker_set import marker_names
+from hasel_tracker.tracking.marker_set import bending_angle, marker_names
 from hasel_tracker.tracking.tracker_settings import TrackerSettings
 from hasel_tracker_lab.scenes.lab_scene import LabScene
 from hasel_tracker_lab.scenes.lab_swimmer import LabSwimmer

@@ -4,11 +4,10 @@ import cv2
 import numpy as np
 import pytest
 from hasel_tracker.tracking.bending_tracker import BendingTracker
-from hasel_tracker.tracking.colour_gate import ColourRange
 from hasel_tracker.tracking.marker_contour import measure_contour
 from hasel_tracker.tracking.marker_moment import measure_marker
 from hasel_tracker.tracking.marker_tracker import MarkerTracker
-from hasel_tracker.tracking.tracker_settings import TrackerSettings
+from hasel_tracker.tracking.tracker_settings import ColourRange, TrackerSettings
 from hasel_tracker_lab.rendering.camera_model import Degradation
 from hasel_tracker_lab.rendering.renderer import Renderer
 from hasel_tracker_lab.rendering.swimmer_motion import BendingMotion

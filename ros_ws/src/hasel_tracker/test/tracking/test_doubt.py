@@ -1,7 +1,6 @@
 """When frames in doubt come to count."""
 
-from hasel_tracker.tracking.doubt import Doubt
-from hasel_tracker.tracking.trust import Trust
+from hasel_tracker.tracking.doubt import Doubt, Trust
 
 
 def test_two_agreeing_frames_vouch_for_those_before():

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
-from hasel_tracker.tracking.blobs import Blob
-from hasel_tracker.tracking.marker_order import assignments_of_lost, misplaced
+from hasel_tracker.tracking.marker_finder import Blob
+from hasel_tracker.tracking.marker_memory import misplaced
+from hasel_tracker.tracking.marker_search import assignments_of_lost
 
 BODY = np.array([[400.0, 500.0], [950.0, 540.0], [1500.0, 450.0]])
 CHORDS = np.linalg.norm(np.diff(BODY, axis=0), axis=1)

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from hasel_recording import sin_theta_from_markers
-from hasel_tracker.tracking.bending_angle import bending_angle
+from hasel_tracker.tracking.marker_set import bending_angle
 from hypothesis import given
 from hypothesis import strategies as st
 
