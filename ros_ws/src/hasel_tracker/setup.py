@@ -29,9 +29,9 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "tracker_node = hasel_tracker.start_tracker:main",
-            "track = hasel_tracker.commands.entry:track",
-            "calibrate = hasel_tracker.commands.entry:calibrate",
+            "tracker_node = hasel_tracker.tracker_commands:tracker_node",
+            "track = hasel_tracker.tracker_commands:track",
+            "calibrate = hasel_tracker.tracker_commands:calibrate",
         ]
     },
 )

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from hasel_common import topics
-from hasel_tracker.commands import parsers
+from hasel_tracker import tracker_commands
 from hasel_tracker.node_parameters import PARAMETERS
 
 PACKAGE = Path(__file__).resolve().parents[1]
@@ -65,7 +65,9 @@ def test_options_named_in_the_readme_exist(name, capsys):
     helps = []
     for arguments in (["--help"], ["colour", "--help"], ["board", "--help"], ["distance", "--help"]):
         with pytest.raises(SystemExit):
-            getattr(parsers, f"{name}_parser")().parse_args(arguments if name == "calibrate" else ["--help"])
+            getattr(tracker_commands, f"{name}_parser")().parse_args(
+                arguments if name == "calibrate" else ["--help"]
+            )
         helps.append(capsys.readouterr().out)
     shown = re.findall(rf"hasel_tracker {name}\b([^\n]*)|`{name} ([^`]*)`", PAGE)
     options = {option for line in shown for option in re.findall(r"--[a-z-]+", " ".join(line))}

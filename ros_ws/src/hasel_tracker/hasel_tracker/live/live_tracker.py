@@ -5,13 +5,12 @@ import time
 from collections.abc import Callable, Iterator
 
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.live.tracking_statistics import TrackingStatistics
-from hasel_tracker.live.video_recorder import VideoRecorder
-from hasel_tracker.sources.capture_thread import CaptureThread
+from hasel_tracker.live.health import TrackingStatistics
+from hasel_tracker.sources.camera_source import CaptureThread
 from hasel_tracker.sources.decoding import decoded_in_order
-from hasel_tracker.sources.frame import Frame
-from hasel_tracker.sources.frame_queue import DropOldestQueue
+from hasel_tracker.sources.frame import DropOldestQueue, Frame
 from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
+from hasel_tracker.video.video_writer import VideoRecorder
 
 IDLE_S = 0.2
 

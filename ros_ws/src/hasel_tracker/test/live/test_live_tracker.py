@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.live.live_tracker import LiveTracker
-from hasel_tracker.live.playback import Playback
-from hasel_tracker.live.video_recorder import VideoRecorder
 from hasel_tracker.sources.frame import Frame
+from hasel_tracker.sources.recorded_source import Playback
 from hasel_tracker.sources.video_source import VideoSource
 from hasel_tracker.tracking.bending_tracker import BendingTracker
+from hasel_tracker.video.video_writer import VideoRecorder
 
 QUEUE_SIZE = 4
 PATIENCE_S = 100.0  # on a machine that is busy with other things

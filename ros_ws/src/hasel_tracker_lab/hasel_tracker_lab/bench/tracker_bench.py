@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 from hasel_common.measured_bar import MeasuredBar
-from hasel_tracker.commands.command import run_command
-from hasel_tracker.errors import TrackerError
+from hasel_tracker.errors import TrackerError, run_command
 from rich.console import Console
 from rich.table import Table
 

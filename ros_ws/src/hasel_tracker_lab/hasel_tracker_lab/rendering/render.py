@@ -10,8 +10,7 @@ import cv2
 import numpy as np
 from hasel_common.progress import counted
 from hasel_recording import Recording, RecordingError, write_recording
-from hasel_tracker.commands.command import run_command
-from hasel_tracker.errors import TrackerError
+from hasel_tracker.errors import TrackerError, run_command
 from hasel_tracker.video.video_writer import H264Writer, JpegWriter
 
 from hasel_tracker_lab.lab_commands import CODECS, render_parser
@@ -92,10 +91,6 @@ def _photograph(path: Path | None, size_px: tuple[int, int]) -> np.ndarray | Non
     return None if path is None else photograph(path, *size_px)
 
 
-if __name__ == "__main__":
-    sys.exit(main())
-
-
 def write_frames(
     renderer: Renderer,
     output: Path,
@@ -151,3 +146,7 @@ def _write_image(folder: Path, frame: RenderedFrame, frame_rate_hz: float) -> No
     path = folder / f"frame_{round(frame.time_s * frame_rate_hz):06d}.png"
     if not cv2.imwrite(str(path), frame.image, [cv2.IMWRITE_PNG_COMPRESSION, 1]):
         raise TrackerError(f"The image {path} cannot be written; choose another folder.")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -2,8 +2,8 @@ import cv2
 import numpy as np
 import pytest
 from hasel_recording import Recording, read_recording, write_recording
-from hasel_tracker.commands.calibrate import main as calibrate
-from hasel_tracker.commands.track import main as track
+from hasel_tracker.calibration.calibrate import main as calibrate
+from hasel_tracker.offline.track import main as track
 from hasel_tracker.sources.video_source import VideoSource
 from hasel_tracker_lab.rendering.camera_model import CameraView
 from hasel_tracker_lab.rendering.render import main as render

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hasel_tracker.calibration.colour_learning import learn_colour
+from hasel_tracker.calibration.learned_settings import learn_colour
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.tracking.bending_tracker import BendingTracker
 from hasel_tracker.tracking.marker_row import spaced_as

@@ -9,16 +9,17 @@ import cv2
 import numpy as np
 
 from hasel_tracker.calibration import VIEWS_FOR_LENS
-from hasel_tracker.calibration.board_calibration import Board, calibrate_camera, find_corners
-from hasel_tracker.calibration.body_learning import body_picture, learn_body
-from hasel_tracker.calibration.camera_calibration import scale_calibration
-from hasel_tracker.calibration.colour_learning import learn_colour
-from hasel_tracker.calibration.learned_picture import learned_picture
-from hasel_tracker.commands.command import run_command
-from hasel_tracker.commands.parsers import calibrate_parser
-from hasel_tracker.errors import TrackerError
-from hasel_tracker.sources.folder_source import IMAGE_SUFFIXES
+from hasel_tracker.calibration.camera_calibration import (
+    Board,
+    calibrate_camera,
+    find_corners,
+    scale_calibration,
+)
+from hasel_tracker.calibration.learned_settings import body_picture, learn_body, learn_colour, learned_picture
+from hasel_tracker.errors import TrackerError, run_command
+from hasel_tracker.sources.recorded_source import IMAGE_SUFFIXES
 from hasel_tracker.sources.video_source import VideoSource
+from hasel_tracker.tracker_commands import calibrate_parser
 from hasel_tracker.tracking.bending_tracker import within
 from hasel_tracker.tracking.tracker_settings import save_settings
 

@@ -2,8 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hasel_tracker.live.health_report import ERROR, OK, WARN, judge
-from hasel_tracker.live.tracking_statistics import Health, TrackingStatistics
+from hasel_tracker.live.health import ERROR, OK, WARN, Health, TrackingStatistics, judge
 from hasel_tracker.tracking.bending_tracker import TrackedFrame
 from hasel_tracker.tracking.marker_set import MarkerSet
 

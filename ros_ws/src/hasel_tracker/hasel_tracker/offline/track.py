@@ -11,9 +11,7 @@ import numpy as np
 from hasel_common.progress import counted
 
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
-from hasel_tracker.commands.command import run_command
-from hasel_tracker.commands.parsers import track_parser
-from hasel_tracker.errors import TrackerError
+from hasel_tracker.errors import TrackerError, run_command
 from hasel_tracker.offline.drive import (
     Drive,
     DriveAlignment,
@@ -23,14 +21,12 @@ from hasel_tracker.offline.drive import (
     align_by_stamp,
     read_drive,
 )
-from hasel_tracker.offline.fixes import read_fixes
-from hasel_tracker.offline.movement import cut_to_periods
 from hasel_tracker.offline.run_output import write_run
-from hasel_tracker.offline.tracked_run import TrackedRun, track_frames
-from hasel_tracker.sources.folder_source import FolderSource, StackSource
+from hasel_tracker.offline.tracked_run import TrackedRun, cut_to_periods, read_fixes, track_frames
 from hasel_tracker.sources.frame import Frame
-from hasel_tracker.sources.open_source import open_recorded
+from hasel_tracker.sources.recorded_source import FolderSource, StackSource, open_recorded
 from hasel_tracker.sources.video_source import VideoSource
+from hasel_tracker.tracker_commands import track_parser
 from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
 from hasel_tracker.tracking.tracker_settings import TrackerSettings, load_settings
 from hasel_tracker.video.annotation import annotate

@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
-from hasel_tracker.calibration.colour_learning import learn_colour
-from hasel_tracker.calibration.learned_picture import SELECTED, learned_picture
+from hasel_tracker.calibration.learned_settings import SELECTED, learn_colour, learned_picture
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.tracking.marker_contour import measure_contour
 from hasel_tracker.tracking.marker_tracker import MarkerTracker

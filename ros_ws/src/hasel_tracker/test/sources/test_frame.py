@@ -1,9 +1,8 @@
 import threading
 import time
 
-from hasel_tracker.sources.capture_thread import CaptureThread
-from hasel_tracker.sources.frame import Frame
-from hasel_tracker.sources.frame_queue import DropOldestQueue
+from hasel_tracker.sources.camera_source import CaptureThread
+from hasel_tracker.sources.frame import DropOldestQueue, Frame
 
 
 def test_oldest_goes_first_and_is_counted():

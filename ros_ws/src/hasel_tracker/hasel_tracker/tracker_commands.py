@@ -1,10 +1,48 @@
-"""The options of every command, without anything that takes time to import."""
+"""Options of `track` and `calibrate`, and where these and `tracker_node` begin: before anything heavy is imported, so
+that --help answers at once and opens no camera."""
 
 import argparse
 from pathlib import Path
 
+from hasel_common.command_entry import command
+
 from hasel_tracker.calibration import VIEWS_FOR_LENS
 from hasel_tracker.tracking import BODY_KINDS, DEFAULT_METHOD, METHODS
+
+
+@command
+def calibrate() -> int:
+    """`calibrate colour|body|board|distance`."""
+    options = calibrate_parser().parse_args()
+    from hasel_tracker.calibration.calibrate import run
+
+    return run(options)
+
+
+@command
+def track() -> int:
+    """`track VIDEO`."""
+    options = track_parser().parse_args()
+    from hasel_tracker.offline.track import run
+
+    return run(options)
+
+
+@command
+def tracker_node() -> int:
+    """The node, until it is interrupted."""
+    from hasel_common.node_usage import answer_help
+
+    from hasel_tracker.node_parameters import PARAMETERS
+
+    answer_help(
+        "tracker_node",
+        "Follows the markers of a camera or video and publishes the bending angle (/hasel/bending/measured).",
+        [each.usage for each in PARAMETERS],
+    )
+    from hasel_tracker.tracker_node import main as run
+
+    return run()
 
 
 def calibrate_parser() -> argparse.ArgumentParser:

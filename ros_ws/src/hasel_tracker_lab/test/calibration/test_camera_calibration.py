@@ -1,7 +1,11 @@
 import numpy as np
 import pytest
-from hasel_tracker.calibration.board_calibration import Board, calibrate_camera, find_corners
-from hasel_tracker.calibration.camera_calibration import CameraCalibration
+from hasel_tracker.calibration.camera_calibration import (
+    Board,
+    CameraCalibration,
+    calibrate_camera,
+    find_corners,
+)
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.tracking.marker_set import bending_angle
 from hasel_tracker_lab.rendering.camera_model import CameraView

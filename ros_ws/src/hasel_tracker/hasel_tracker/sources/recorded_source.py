@@ -1,7 +1,9 @@
-"""Frames of a folder of images or of an image with many pages (a TIFF stack), taken at a constant rate."""
+"""A video, a folder of images or a TIFF stack, whichever the user named; played as if it were a camera."""
 
 import re
-from collections.abc import Iterator
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
 
@@ -10,6 +12,7 @@ import numpy as np
 
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.sources.frame import Frame
+from hasel_tracker.sources.video_source import VideoSource
 
 IMAGE_SUFFIXES = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".webp"}
 STACK_SUFFIXES = {".tif", ".tiff"}
@@ -120,3 +123,58 @@ def _is_picture(path: Path) -> bool:
 def _natural_order(path: Path) -> list[tuple[bool, int, str]]:
     parts = ("".join(part) for _, part in groupby(path.name, str.isdecimal))
     return [(part.isdecimal(), int(part) if part.isdecimal() else 0, part) for part in parts]
+
+
+def open_recorded(
+    path: str | Path,
+    frame_rate_hz: float | None = None,
+    threads: int = 0,
+    unsaid_hz: float | None = None,
+) -> VideoSource | FolderSource | StackSource:
+    """Open a video file, a folder of images or a TIFF stack.
+
+    frame_rate_hz: how fast the pictures were taken [1/s], whatever the source says; unsaid_hz: the same where the
+    source does not say it. Raises TrackerError where neither is known.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise TrackerError(f"{path} does not exist; give a video file or a folder of images.")
+    if frame_rate_hz is not None and not 0.0 < frame_rate_hz < float("inf"):
+        raise TrackerError(
+            f"A frame rate of {frame_rate_hz:g} was given; expected pictures per second, above 0."
+        )
+    of_images = path.is_dir() or path.suffix.lower() in STACK_SUFFIXES
+    if not of_images:
+        return VideoSource(path, threads, frame_rate_hz, unsaid_hz)
+    rate = frame_rate_hz or unsaid_hz
+    if rate is None:
+        what = "a folder of images" if path.is_dir() else "a stack of images"
+        raise TrackerError(f"{path} is {what}; say how fast they were taken with --frame-rate.")
+    if not path.is_dir():
+        return StackSource(path, rate)
+    found = stacks(path)
+    if found:
+        raise TrackerError(
+            f"{found[0]} holds many pictures and lies in a folder; name that file, not its folder."
+        )
+    return FolderSource(path, rate)
+
+
+class Playback:
+    """Gives each frame when its time has come, stamped with the start of the playback plus the frame's own time."""
+
+    def __init__(self, frames: Iterable[Frame]) -> None:
+        self._frames: Iterator[Frame] = iter(frames)
+        self._start: float | None = None
+        self._start_ns = 0
+
+    def read(self) -> Frame | None:
+        """The next frame, when it is due; None at the end."""
+        frame = next(self._frames, None)
+        if frame is None:
+            return None
+        now = time.monotonic()
+        if self._start is None:
+            self._start, self._start_ns = now - frame.time_s, time.time_ns() - round(frame.time_s * 1e9)
+        time.sleep(max(self._start + frame.time_s - now, 0.0))
+        return replace(frame, stamp_ns=self._start_ns + round(frame.time_s * 1e9))
