@@ -17,8 +17,7 @@ from hasel_tracker.offline.drive import (
     read_drive,
 )
 from hasel_tracker.offline.tracked_run import TrackedRun
-from hasel_tracker.sources.decoding import image_of
-from hasel_tracker.sources.frame import Frame
+from hasel_tracker.sources.frame import Frame, image_of
 from hasel_tracker.sources.recorded_source import open_recorded
 from hasel_tracker.sources.video_source import VideoSource
 

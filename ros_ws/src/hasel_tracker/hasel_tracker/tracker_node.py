@@ -28,8 +28,7 @@ from std_srvs.srv import SetBool, Trigger
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.image_topic import ImageTopic
-from hasel_tracker.live.health import health_values, judge
-from hasel_tracker.live.live_tracker import LiveTracker
+from hasel_tracker.live_tracker import LiveTracker, health_values, judge
 from hasel_tracker.node_parameters import PARAMETERS, SEARCH_NAMES
 from hasel_tracker.sources.camera_source import CameraFormat, CameraSource, PersistentCamera
 from hasel_tracker.sources.frame import Frame

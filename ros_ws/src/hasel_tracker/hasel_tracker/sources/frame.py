@@ -1,9 +1,11 @@
-"""One picture on its way from a source to the tracker, and the queue in which it waits."""
+"""One picture on its way from a source to the tracker: the queue in which it waits, and how it is decoded."""
 
 import threading
 from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import cv2
 import numpy as np
@@ -11,6 +13,27 @@ import numpy as np
 from hasel_tracker.errors import TrackerError
 
 Item = TypeVar("Item")
+ENCODINGS: dict[str, tuple[int, int | None]] = {
+    "bgr": (3, None),
+    "rgb": (3, cv2.COLOR_RGB2BGR),
+    "bgra": (4, cv2.COLOR_BGRA2BGR),
+    "rgba": (4, cv2.COLOR_RGBA2BGR),
+    "bayer_rggb": (1, cv2.COLOR_BayerBG2BGR),
+    "bayer_bggr": (1, cv2.COLOR_BayerRG2BGR),
+    "bayer_gbrg": (1, cv2.COLOR_BayerGR2BGR),
+    "bayer_grbg": (1, cv2.COLOR_BayerGB2BGR),
+}
+"""Channels and conversion of what sensor_msgs calls so, with 8 or 16 bits after it."""
+TO_BGR = {f"{name}{bits}": (*how, bits // 8) for name, how in ENCODINGS.items() for bits in (8, 16)} | {
+    "yuv422_yuy2": (2, cv2.COLOR_YUV2BGR_YUY2, 1),
+    "yuyv": (2, cv2.COLOR_YUV2BGR_YUY2, 1),
+    "yuv422": (2, cv2.COLOR_YUV2BGR_UYVY, 1),
+    "uyvy": (2, cv2.COLOR_YUV2BGR_UYVY, 1),
+    "nv12": (1, cv2.COLOR_YUV2BGR_NV12, 1),
+    "nv21": (1, cv2.COLOR_YUV2BGR_NV21, 1),
+}
+"""Channels, conversion and bytes per channel of every encoding."""
+HALF_COLOURS = {"nv12", "nv21"}  # half as many rows again hold the colours
 
 
 @dataclass(frozen=True)
@@ -84,3 +107,73 @@ class DropOldestQueue(Generic[Item]):
 
     def __len__(self) -> int:
         return len(self._items)
+
+
+def decoded_in_order(
+    frames: Iterable[Frame | None], threads: int, broken: Callable[[TrackerError], None]
+) -> Iterator[Frame]:
+    """Decoded frames in the order of `frames`, at most `threads` of them being decoded at a time.
+
+    None among the frames means that none has come lately: what is waiting is handed on. A frame that cannot
+    be decoded is left out and `broken` is told why. With one thread, decoding is done in the calling one.
+    """
+    if threads == 1:
+        yield from _decoded_here(frames, broken)
+        return
+    with ThreadPoolExecutor(threads, thread_name_prefix="decode") as pool:
+        waiting: deque[Future[Frame]] = deque()
+        for frame in frames:
+            if frame is not None:
+                waiting.append(pool.submit(frame.decoded))
+            while waiting and (frame is None or len(waiting) >= threads or waiting[0].done()):
+                yield from _result(waiting.popleft().result, broken)
+        while waiting:
+            yield from _result(waiting.popleft().result, broken)
+
+
+def _decoded_here(frames: Iterable[Frame | None], broken: Callable[[TrackerError], None]) -> Iterator[Frame]:
+    for frame in frames:
+        if frame is not None:
+            yield from _result(frame.decoded, broken)
+
+
+def _result(decode: Callable[[], Frame], broken: Callable[[TrackerError], None]) -> Iterator[Frame]:
+    try:
+        yield decode()
+    except TrackerError as error:
+        broken(error)
+
+
+def image_of(message: Any) -> np.ndarray:
+    """8-bit BGR image, shape (height, width, 3), of a sensor_msgs Image or CompressedImage."""
+    return _compressed(message) if hasattr(message, "format") else _raw(message)
+
+
+def _raw(message: Any) -> np.ndarray:
+    if message.encoding not in TO_BGR:
+        raise TrackerError(
+            f"The image topic sends '{message.encoding}'; expected a colour image: set the camera driver to one of "
+            f"{', '.join(TO_BGR)}."
+        )
+    channels, conversion, depth = TO_BGR[message.encoding]
+    lines = message.height * 3 // 2 if message.encoding in HALF_COLOURS else message.height
+    data, row = np.frombuffer(message.data, np.uint8), message.width * channels * depth
+    if message.step < row or data.size < message.step * lines:
+        raise TrackerError(
+            f"The image topic sends {data.size} bytes for {message.width} × {message.height} px "
+            f"'{message.encoding}'; check the camera driver."
+        )
+    pixels = np.ascontiguousarray(data[: message.step * lines].reshape(lines, message.step)[:, :row])
+    if depth == 2:
+        pixels = (pixels.view(">u2" if message.is_bigendian else "<u2") >> 8).astype(np.uint8)
+    pixels = pixels if channels == 1 else pixels.reshape(lines, message.width, channels)
+    return pixels if conversion is None else cv2.cvtColor(pixels, conversion)
+
+
+def _compressed(message: Any) -> np.ndarray:
+    image = cv2.imdecode(np.frombuffer(message.data, np.uint8), cv2.IMREAD_COLOR)
+    if image is None:
+        raise TrackerError(
+            f"The image topic sends '{message.format}' that cannot be decoded; expected JPEG or PNG: check its driver."
+        )
+    return image

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from hasel_tracker.live.live_tracker import LiveTracker
+from hasel_tracker.live_tracker import LiveTracker
 from hasel_tracker.sources.frame import Frame
 from hasel_tracker.tracking import DEFAULT_METHOD
 from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
