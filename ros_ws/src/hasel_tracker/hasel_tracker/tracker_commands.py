@@ -2,6 +2,7 @@
 that --help answers at once and opens no camera."""
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 from hasel_common.command_entry import command
@@ -11,18 +12,18 @@ from hasel_tracker.tracking import BODY_KINDS, DEFAULT_METHOD, METHODS
 
 
 @command
-def calibrate() -> int:
+def calibrate(arguments: Sequence[str] | None = None) -> int:
     """`calibrate colour|body|board|distance`."""
-    options = calibrate_parser().parse_args()
+    options = calibrate_parser().parse_args(arguments)
     from hasel_tracker.calibration.calibrate import run
 
     return run(options)
 
 
 @command
-def track() -> int:
+def track(arguments: Sequence[str] | None = None) -> int:
     """`track VIDEO`."""
-    options = track_parser().parse_args()
+    options = track_parser().parse_args(arguments)
     from hasel_tracker.offline.track import run
 
     return run(options)

@@ -2,26 +2,27 @@
 at once."""
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 from hasel_common.command_entry import command
 
-CODECS = ("mjpeg", "h264")
+from hasel_tracker_lab.rendering import CODECS
 
 
 @command
-def bench() -> int:
+def bench(arguments: Sequence[str] | None = None) -> int:
     """`bench`."""
-    options = bench_parser().parse_args()
+    options = bench_parser().parse_args(arguments)
     from hasel_tracker_lab.bench.tracker_bench import run
 
     return run(options)
 
 
 @command
-def render() -> int:
+def render(arguments: Sequence[str] | None = None) -> int:
     """`render OUTPUT`."""
-    options = render_parser().parse_args()
+    options = render_parser().parse_args(arguments)
     from hasel_tracker_lab.rendering.render import run
 
     return run(options)

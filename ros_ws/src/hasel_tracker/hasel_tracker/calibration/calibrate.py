@@ -1,8 +1,7 @@
 """`calibrate colour|body|board|distance`: the markers' colour, how a body stands out, lens and scale."""
 
 import argparse
-import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
 import cv2
@@ -19,14 +18,8 @@ from hasel_tracker.calibration.learned_settings import body_picture, learn_body,
 from hasel_tracker.errors import TrackerError, run_command
 from hasel_tracker.sources.recorded_source import IMAGE_SUFFIXES
 from hasel_tracker.sources.video_source import VideoSource
-from hasel_tracker.tracker_commands import calibrate_parser
 from hasel_tracker.tracking.bending_tracker import within
 from hasel_tracker.tracking.tracker_settings import save_settings
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return run(calibrate_parser().parse_args(arguments))
 
 
 def run(options: argparse.Namespace) -> int:
@@ -97,7 +90,3 @@ def _image(path: Path) -> np.ndarray:
             raise TrackerError(f"{path} is not a readable image; give a PNG or JPEG file.")
         return image
     return next(iter(VideoSource(path, threads=1))).image
-
-
-if __name__ == "__main__":
-    sys.exit(main())

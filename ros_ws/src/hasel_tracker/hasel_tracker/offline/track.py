@@ -2,7 +2,6 @@
 
 import argparse
 import sys
-from collections.abc import Sequence
 from dataclasses import replace
 from itertools import count
 from pathlib import Path
@@ -26,16 +25,10 @@ from hasel_tracker.offline.tracked_run import TrackedRun, cut_to_periods, read_f
 from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.recorded_source import FolderSource, StackSource, open_recorded
 from hasel_tracker.sources.video_source import VideoSource
-from hasel_tracker.tracker_commands import track_parser
 from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
 from hasel_tracker.tracking.tracker_settings import TrackerSettings, load_settings
 from hasel_tracker.video.annotation import annotate
 from hasel_tracker.video.video_writer import H264Writer
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return run(track_parser().parse_args(arguments))
 
 
 def run(options: argparse.Namespace) -> int:
@@ -153,7 +146,3 @@ def _settings(options: argparse.Namespace, placed: dict[int, np.ndarray]) -> Tra
             f"The numbers of markers given differ ({sorted(counts)}); give all markers everywhere."
         )
     return replace(settings, marker_count=counts.pop()) if counts else settings
-
-
-if __name__ == "__main__":
-    sys.exit(main())

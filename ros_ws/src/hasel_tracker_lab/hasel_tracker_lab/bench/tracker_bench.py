@@ -2,8 +2,7 @@
 
 import argparse
 import json
-import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -17,7 +16,6 @@ from hasel_tracker_lab.bench.accuracy import CONDITIONS, Accuracy, measure_accur
 from hasel_tracker_lab.bench.honesty import Honesty, measure_honesty
 from hasel_tracker_lab.bench.robustness import CASES, Robustness, measure_robustness
 from hasel_tracker_lab.bench.tracker_speed import Latency, TrackerSpeed, measure_latency, measure_speed
-from hasel_tracker_lab.lab_commands import bench_parser
 from hasel_tracker_lab.scenes.scene_catalogue import ADVERSARIAL, MIDLINE, REAL
 from hasel_tracker_lab.scenes.unforeseen import DECEIVING, UNFORESEEN
 
@@ -176,11 +174,6 @@ def _plain(result: Any) -> dict[str, Any]:
     }
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return run(bench_parser().parse_args(arguments))
-
-
 def run(options: argparse.Namespace) -> int:
     """Run the command with these options; returns its exit code: 0 if every bar is met, 2 if not."""
     missed: list[str] = []
@@ -196,7 +189,3 @@ def _bench(options: argparse.Namespace, missed: list[str]) -> None:
     if options.json is not None:
         options.json.write_text(json.dumps(report.values(), indent=1))
     missed.extend(bar.what for bar in report.bars() if not bar.met)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

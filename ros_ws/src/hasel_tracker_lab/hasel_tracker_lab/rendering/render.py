@@ -1,8 +1,7 @@
 """`render OUTPUT`: a swimmer whose markers' true places are known, as a video or images, and the truth beside."""
 
 import argparse
-import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from itertools import count
 from pathlib import Path
 
@@ -13,18 +12,13 @@ from hasel_recording import Recording, RecordingError, write_recording
 from hasel_tracker.errors import TrackerError, run_command
 from hasel_tracker.video.video_writer import H264Writer, JpegWriter
 
-from hasel_tracker_lab.lab_commands import CODECS, render_parser
+from hasel_tracker_lab.rendering import CODECS
 from hasel_tracker_lab.rendering.camera_model import CameraView, Degradation
 from hasel_tracker_lab.rendering.motion_file import read_motion
 from hasel_tracker_lab.rendering.renderer import RenderedFrame, Renderer, photograph
 from hasel_tracker_lab.rendering.swimmer_motion import BendingMotion, BodyShape, RenderedMotion
 
 USUAL_QUALITY = {"mjpeg": 90, "h264": 20}
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return run(render_parser().parse_args(arguments))
 
 
 def run(options: argparse.Namespace) -> int:
@@ -146,7 +140,3 @@ def _write_image(folder: Path, frame: RenderedFrame, frame_rate_hz: float) -> No
     path = folder / f"frame_{round(frame.time_s * frame_rate_hz):06d}.png"
     if not cv2.imwrite(str(path), frame.image, [cv2.IMWRITE_PNG_COMPRESSION, 1]):
         raise TrackerError(f"The image {path} cannot be written; choose another folder.")
-
-
-if __name__ == "__main__":
-    sys.exit(main())

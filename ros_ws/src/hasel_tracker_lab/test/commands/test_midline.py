@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 import yaml
 from hasel_recording import read_recording
-from hasel_tracker.calibration.calibrate import main as calibrate
-from hasel_tracker.offline.track import main as track
+from hasel_tracker.tracker_commands import calibrate, track
 from hasel_tracker_lab.scenes.lab_scene import LabScene
 from hasel_tracker_lab.scenes.scene_catalogue import BARE
 

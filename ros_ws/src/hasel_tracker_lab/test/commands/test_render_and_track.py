@@ -2,11 +2,10 @@ import cv2
 import numpy as np
 import pytest
 from hasel_recording import Recording, read_recording, write_recording
-from hasel_tracker.calibration.calibrate import main as calibrate
-from hasel_tracker.offline.track import main as track
 from hasel_tracker.sources.video_source import VideoSource
+from hasel_tracker.tracker_commands import calibrate, track
+from hasel_tracker_lab.lab_commands import render
 from hasel_tracker_lab.rendering.camera_model import CameraView
-from hasel_tracker_lab.rendering.render import main as render
 from hasel_tracker_lab.rendering.renderer import board_picture
 
 SMALL = ["--size", "640x360", "--scale", "2.8", "--frequency", "4", "--duration", "0.7", "--rest", "0.1"]
