@@ -34,7 +34,7 @@ def tracker_node() -> int:
     """The node, until it is interrupted."""
     from hasel_common.node_usage import answer_help
 
-    from hasel_tracker.node_parameters import PARAMETERS
+    from hasel_tracker.tracker_parameters import PARAMETERS
 
     answer_help(
         "tracker_node",

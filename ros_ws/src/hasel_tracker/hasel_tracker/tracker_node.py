@@ -29,10 +29,10 @@ from hasel_tracker.calibration.camera_calibration import CameraCalibration
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.image_topic import ImageTopic
 from hasel_tracker.live_tracker import LiveTracker, health_values, judge
-from hasel_tracker.node_parameters import PARAMETERS, SEARCH_NAMES
 from hasel_tracker.sources.camera_source import CameraFormat, CameraSource, PersistentCamera
 from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.recorded_source import Playback, open_recorded
+from hasel_tracker.tracker_parameters import PARAMETERS, SEARCH_NAMES
 from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
 from hasel_tracker.tracking.tracker_settings import settings_from
 from hasel_tracker.video.annotation import preview

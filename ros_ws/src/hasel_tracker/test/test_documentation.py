@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from hasel_common import topics
 from hasel_tracker import tracker_commands
-from hasel_tracker.node_parameters import PARAMETERS
+from hasel_tracker.tracker_parameters import PARAMETERS
 
 PACKAGE = Path(__file__).resolve().parents[1]
 DOCS = Path(__file__).resolve().parents[4] / "docs"

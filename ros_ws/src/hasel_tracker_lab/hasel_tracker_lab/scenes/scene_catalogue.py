@@ -12,8 +12,7 @@ from hasel_tracker_lab.scenes.lab_swimmer import LabSwimmer
 from hasel_tracker_lab.scenes.lab_things import Cable
 
 RIGHT_WAY, TURNED = LabSwimmer(), LabSwimmer(start_px=(960.0, 360.0), heading_rad=np.pi)
-SMALL = (960, 540)
-TAIL, MIDDLE = 2, 1
+TAIL = 2
 BARE = replace(RIGHT_WAY, marked=False, body_colour=(58.0, 56.0, 54.0))
 ALIKE = replace(BARE, taper=1.0, fin_from=1.1, half_width_px=20.0)
 SHARES = TrackerSettings(points="0.05,0.5,0.97")
