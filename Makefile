@@ -6,7 +6,7 @@ SHELL := /bin/bash
 .PHONY: help build test test-computing test-timed test-slow fuzz lint format docs demo bench bench-far bench-hidden soak clean
 
 ENVIRONMENT := . setup/environment.bash
-PACKAGES := hasel_common hasel_recording hasel_driver hasel_tracker hasel_sim hasel_sysid hasel_muscle hasel_workbench hasel_bringup hasel_benchmark
+PACKAGES := hasel_common hasel_recording hasel_driver hasel_tracker hasel_sim hasel_tracker_lab hasel_sysid hasel_muscle hasel_workbench hasel_bringup hasel_benchmark
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 16
@@ -58,7 +58,7 @@ demo: build ## fit the swimmer, compare on unseen runs, replay one, write report
 
 bench: build ## measure the speeds that docs/results/index.md states
 	@bin/ros2-run hasel_bringup bench
-	@bin/ros2-run hasel_tracker bench
+	@bin/ros2-run hasel_tracker_lab bench
 
 bench-hidden: build ## measure how often the right hidden effect is named
 	@bin/ros2-run hasel_benchmark bench_hidden

@@ -28,7 +28,7 @@ def start(entry: str, *arguments: str) -> subprocess.CompletedProcess:
     ("entry", "parameter"),
     [
         ("hasel_driver.start_driver:main", "port:="),
-        ("hasel_tracker.start_tracker:main", "source:="),
+        ("hasel_tracker.tracker_commands:tracker_node", "source:="),
         ("hasel_sim.start_simulator:main", "model:=swimmer"),
         ("hasel_sysid.start_sysid:main", "window:=5.0"),
         ("hasel_bringup.entry:virtual_rig", "hidden:="),

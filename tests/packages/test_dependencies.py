@@ -1,5 +1,6 @@
 import ast
 import re
+import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator
@@ -21,10 +22,13 @@ MAY_IMPORT = {
     "hasel_driver": BELOW,
     "hasel_tracker": BELOW,
     "hasel_sim": BELOW,
+    "hasel_tracker_lab": BELOW | {"hasel_tracker"},
     "hasel_sysid": BELOW | SIDE_BY_SIDE,
     "hasel_muscle": BELOW | SIDE_BY_SIDE | {"hasel_sysid"},
     "hasel_workbench": BELOW | SIDE_BY_SIDE | {"hasel_sysid", "hasel_muscle"},
-    "hasel_bringup": BELOW | SIDE_BY_SIDE | {"hasel_sysid", "hasel_muscle", "hasel_workbench"},
+    "hasel_bringup": BELOW
+    | SIDE_BY_SIDE
+    | {"hasel_tracker_lab", "hasel_sysid", "hasel_muscle", "hasel_workbench"},
 }
 ROSDEP_KEYS = {
     "cv2": "python3-opencv",
@@ -140,7 +144,9 @@ def normalised(requirement: str) -> str:
 
 @each_package
 def test_imports_go_downwards(package):
-    """interfaces < common < recording < driver, tracker, sim < sysid < muscle < workbench < bringup < benchmark."""
+    """Interfaces < common < recording < driver, tracker, sim < tracker_lab, sysid < muscle < workbench < bringup <
+    benchmark.
+    """
     allowed = MAY_IMPORT.get(package.name, {path.name for path in PACKAGES}) | {package.name}
     upward = {
         f"{file.relative_to(ROOT)} imports {name}"
@@ -148,6 +154,33 @@ def test_imports_go_downwards(package):
         if name.startswith("hasel_") and name not in allowed
     }
     assert not upward
+
+
+@each_package
+def test_tests_import_downwards_too(package):
+    """No test of a package needs one above it: package.xml could not say so without a circle."""
+    allowed = MAY_IMPORT.get(package.name, OWN) | {package.name}
+    assert {name for name in imported_by_tests(package) if name in OWN} - allowed == set()
+
+
+def test_the_tracker_runs_at_a_rig_without_its_laboratory():
+    """Every module of it is imported where, of ours, only what stands below it is installed."""
+    program = f"""
+import importlib, pkgutil, sys
+absent = {sorted(OWN - BELOW - {"hasel_tracker"})}
+class Absent:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in absent:
+            raise ModuleNotFoundError(name)
+sys.meta_path.insert(0, Absent())
+import hasel_tracker
+for each in pkgutil.walk_packages(hasel_tracker.__path__, "hasel_tracker."):
+    importlib.import_module(each.name)
+print(sum(name.startswith("hasel_tracker.") for name in sys.modules))
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert done.stderr == ""
+    assert int(done.stdout) > 20
 
 
 @each_package

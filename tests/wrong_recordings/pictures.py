@@ -17,9 +17,8 @@ from hasel_tracker.offline.drive import (
     read_drive,
 )
 from hasel_tracker.offline.tracked_run import TrackedRun
-from hasel_tracker.sources.frame import Frame
-from hasel_tracker.sources.image_message import image_of
-from hasel_tracker.sources.open_source import open_recorded
+from hasel_tracker.sources.frame import Frame, image_of
+from hasel_tracker.sources.recorded_source import open_recorded
 from hasel_tracker.sources.video_source import VideoSource
 
 SMALL = np.full((96, 128, 3), 90, np.uint8)

@@ -17,12 +17,10 @@ setup(
         "numpy>=1.26",
         "opencv-contrib-python-headless>=4.10",
         "PyYAML",
-        "rich",
         "scipy",
     ],
     extras_require={
-        "bench": ["scikit-image"],
-        "test": ["hypothesis", "pytest", "pytest-timeout", "scikit-image"],
+        "test": ["hypothesis", "pytest", "pytest-timeout"],
     },
     zip_safe=False,
     maintainer="HASEL swimmer maintainers",
@@ -31,11 +29,9 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "tracker_node = hasel_tracker.start_tracker:main",
-            "track = hasel_tracker.commands.entry:track",
-            "render = hasel_tracker.commands.entry:render",
-            "calibrate = hasel_tracker.commands.entry:calibrate",
-            "bench = hasel_tracker.commands.entry:bench",
+            "tracker_node = hasel_tracker.tracker_commands:tracker_node",
+            "track = hasel_tracker.tracker_commands:track",
+            "calibrate = hasel_tracker.tracker_commands:calibrate",
         ]
     },
 )

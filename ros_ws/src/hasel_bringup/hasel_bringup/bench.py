@@ -11,7 +11,7 @@ from hasel_common.command_entry import command
 from hasel_bringup import start_up
 from hasel_bringup.errors import BringupError
 
-PACKAGES = ("hasel_sim", "hasel_driver", "hasel_tracker")
+PACKAGES = ("hasel_sim", "hasel_driver", "hasel_tracker_lab")
 
 
 def bench_executable(package: str) -> Path:
@@ -34,7 +34,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if given:
         asked = given[0] in ("-h", "--help")
         print(
-            "usage: bench (without arguments; for options run a package's own: ros2 run hasel_tracker bench --help)",
+            "usage: bench (without arguments; for options run a package's own: ros2 run hasel_sim bench --help)",
             file=sys.stdout if asked else sys.stderr,
         )
         return 0 if asked else 2

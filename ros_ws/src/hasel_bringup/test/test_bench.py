@@ -6,7 +6,7 @@ from hasel_bringup.errors import BringupError
 @pytest.fixture
 def installed(monkeypatch, tmp_path):
     """Stand-ins for the three packages' executables, each writing its name and returning a code of its own."""
-    codes = {"hasel_sim": 0, "hasel_driver": 2, "hasel_tracker": 0}
+    codes = {"hasel_sim": 0, "hasel_driver": 2, "hasel_tracker_lab": 0}
     for package, code in codes.items():
         path = tmp_path / "lib" / package / "bench"
         path.parent.mkdir(parents=True)
@@ -24,7 +24,7 @@ def test_runs_all_even_if_one_misses_its_bars(installed, capfd):
     assert [line for line in lines if line.startswith("bench of")] == [
         "bench of hasel_sim",
         "bench of hasel_driver",
-        "bench of hasel_tracker",
+        "bench of hasel_tracker_lab",
         "bench of starting",
     ]
 

@@ -9,10 +9,8 @@ from rclpy.subscription import Subscription
 from sensor_msgs.msg import CompressedImage, Image
 
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.live.health_report import POSSIBLE_LATENCY_S
-from hasel_tracker.live.live_tracker import LiveTracker
-from hasel_tracker.sources.frame import Frame
-from hasel_tracker.sources.image_message import image_of
+from hasel_tracker.live_tracker import POSSIBLE_LATENCY_S, LiveTracker
+from hasel_tracker.sources.frame import Frame, image_of
 
 LOOK_PERIOD_S = 0.2
 QUEUE_DEPTH = 50

@@ -10,6 +10,7 @@ from typing import Any
 import cv2
 import numpy as np
 import rclpy
+from builtin_interfaces.msg import Time
 from hasel_common.declared_parameters import declare
 from hasel_common.diagnostics import Diagnostics, Level, Part
 from hasel_common.endpoints import STEADY, Role, frame_of, publisher
@@ -25,25 +26,17 @@ from sensor_msgs.msg import CompressedImage
 from std_srvs.srv import SetBool, Trigger
 
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
-from hasel_tracker.calibration.settings_file import settings_from
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.image_topic import ImageTopic
-from hasel_tracker.live.health_report import judge
-from hasel_tracker.live.live_tracker import LiveTracker
-from hasel_tracker.live.persistent_camera import PersistentCamera
-from hasel_tracker.live.playback import Playback
-from hasel_tracker.live.video_recorder import VideoRecorder
-from hasel_tracker.node_messages import (
-    angle_message,
-    compressed_image,
-    health_values,
-)
-from hasel_tracker.node_parameters import PARAMETERS, SEARCH_NAMES
-from hasel_tracker.sources.camera_source import CameraFormat, CameraSource
+from hasel_tracker.live_tracker import LiveTracker, health_values, judge
+from hasel_tracker.sources.camera_source import CameraFormat, CameraSource, PersistentCamera
 from hasel_tracker.sources.frame import Frame
-from hasel_tracker.sources.open_source import open_recorded
+from hasel_tracker.sources.recorded_source import Playback, open_recorded
+from hasel_tracker.tracker_parameters import PARAMETERS, SEARCH_NAMES
 from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
+from hasel_tracker.tracking.tracker_settings import settings_from
 from hasel_tracker.video.annotation import preview
+from hasel_tracker.video.video_writer import VideoRecorder
 
 TOPIC_PREFIX = "topic:"
 PREVIEW_JPEG_QUALITY = 70
@@ -240,6 +233,35 @@ def _points(text: str) -> np.ndarray | None:
     if text and (points.ndim != 2 or points.shape[1] != 2):
         raise TrackerError(f"The parameter at is '{text}'; expected X,Y X,Y … in pixels, head first.")
     return points if text else None
+
+
+def stamp(stamp_ns: int) -> Time:
+    """A time since the epoch [ns] as a message."""
+    return Time(sec=stamp_ns // 1_000_000_000, nanosec=stamp_ns % 1_000_000_000)
+
+
+def angle_message(tracked: TrackedFrame, stamp_ns: int, frame_id: str) -> BendingAngle:
+    """The bending angle of a frame captured at `stamp_ns`; NaN and not valid if a marker was lost or in doubt."""
+    message = BendingAngle()
+    message.header.stamp, message.header.frame_id = stamp(stamp_ns), frame_id
+    message.sin_theta, message.theta, message.valid = tracked.sin_theta, tracked.theta, tracked.valid
+    message.sin_theta_standard_deviation = tracked.sin_theta_std
+    message.doubt = int(tracked.markers.doubt)
+    message.marker_name = list(tracked.markers.names)
+    message.marker_x = tracked.markers.positions[:, 0].tolist()
+    message.marker_y = tracked.markers.positions[:, 1].tolist()
+    message.marker_quality = tracked.markers.quality.tolist()
+    if tracked.positions_m is not None:
+        message.marker_x_m = tracked.positions_m[:, 0].tolist()
+        message.marker_y_m = tracked.positions_m[:, 1].tolist()
+    return message
+
+
+def compressed_image(jpeg: bytes, stamp_ns: int, frame_id: str) -> CompressedImage:
+    """A JPEG picture as a message."""
+    message = CompressedImage(format="jpeg", data=jpeg)
+    message.header.stamp, message.header.frame_id = stamp(stamp_ns), frame_id
+    return message
 
 
 def main() -> int:

@@ -5,16 +5,12 @@ from pathlib import Path
 
 import pytest
 from hasel_common import topics
-from hasel_tracker.bench.accuracy import CONDITIONS
-from hasel_tracker.bench.robustness import CASES
-from hasel_tracker.commands import parsers
-from hasel_tracker.node_parameters import PARAMETERS
+from hasel_tracker import tracker_commands
+from hasel_tracker.tracker_parameters import PARAMETERS
 
 PACKAGE = Path(__file__).resolve().parents[1]
 DOCS = Path(__file__).resolve().parents[4] / "docs"
-PAGE = "\n".join(
-    (DOCS / page).read_text(encoding="utf-8") for page in ("how_to/camera.md", "results/tracker.md")
-)
+PAGE = (DOCS / "how_to" / "camera.md").read_text(encoding="utf-8")
 NODE = (PACKAGE / "hasel_tracker" / "tracker_node.py").read_text(encoding="utf-8")
 
 
@@ -63,23 +59,16 @@ def test_commands_are_listed():
     assert [name for name in executables if not re.search(rf"`{name}\b", listed)] == []
 
 
-@pytest.mark.parametrize("name", ["track", "render", "calibrate", "bench"])
+@pytest.mark.parametrize("name", ["track", "calibrate"])
 def test_options_named_in_the_readme_exist(name, capsys):
     """Options shown beside a command on one line are options of that command."""
     helps = []
     for arguments in (["--help"], ["colour", "--help"], ["board", "--help"], ["distance", "--help"]):
         with pytest.raises(SystemExit):
-            getattr(parsers, f"{name}_parser")().parse_args(arguments if name == "calibrate" else ["--help"])
+            getattr(tracker_commands, f"{name}_parser")().parse_args(
+                arguments if name == "calibrate" else ["--help"]
+            )
         helps.append(capsys.readouterr().out)
     shown = re.findall(rf"hasel_tracker {name}\b([^\n]*)|`{name} ([^`]*)`", PAGE)
     options = {option for line in shown for option in re.findall(r"--[a-z-]+", " ".join(line))}
     assert [option for option in options if not any(option in text for text in helps)] == []
-
-
-def test_measured_tables_have_a_row_for_everything_measured():
-    """Each condition and each case of the benchmark has its row."""
-    assert [row[0] for row in rows("condition")] == [
-        *(each.name for each in CONDITIONS),
-        "CSRT, MJPEG quality 75",
-    ]
-    assert [row[0] for row in rows("case")] == list(CASES)

@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 from hasel_tracker.image_topic import ImageTopic
-from hasel_tracker.sources.frame_queue import DropOldestQueue
+from hasel_tracker.sources.frame import DropOldestQueue
 from rclpy.qos import ReliabilityPolicy
 from sensor_msgs.msg import CompressedImage, Image
 

@@ -15,9 +15,9 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from hasel_common.declared_parameters import descriptor
 from hasel_interfaces.msg import BendingAngle
-from hasel_tracker.node_messages import angle_message
-from hasel_tracker.node_parameters import PARAMETERS, SEARCH_NAMES
 from hasel_tracker.sources.video_source import VideoSource
+from hasel_tracker.tracker_node import angle_message
+from hasel_tracker.tracker_parameters import PARAMETERS, SEARCH_NAMES
 from hasel_tracker.tracking.bending_tracker import BendingTracker
 from hasel_tracker.video.video_writer import JpegWriter
 from lifecycle_msgs.msg import Transition

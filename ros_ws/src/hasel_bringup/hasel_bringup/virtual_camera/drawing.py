@@ -2,11 +2,9 @@
 
 import cv2
 import numpy as np
-from hasel_tracker.render.body_shape import BodyShape
-from hasel_tracker.render.camera_view import CameraView
-from hasel_tracker.render.degradation import Degradation
-from hasel_tracker.render.motion import line_through_markers
-from hasel_tracker.render.renderer import Renderer
+from hasel_tracker_lab.rendering.camera_model import CameraView, Degradation
+from hasel_tracker_lab.rendering.renderer import Renderer
+from hasel_tracker_lab.rendering.swimmer_motion import BodyShape, line_through_markers
 
 _JPEG_QUALITY = 92
 

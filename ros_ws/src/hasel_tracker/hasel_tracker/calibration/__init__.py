@@ -1,1 +1,4 @@
-"""Lens and perspective from a board, marker colours from a frame."""
+"""Lens and perspective from a board; the markers' colour, or how a body stands out, from one picture."""
+
+VIEWS_FOR_LENS = 4
+"""Fewest pictures of a board from which the lens is calibrated."""

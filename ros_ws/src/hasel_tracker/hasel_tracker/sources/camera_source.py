@@ -1,17 +1,20 @@
-"""A camera through OpenCV: ask for format and rate, read back what it gives, stamp every frame."""
+"""A camera through OpenCV: what was asked of it, stamped frames, a thread that reads; opened again when unplugged."""
 
+import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.sources.frame import Frame
+from hasel_tracker.sources.frame import DropOldestQueue, Frame
 
 RATE_SHARE = 0.95
 RATE_TOLERANCE = 0.005  # drivers give 119.98 for 120
 LONGEST_CLOCK_DIFFERENCE_S = 2.0
+RETRY_S = 1.0
 
 
 @dataclass(frozen=True)
@@ -105,3 +108,79 @@ class CameraSource:
         if 0.0 <= age_s < LONGEST_CLOCK_DIFFERENCE_S:
             return now_ns - round(age_s * 1e9)
         return now_ns
+
+
+class CaptureThread:
+    """Puts every frame that `read` returns into `queue`, until it returns None or `stop` is called."""
+
+    def __init__(self, read: Callable[[], Frame | None], queue: DropOldestQueue[Frame]) -> None:
+        self._read = read
+        self._queue = queue
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="capture", daemon=True)
+        self.captured = 0
+
+    def start(self) -> None:
+        """Begin to read."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stop after the frame being read, and wait for it."""
+        self._stopping.set()
+        if self._thread.is_alive():
+            self._thread.join(timeout=2.0)
+
+    def _run(self) -> None:
+        try:
+            while not self._stopping.is_set():
+                frame = self._read()
+                if frame is None:
+                    return
+                self.captured += 1
+                self._queue.put(frame)
+        finally:
+            self._queue.close()
+
+
+class PersistentCamera:
+    """Reads from the camera that `open_camera` opens; the first opening raises TrackerError if it fails."""
+
+    def __init__(self, open_camera: Callable[[], CameraSource], retry_s: float = RETRY_S) -> None:
+        self._open = open_camera
+        self._retry_s = retry_s
+        self._closing = threading.Event()
+        self.camera: CameraSource | None = open_camera()
+        self.fault = ""
+
+    def read(self) -> Frame | None:
+        """The next frame; waits for the camera to come back if it is gone; None after `close`."""
+        while not self._closing.is_set():
+            frame = None if self.camera is None else self.camera.read()
+            if frame is not None:
+                self.fault = ""
+                return frame
+            self._reopen()
+        return None
+
+    def close(self) -> None:
+        """Stop waiting for frames."""
+        self._closing.set()
+
+    def release(self) -> None:
+        """Leave the camera to others, once nobody reads any more."""
+        self.close()
+        if self.camera is not None:
+            self.camera.close()
+            self.camera = None
+
+    def _reopen(self) -> None:
+        if self.camera is not None:
+            self.camera.close()
+            self.camera = None
+            self.fault = "The camera stopped sending frames; check its cable."
+        if self._closing.wait(self._retry_s):
+            return
+        try:
+            self.camera = self._open()
+        except TrackerError as error:
+            self.fault = str(error)

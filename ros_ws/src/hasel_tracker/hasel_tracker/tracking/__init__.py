@@ -1,1 +1,5 @@
-"""From an image to three markers and the bending angle."""
+"""From an image to markers, or a midline, and the bending angle; and what a user chooses between, quick to import."""
+
+METHODS = ("contour", "moment", "midline", "apriltag", "csrt")
+DEFAULT_METHOD = "contour"
+BODY_KINDS = ("auto", "light", "dark")

@@ -6,15 +6,14 @@ from typing import Protocol
 import numpy as np
 
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
-from hasel_tracker.choices import DEFAULT_METHOD, METHODS
 from hasel_tracker.errors import TrackerError
+from hasel_tracker.tracking import DEFAULT_METHOD, METHODS
 from hasel_tracker.tracking.apriltag_tracker import AprilTagTracker
-from hasel_tracker.tracking.bending_angle import bending_angle
 from hasel_tracker.tracking.csrt_tracker import CsrtTracker
 from hasel_tracker.tracking.doubt import Doubt
 from hasel_tracker.tracking.marker_contour import measure_contour
 from hasel_tracker.tracking.marker_moment import measure_marker
-from hasel_tracker.tracking.marker_set import MarkerSet
+from hasel_tracker.tracking.marker_set import MarkerSet, bending_angle
 from hasel_tracker.tracking.marker_tracker import MarkerTracker
 from hasel_tracker.tracking.midline_tracker import MidlineTracker
 from hasel_tracker.tracking.tracker_settings import TrackerSettings

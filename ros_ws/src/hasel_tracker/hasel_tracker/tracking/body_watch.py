@@ -4,8 +4,8 @@ import numpy as np
 
 from hasel_tracker.tracking.body_link import BodyLink
 from hasel_tracker.tracking.body_row import misfit
-from hasel_tracker.tracking.head_side import thicker_first
-from hasel_tracker.tracking.lost_markers import links_at
+from hasel_tracker.tracking.head_order import thicker_first
+from hasel_tracker.tracking.marker_search import links_at
 
 LINK_PERIOD_S = 0.25
 

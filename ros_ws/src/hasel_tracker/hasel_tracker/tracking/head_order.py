@@ -1,12 +1,14 @@
-"""Put a row of markers in order, head first, by whatever tells the head; or say that nothing does."""
+"""Which end of a row is the head: what the user says, the body's thickness or the markers' distances tell."""
 
 import numpy as np
 
-from hasel_tracker.tracking.head_side import head_word, nearer_to, on_side, thicker_first
+from hasel_tracker.tracking.body_link import BodyLink
 from hasel_tracker.tracking.marker_row import MarkerRow
+from hasel_tracker.tracking.tracker_settings import head_word
 
 CLEAR_CHORD_RATIO = 1.2
 LOOK_ALIKE = "both halves of the body look alike: say where the head is with --head left, right or X,Y"
+CLEAR_RATIO = 1.5
 
 
 class HeadOrder:
@@ -63,3 +65,27 @@ def as_before(row: MarkerRow, last_seen: np.ndarray) -> MarkerRow:
     """The row in the order in which it is nearer to where the markers were, (m, 2) [px]."""
     apart = [np.linalg.norm(each - last_seen) for each in (row.centres, row.centres[::-1])]
     return row if apart[0] < apart[1] else row.reversed()
+
+
+def on_side(row: np.ndarray, side: str) -> bool:
+    """Whether the first point of `row` (m, 2) [px] is the one on this side of the picture."""
+    axis = 0 if side in ("left", "right") else 1
+    return bool((row[0, axis] <= row[-1, axis]) == (side in ("left", "top")))
+
+
+def nearer_to(row: np.ndarray, point: np.ndarray) -> bool:
+    """Whether the first point of `row` (m, 2) [px] is nearer to `point` (2,) than the last."""
+    return bool(np.linalg.norm(row[0] - point) < np.linalg.norm(row[-1] - point))
+
+
+def thicker_first(links: tuple[BodyLink, ...]) -> bool | None:
+    """Whether the body is thicker towards the first end of the row; None where both halves look alike."""
+    if len(links) < 2:
+        return None
+    place = np.linspace(-1.0, 1.0, len(links))
+    widths = np.array([link.width_px for link in links])
+    slope = float(place @ widths / (place @ place))
+    front, rear = widths.mean() - slope, widths.mean() + slope  # of a line through all
+    if not (min(front, rear) > 0.0 and max(front, rear) > CLEAR_RATIO * min(front, rear)):
+        return None
+    return bool(front > rear)

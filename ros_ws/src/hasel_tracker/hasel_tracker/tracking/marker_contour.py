@@ -11,9 +11,8 @@ from functools import lru_cache
 import cv2
 import numpy as np
 
-from hasel_tracker.tracking.marker_measurement import MarkerMeasurement
-from hasel_tracker.tracking.marker_moment import chroma_axis
-from hasel_tracker.tracking.marker_surroundings import middle_value
+from hasel_tracker.tracking.marker_moment import chroma_axis, middle_value
+from hasel_tracker.tracking.marker_set import MarkerMeasurement
 
 RAYS = 64
 STEP_PX = 0.5

@@ -1,16 +1,21 @@
-"""What is known of the markers from the frames so far: places, speeds, sizes and distances."""
+"""What is known of the markers from the frames so far, which things measured are they, and what gives rise to doubt."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from hasel_tracker.tracking.marker_measurement import MarkerMeasurement
+from hasel_tracker.tracking.doubt import Doubt
+from hasel_tracker.tracking.marker_set import MarkerMeasurement
 
 EXTRAPOLATED_FRAMES = 2
 REACH_MEMORY = 0.98
 REACH_SHARE_OF_CHORD = 0.4
 AREA_MEMORY = 0.02
 CHORD_MEMORY = 0.02
+CHORD_TOLERANCE = (
+    0.1  # a body that keeps its length and turns by 100° shortens its chords by 3 %; the rest is perspective
+)
+RADIUS_TOLERANCE_PX, RADIUS_TOLERANCE = 0.7, 0.05
 
 
 def places(measured: Sequence[MarkerMeasurement | None]) -> np.ndarray:
@@ -63,3 +68,74 @@ class MarkerMemory:
             self.areas = self.areas + AREA_MEMORY * (areas - self.areas)
             chords = np.linalg.norm(np.diff(positions, axis=0), axis=1)
             self.chords_px = self.chords_px + CHORD_MEMORY * (chords - self.chords_px)
+
+
+def quality(measurement: MarkerMeasurement, area: float, radius_px: float) -> float:
+    """One for a full, clear marker of its `area` [px²]; less for one that is cut, merged with something, or noisy."""
+    wider_px = (np.sqrt(measurement.area) - np.sqrt(area)) / np.sqrt(np.pi)
+    size = np.exp(-((wider_px / max(RADIUS_TOLERANCE_PX, RADIUS_TOLERANCE * radius_px)) ** 2))
+    return float(np.clip(size * measurement.solidity * measurement.clarity, 0.0, 1.0))
+
+
+def qualities(measured: Sequence[MarkerMeasurement | None], memory: MarkerMemory) -> np.ndarray:
+    """Quality of each marker (m,); 0 where there is none."""
+    radius_px = memory.radius_px
+    return np.array(
+        [
+            0.0 if each is None else quality(each, area, radius_px)
+            for each, area in zip(measured, memory.areas, strict=True)
+        ]
+    )
+
+
+def accepted(
+    measured: Sequence[MarkerMeasurement | None],
+    predicted: np.ndarray,
+    memory: MarkerMemory,
+    minimum_quality: float,
+) -> np.ndarray:
+    """Which markers count as seen (m,): clear enough, and at their distance from each other."""
+    good = np.array([each is not None for each in measured]) & (
+        qualities(measured, memory) >= minimum_quality
+    )
+    positions = np.where(good[:, None], places(measured), np.nan)
+    residual = np.linalg.norm(positions - predicted, axis=1)
+    return good & ~misplaced(positions, residual, memory.chords_px)
+
+
+def event(positions: np.ndarray, predicted: np.ndarray, memory: MarkerMemory, rivals: bool) -> Doubt:
+    """What happened in this frame: positions (m, 2) [px], NaN where not seen; rivals: something like a marker is
+    about as near as one."""
+    if rivals:
+        return Doubt.AMBIGUOUS
+    seen = np.isfinite(positions[:, 0])
+    if (seen & ~memory.seen).any():
+        return Doubt.FOUND_AGAIN
+    apart = np.linalg.norm(positions - predicted, axis=1)[seen].max(initial=0.0)
+    return Doubt.JUMP if apart > memory.reach_px else Doubt.NONE
+
+
+def misplaced(positions: np.ndarray, residual_px: np.ndarray, chords: np.ndarray) -> np.ndarray:
+    """Which markers (m,) are nowhere near their distance from their neighbours.
+
+    positions: (m, 2) [px]; residual_px: (m,) how far each is from where it was predicted; chords: (m - 1,) [px].
+    """
+    wrong = np.abs(np.linalg.norm(np.diff(positions, axis=0), axis=1) / chords - 1.0) > CHORD_TOLERANCE
+    blame = np.zeros(len(positions), bool)
+    for number in np.flatnonzero(wrong):
+        first, last = number, number + 1
+        if blame[first] or blame[last]:
+            continue
+        votes = [_wrong_chords(wrong, each) for each in (first, last)]
+        if votes[0] != votes[1]:
+            blame[first if votes[0] > votes[1] else last] = True
+        else:
+            blame[
+                first if np.nan_to_num(residual_px[first]) >= np.nan_to_num(residual_px[last]) else last
+            ] = True
+    return blame
+
+
+def _wrong_chords(wrong: np.ndarray, marker: int | np.integer) -> float:
+    """Share of a marker's chords that are wrong."""
+    return float(wrong[max(marker - 1, 0) : marker + 1].mean())

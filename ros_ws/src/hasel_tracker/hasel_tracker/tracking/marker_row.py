@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hasel_tracker.tracking.blobs import Blob
 from hasel_tracker.tracking.body_link import BodyLink
+from hasel_tracker.tracking.marker_finder import Blob
 
 MOST_CANDIDATES = 24
 MOST_ROWS = 400

@@ -6,27 +6,26 @@ from typing import Any
 import numpy as np
 
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.tracking.blobs import Blob
 from hasel_tracker.tracking.body_link import BodyLink, body_link
 from hasel_tracker.tracking.body_row import misfit
 from hasel_tracker.tracking.body_watch import BodyWatch
-from hasel_tracker.tracking.doubt import Doubt
+from hasel_tracker.tracking.doubt import Doubt, Trust
 from hasel_tracker.tracking.head_order import HeadOrder, as_before
-from hasel_tracker.tracking.lost_markers import (
+from hasel_tracker.tracking.marker_finder import Blob, MarkerFinder, Measure
+from hasel_tracker.tracking.marker_memory import MarkerMemory, accepted, event, places, qualities
+from hasel_tracker.tracking.marker_row import rival_near
+from hasel_tracker.tracking.marker_search import (
     Measured,
+    StartSearch,
     found_beside,
     found_together,
     links_at,
+    search_start,
+    whole_frame_blobs,
     without_strangers,
 )
-from hasel_tracker.tracking.marker_finder import MarkerFinder, Measure
-from hasel_tracker.tracking.marker_judgement import accepted, event, qualities
-from hasel_tracker.tracking.marker_memory import MarkerMemory, places
-from hasel_tracker.tracking.marker_row import rival_near
 from hasel_tracker.tracking.marker_set import MarkerSet
-from hasel_tracker.tracking.marker_start import StartSearch, search_start, whole_frame_blobs
 from hasel_tracker.tracking.tracker_settings import TrackerSettings
-from hasel_tracker.tracking.trust import Trust
 
 WIDER_REGION, WIDER_REACH = 3, 1.5
 RIVAL_SHARE = 0.5

@@ -3,12 +3,11 @@
 import numpy as np
 
 from hasel_tracker.tracking.centre_line import CentreLine, centre_line
-from hasel_tracker.tracking.doubt import Doubt
-from hasel_tracker.tracking.head_side import CLEAR_RATIO, head_word, nearer_to, on_side
+from hasel_tracker.tracking.doubt import Doubt, Trust
+from hasel_tracker.tracking.head_order import CLEAR_RATIO, nearer_to, on_side
 from hasel_tracker.tracking.marker_set import MarkerSet
 from hasel_tracker.tracking.silhouette import find_silhouette
-from hasel_tracker.tracking.tracker_settings import TrackerSettings
-from hasel_tracker.tracking.trust import Trust
+from hasel_tracker.tracking.tracker_settings import TrackerSettings, head_word
 
 FORGET_AFTER_S = 1.0
 LENGTH_TOLERANCE = 0.015

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 from hasel_tracker.errors import TrackerError
-from hasel_tracker.sources.open_source import open_recorded
+from hasel_tracker.sources.recorded_source import open_recorded
 from hasel_tracker.sources.video_source import VideoSource
 
 HEIGHT, WIDTH = 96, 128

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from hasel_tracker.tracking.blobs import Blob
 from hasel_tracker.tracking.body_link import BodyLink
-from hasel_tracker.tracking.head_order import HeadOrder, as_before
+from hasel_tracker.tracking.head_order import HeadOrder, as_before, nearer_to, on_side, thicker_first
+from hasel_tracker.tracking.marker_finder import Blob
 from hasel_tracker.tracking.marker_row import MarkerRow
+from hasel_tracker.tracking.tracker_settings import head_word
 
 CENTRES = np.array([[100.0, 300.0], [300.0, 310.0], [600.0, 300.0]])
 
@@ -44,3 +45,27 @@ def test_after_a_moment_the_order_is_the_nearer_one():
     moved = CENTRES + [20.0, -10.0]
     assert as_before(row(30.0, 30.0), moved).centres[0, 0] == 100.0
     assert as_before(row(30.0, 30.0), moved[::-1]).centres[0, 0] == 600.0
+
+
+@pytest.mark.parametrize(
+    ("side", "first"), [("left", True), ("right", False), ("top", False), ("bottom", True)]
+)
+def test_side_as_set(side, first):
+    """A side that is set says which end it is."""
+    row = np.array([[100.0, 300.0], [300.0, 200.0], [500.0, 100.0]])
+    assert on_side(row, side) is first
+
+
+def test_point_near_the_head():
+    """A point that is set says which end is nearer to it."""
+    row = np.array([[100.0, 300.0], [300.0, 200.0], [500.0, 100.0]])
+    assert nearer_to(row, head_word("90,310"))
+    assert not nearer_to(row, head_word("480, 150"))
+    with pytest.raises(ValueError, match="could not convert"):
+        head_word("upwards")
+
+
+@pytest.mark.parametrize("widths", [(30.0, 28.0), (30.0, 21.0), (0.0, 30.0), (float("nan"), 30.0)])
+def test_halves_that_look_alike_are_not_guessed(widths):
+    """Where the two halves are about equally thick, or one cannot be measured, there is no answer."""
+    assert thicker_first(tuple(BodyLink(9.0, width) for width in widths)) is None

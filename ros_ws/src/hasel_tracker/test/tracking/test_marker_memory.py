@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from hasel_tracker.tracking.marker_measurement import MarkerMeasurement
 from hasel_tracker.tracking.marker_memory import MarkerMemory
+from hasel_tracker.tracking.marker_set import MarkerMeasurement
 
 START = np.array([[100.0, 300.0], [300.0, 300.0], [500.0, 300.0]])
 SPEED = np.array([[0.0, 0.0], [60.0, 0.0], [0.0, -120.0]])  # px/s

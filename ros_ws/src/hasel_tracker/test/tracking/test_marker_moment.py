@@ -1,9 +1,9 @@
 import cv2
 import numpy as np
 import pytest
-from hasel_tracker.tracking.blobs import nearest_outline
-from hasel_tracker.tracking.colour_gate import ColourRange
+from hasel_tracker.tracking.marker_finder import nearest_outline
 from hasel_tracker.tracking.marker_moment import measure_marker
+from hasel_tracker.tracking.tracker_settings import ColourRange
 
 MARKER = np.array([168.0, 72.0, 22.0])
 WATER = np.array([198.0, 196.0, 188.0])

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from hasel_tracker.tracking.blobs import Blob
 from hasel_tracker.tracking.body_link import BodyLink
+from hasel_tracker.tracking.marker_finder import Blob
 from hasel_tracker.tracking.marker_row import marker_candidates, possible_rows, rival_near, rows_on_a_body
 from hypothesis import given
 from hypothesis import strategies as st

@@ -1,1 +1,0 @@
-"""The command lines: track, render, calibrate, bench."""

@@ -1,1 +1,0 @@
-"""Pictures of a moving swimmer with known truth, as a camera would take them."""
