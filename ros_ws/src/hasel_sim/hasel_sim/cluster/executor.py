@@ -9,14 +9,19 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError, Executor, Future
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cache, partial
 from typing import Any
+
+from threadpoolctl import threadpool_limits
 
 from hasel_sim.cluster.members import JOIN_S, Members
 from hasel_sim.errors import ClusterError
 
 ANSWER_S = 5.0
 """A scheduler that does not answer for so long when it is first called is none."""
+
+LOSSES = 3
+"""So often a task may lose all workers that it was for: as often as Dask begins one anew whose worker died."""
 
 _WATCH_S = 0.5
 _LOST = (OSError, TimeoutError, CancelledError, asyncio.TimeoutError, asyncio.CancelledError)
@@ -64,16 +69,27 @@ class _Call:
         self._call = call
 
     def __reduce__(self) -> tuple:
-        return self._call, ()
+        return _in_one_thread, (self._call,)
+
+
+def _in_one_thread(call: Callable[[], Any]) -> Any:
+    _one_thread()
+    return call()
+
+
+@cache
+def _one_thread() -> None:
+    threadpool_limits(1)  # as in processes of this machine
 
 
 @dataclass(eq=False)
 class _Sent:
-    payload: bytes
+    payload: bytes = b""
     future: Future = field(default_factory=Future)
     workers: frozenset[str] = frozenset()
     there: Any = None
     """The future of Dask; of one that was sent again, the last."""
+    losses: int = 0
 
 
 class ClusterExecutor(Executor):
@@ -94,9 +110,14 @@ class ClusterExecutor(Executor):
 
     def submit(self, function: Callable, /, *arguments, **keywords) -> Future:
         """A call on one of the workers. Raises ClusterError when they or the scheduler were lost."""
-        payload = pickle.dumps(_Call(partial(function, *arguments, **keywords)), pickle.HIGHEST_PROTOCOL)
-        one = _Sent(payload)
+        one = _Sent()
         one.future.set_running_or_notify_cancel()
+        try:
+            call = _Call(partial(function, *arguments, **keywords))
+            one.payload = pickle.dumps(call, pickle.HIGHEST_PROTOCOL)
+        except Exception as error:  # noqa: BLE001  handed on by the future, as every executor does
+            one.future.set_exception(error)
+            return one.future
         with self._lock:
             if self._error is not None:
                 raise self._error
@@ -111,9 +132,13 @@ class ClusterExecutor(Executor):
     def _send(self, one: _Sent, workers: frozenset[str]) -> None:
         if not workers:
             return  # whoever joins gets it
-        there = self._client.submit(
-            pickle.loads, one.payload, workers=sorted(workers), allow_other_workers=False, pure=False
-        )
+        try:
+            there = self._client.submit(
+                pickle.loads, one.payload, workers=sorted(workers), allow_other_workers=False, pure=False
+            )
+        except (*_LOST, RuntimeError):
+            self._fail(_gone(self._members.address))
+            return
         with self._lock:
             one.workers, one.there = workers, there
         there.add_done_callback(partial(self._ended, one))
@@ -127,14 +152,11 @@ class ClusterExecutor(Executor):
         try:
             result = there.result()
         except KilledWorker:
-            error = ClusterError(
-                f"one simulation was lost with every worker of {self._members.address} that began it, perhaps for lack "
-                "of memory: look at what the workers said last"
-            )
-        except _LOST:
-            self._fail(_gone(self._members.address))
-            return
-        except Exception as raised:  # noqa: BLE001  handed on by the future, as every executor does
+            error = ClusterError(_deadly(self._members.address))
+        except (Exception, asyncio.CancelledError) as raised:  # noqa: BLE001  handed on, as every executor does
+            if there.status != "error":  # not the task's own
+                self._fail(_gone(self._members.address))
+                return
             error = raised
         with self._lock:
             if one not in self._sent:
@@ -171,6 +193,11 @@ class ClusterExecutor(Executor):
         """What may only run on workers that are gone, for those that are there now."""
         with self._lock:
             stranded = [one for one in self._sent if not one.workers & workers]
+            for one in stranded:
+                one.losses += one.there is not None
+        if any(one.losses > LOSSES for one in stranded):
+            self._fail(_deadly(self._members.address))
+            return
         for one in stranded:
             self._send(one, workers)
 
@@ -183,6 +210,13 @@ class ClusterExecutor(Executor):
             lost, self._sent = self._sent, set()
         for one in lost:
             one.future.set_exception(error)
+
+
+def _deadly(address: str) -> str:
+    return (
+        f"a task was lost with every worker of {address} that began it, perhaps for lack of memory: look at what the "
+        "workers said last"
+    )
 
 
 def _gone(address: str) -> str:

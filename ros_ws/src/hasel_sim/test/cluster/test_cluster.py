@@ -1,6 +1,7 @@
 """A cluster that answers, one that cannot, and one that is lost in the middle."""
 
 import os
+import pickle
 import signal
 import time
 
@@ -137,6 +138,18 @@ def test_lost_workers_are_one_sentence_after_a_time_limit(processes, hurried, tm
             pool.submit(abs, -1)
 
 
+def test_a_task_that_kills_its_workers_is_one_sentence(processes, monkeypatch):
+    """Instead of killing all that come after them."""
+    monkeypatch.setattr(executing, "LOSSES", 0)
+    processes.worker()
+    with cluster(processes.address, PACKAGES) as pool:
+        future = pool.submit(os._exit, 1)
+        _until(lambda: pool.workers == 0)
+        processes.worker()
+        with pytest.raises(ClusterError, match=r"lost with every worker of .* that began it"):
+            future.result(timeout=JOINING_S)
+
+
 @pytest.mark.parametrize("ends_by", [signal.SIGKILL, signal.SIGSTOP])
 def test_a_lost_scheduler_is_one_sentence(processes, monkeypatch, tmp_path, ends_by):
     """Whether its process has ended or is silent."""
@@ -156,4 +169,8 @@ def test_an_error_of_a_task_comes_back_as_it_is(processes):
     with cluster(processes.address, PACKAGES) as pool:
         with pytest.raises(ZeroDivisionError):
             pool.submit(divmod, 1, 0).result(timeout=JOINING_S)
+        with pytest.raises(FileNotFoundError):
+            pool.submit(os.stat, "/nowhere").result(timeout=JOINING_S)
+        with pytest.raises((AttributeError, TypeError, pickle.PicklingError)):
+            pool.submit(lambda: 1).result(timeout=JOINING_S)
         assert pool.submit(sum, [1, 2]).result(timeout=JOINING_S) == 3
