@@ -18,7 +18,16 @@ from hasel_benchmark.errors import BenchmarkError
 
 WORKERS = (1, 2)
 BAR = 1.7
-SWIMS = ("--model", "swimmer_in_oil", "--voltage", "5500", "--frequency", "1:8:0.5", "--duration", "10")
+SWIMS = (
+    "--model",
+    "swimmer_in_oil",
+    "--voltage",
+    "3500,4500,5500",
+    "--frequency",
+    "1:10:0.25",
+    "--duration",
+    "10",
+)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import pickle
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import CancelledError, Executor, Future
+from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache, partial
@@ -40,10 +40,13 @@ def cluster(address: str, packages: Sequence[str]) -> Iterator["ClusterExecutor"
     logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what is lost is told in a sentence here
     logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
     try:
+        # in a thread: a notebook's own has a loop; Client would wait for ever for what takes calls and says nothing
+        with ThreadPoolExecutor(1) as thread:
+            thread.submit(asyncio.run, _answers(address)).result()
         client = Client(address, timeout=ANSWER_S)
-    except (OSError, TimeoutError, ValueError) as error:
+    except (*_LOST, TypeError, ValueError) as error:  # TypeError: encrypted, without keys
         raise ClusterError(
-            f"no Dask scheduler answers at '{address}' ({error}); expected an address such as "
+            f"no Dask scheduler answers at '{address}' ({str(error) or 'silent'}); expected an address such as "
             "tcp://127.0.0.1:8786: start one with 'dask scheduler'"
         ) from None
     with client:
@@ -57,6 +60,13 @@ def cluster(address: str, packages: Sequence[str]) -> Iterator["ClusterExecutor"
             yield pool
         finally:
             pool.shutdown()
+
+
+async def _answers(address: str) -> None:
+    from distributed.core import rpc
+
+    async with rpc(address, timeout=ANSWER_S) as scheduler:
+        await asyncio.wait_for(scheduler.identity(n_workers=0), ANSWER_S)
 
 
 class _Call:

@@ -3,6 +3,7 @@
 import os
 import pickle
 import signal
+import socket
 import time
 
 import numpy as np
@@ -66,6 +67,17 @@ def _until(reached) -> None:
     while not reached():
         assert time.monotonic() < end
         time.sleep(0.05)
+
+
+def test_what_takes_calls_and_says_nothing_is_no_scheduler(monkeypatch):
+    """Another program at the address, after a time limit."""
+    monkeypatch.setattr(executing, "ANSWER_S", 0.5)
+    with socket.socket() as silent:
+        silent.bind(("127.0.0.1", 0))
+        silent.listen()
+        address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
+        with pytest.raises(ClusterError, match="no Dask scheduler answers at"), cluster(address, PACKAGES):
+            pass
 
 
 def test_a_scheduler_without_workers_is_one_sentence(processes, hurried):
