@@ -3,7 +3,7 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help build test test-computing test-timed test-slow fuzz lint format docs demo bench bench-far bench-hidden soak clean
+.PHONY: help build test test-computing test-timed test-slow fuzz lint format docs demo bench bench-cluster bench-far bench-hidden soak clean
 
 ENVIRONMENT := . setup/environment.bash
 PACKAGES := hasel_common hasel_recording hasel_driver hasel_tracker hasel_sim hasel_tracker_lab hasel_sysid hasel_muscle hasel_workbench hasel_bringup hasel_benchmark
@@ -65,6 +65,9 @@ bench-hidden: build ## measure how often the right hidden effect is named
 
 bench-fits: build ## measure how often a fit ends as likely as the truth
 	@bin/ros2-run hasel_benchmark bench_fits
+
+bench-cluster: build ## measure how much sooner two workers of a Dask cluster answer than one
+	@bin/ros2-run hasel_benchmark bench_cluster
 
 bench-far: build ## measure how often a constant that is far off is named
 	@bin/ros2-run hasel_benchmark bench_far

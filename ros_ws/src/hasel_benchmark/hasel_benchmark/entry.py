@@ -8,6 +8,12 @@ from hasel_common.node_usage import user_arguments
 
 
 @command
+def bench_cluster() -> int:
+    """`bench_cluster`: how much sooner do two workers answer than one?"""
+    return _run("bench_cluster")
+
+
+@command
 def bench_far() -> int:
     """`bench_far`: is a constant that is far off named?"""
     return _run("bench_far")

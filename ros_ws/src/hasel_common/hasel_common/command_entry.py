@@ -7,6 +7,7 @@ import sys
 import tempfile
 import traceback
 from collections.abc import Callable
+from concurrent.futures import BrokenExecutor
 from concurrent.futures.process import BrokenProcessPool
 from datetime import datetime
 from functools import wraps
@@ -72,6 +73,8 @@ def in_a_sentence(
         return _refuse(
             "a worker process ended early, perhaps for lack of memory; try again with --jobs 1", code
         )
+    except BrokenExecutor as error:  # of a cluster: a sentence itself
+        return _refuse(str(error), code)
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0

@@ -1,5 +1,7 @@
 """What can go wrong when a model is described or simulated; every message is one sentence with a next step."""
 
+from concurrent.futures import BrokenExecutor
+
 
 class HaselSimError(Exception):
     """Base of every error this package raises on purpose."""
@@ -15,3 +17,7 @@ class OwnCodeError(ModelError):
 
 class SimulationError(HaselSimError):
     """A simulation that could not be carried out or did not converge."""
+
+
+class ClusterError(BrokenExecutor):
+    """A Dask cluster that cannot compute; no HaselSimError, which says of one model that it cannot be simulated."""

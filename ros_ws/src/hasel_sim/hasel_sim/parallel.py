@@ -18,10 +18,11 @@ from typing import TypeVar
 
 from threadpoolctl import threadpool_limits
 
+from hasel_sim.cluster.executor import cluster
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 from hasel_sim.run import Run, Simulation
-from hasel_sim.simd import LANES
+from hasel_sim.side_by_side import side_by_side
 from hasel_sim.simulate import kind_of, simulate_many
 from hasel_sim.turns import Turns
 
@@ -63,33 +64,32 @@ def worker_count(jobs: int | None) -> int:
     return int(jobs)
 
 
+PACKAGES = ("hasel_common", "hasel_sim")
+"""What takes part in a simulation; a worker of a cluster must have the same sources of it."""
+
+
 @contextmanager
-def executor(jobs: int | None = None, scheduler: str | None = None) -> Iterator[Executor]:
+def executor(
+    jobs: int | None = None, scheduler: str | None = None, packages: Sequence[str] = PACKAGES
+) -> Iterator[Executor]:
     """An executor for simulations: `jobs` processes (default: one per core), or the Dask scheduler at an address.
 
-    Linear algebra has one thread, here and in every process: its matrices are small, and on a machine that has other
-    work its threads wait for each other several times as long as they work. Raises SimulationError when the scheduler
-    cannot be reached.
+    packages: whose functions are called; only workers of the cluster that have the same sources get work. Linear
+    algebra has one thread, here and in every process: its matrices are small, and on a machine that has other
+    work its threads wait for each other several times as long as they work. Raises ClusterError when the scheduler
+    cannot be reached or none of its workers fits; the futures raise it when all workers or the scheduler are lost.
     """
-    with threadpool_limits(1), _executor(jobs, scheduler) as pool:
+    with threadpool_limits(1), _executor(jobs, scheduler, packages) as pool:
         yield pool
 
 
 @contextmanager
-def _executor(jobs: int | None, scheduler: str | None) -> Iterator[Executor]:
+def _executor(jobs: int | None, scheduler: str | None, packages: Sequence[str]) -> Iterator[Executor]:
     if scheduler is not None:
-        from distributed import Client
-
-        try:
-            client = Client(scheduler, timeout="5s")
-        except (OSError, TimeoutError, ValueError) as error:
-            raise SimulationError(
-                f"no Dask scheduler answers at '{scheduler}' ({error}); expected an address such as "
-                "tcp://127.0.0.1:8786: start one with 'dask scheduler'"
-            ) from None
-        with client, client.get_executor() as pool:
-            workers = max(1, len(client.nthreads()))
-            yield Turns(pool, workers) if workers > 1 else pool
+        with cluster(scheduler, packages) as workers:
+            turns = Turns(workers, workers.workers)
+            workers.resized = turns.resize
+            yield turns
         return
     count = worker_count(jobs)
     if count == 1:
@@ -135,18 +135,17 @@ def submit_each(
         alike.setdefault((kind_of(model), tuple(names)), []).append(number)
     share = -(-len(models) * len(runs) // getattr(pool, "workers", 1))
     for (_, names), numbers in alike.items():
-        for batch in _batches(numbers, runs, min(LANES[-1], max(1, share))):
+        for batch in side_by_side(_by_length(numbers, runs), share):
             asked = [futures[model][run] for model, run in batch]
             done = pool.submit(simulate_many, [(models[model], runs[run]) for model, run in batch], names)
             done.add_done_callback(partial(_hand_on, futures=asked))
     return futures
 
 
-def _batches(models: Sequence[int], runs: Sequence[Run], size: int) -> list[list[tuple[int, int]]]:
-    """Numbers of the models and runs to simulate side by side: of like length, the longest first."""
+def _by_length(models: Sequence[int], runs: Sequence[Run]) -> list[tuple[int, int]]:
+    """Numbers of the models and runs to simulate, the longest first: those side by side are of like length."""
     cases = [(model, run) for model in models for run in range(len(runs))]
-    cases.sort(key=lambda case: -len(runs[case[1]].time))
-    return [cases[first : first + size] for first in range(0, len(cases), size)]
+    return sorted(cases, key=lambda case: -len(runs[case[1]].time))
 
 
 def _hand_on(batch: Future, futures: Sequence[Future]) -> None:

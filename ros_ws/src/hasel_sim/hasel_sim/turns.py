@@ -34,7 +34,7 @@ class Turns(Executor):
     """
 
     def __init__(self, pool: Executor, workers: int) -> None:
-        """workers: how many tasks the executor works on at once, two or more."""
+        """workers: how many tasks the executor works on at once; nothing is foreseen by one."""
         self.workers, self._pool = workers, pool
         self._lock, self._of_thread = threading.Lock(), threading.local()
         self._waiting: list[_Task] = []
@@ -73,6 +73,12 @@ class Turns(Executor):
         """Somebody waits for it: it goes before all that is only foreseen."""
         with self._lock:
             turn.place = _ASKED
+        self._hand_on()
+
+    def resize(self, workers: int) -> None:
+        """The executor works on so many tasks at once from now on."""
+        with self._lock:
+            self.workers = workers
         self._hand_on()
 
     def give_up(self, turn: Turn) -> None:

@@ -3,9 +3,8 @@
 import subprocess
 import sys
 
-import numpy as np
 import pytest
-from hasel_sim.errors import ModelError, SimulationError
+from hasel_sim.errors import ClusterError, ModelError
 from hasel_sim.parallel import SerialExecutor, executor, simulate_all, submit_each
 from hasel_sim.simulate import simulate
 
@@ -75,20 +74,7 @@ def test_workers_end_with_a_parent_that_is_killed():
 def test_a_scheduler_that_does_not_answer_is_reported():
     """One sentence with the address and what to start."""
     with (
-        pytest.raises(SimulationError, match="no Dask scheduler answers at"),
+        pytest.raises(ClusterError, match="no Dask scheduler answers at"),
         executor(scheduler="tcp://127.0.0.1:1"),
     ):
         pass
-
-
-def test_a_dask_scheduler_gives_the_same(swimmer, boxes):
-    """A cluster on this machine."""
-    from distributed import LocalCluster
-
-    with (
-        LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster,
-        executor(scheduler=cluster.scheduler_address) as pool,
-    ):
-        found = simulate_all(pool, swimmer, [boxes(duration=0.1)])
-    assert found[0].sin_theta == pytest.approx(simulate(swimmer, boxes(duration=0.1)).sin_theta, abs=1e-9)
-    assert np.isfinite(found[0].sin_theta).all()

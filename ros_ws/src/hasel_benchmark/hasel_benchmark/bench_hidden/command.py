@@ -8,6 +8,7 @@ from pathlib import Path
 
 from hasel_sim.errors import ModelError, SimulationError
 from hasel_sim.parallel import executor, worker_count
+from hasel_sysid.command_line.workers import PACKAGES as IDENTIFYING
 
 from hasel_benchmark.bench_hidden.case import Case
 from hasel_benchmark.bench_hidden.case_list import list_cases, quick_cases
@@ -18,6 +19,8 @@ from hasel_benchmark.bench_hidden.page import as_json, as_markdown, outcomes_of
 from hasel_benchmark.bench_hidden.paired import group_sizes, paired, times
 from hasel_benchmark.bench_hidden.run_cases import run_cases
 from hasel_benchmark.errors import BenchmarkError
+
+PACKAGES = (*IDENTIFYING, "hasel_bringup", "hasel_benchmark")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -50,7 +53,7 @@ def _bench(options: argparse.Namespace) -> int:
     outcomes: list[Outcome] = []
     stopped = False
     try:
-        with executor(options.jobs, options.scheduler) as pool:
+        with executor(options.jobs, options.scheduler, PACKAGES) as pool:
             at_once = _at_once(options, cases)
             cores = worker_count(options.jobs) if options.alone else 1
             for outcome in run_cases(cases, explain, pool, options.output, _say, at_once, known, cores):

@@ -2,7 +2,7 @@
 
 import csv
 import hashlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, as_completed
 from dataclasses import astuple, dataclass, fields
 from pathlib import Path
@@ -10,7 +10,7 @@ from pathlib import Path
 from hasel_sim.errors import HaselSimError, ModelError
 from hasel_sim.model import Model
 from hasel_sim.model.read import model_text
-from hasel_sim.simd import LANES
+from hasel_sim.side_by_side import side_by_side
 from hasel_sim.simulate import simulate_many
 from hasel_sim.swimming.boxes import Boxes
 from hasel_sim.swimming.free_swim import check_swimmer, measured
@@ -129,10 +129,8 @@ def sweep(
     known = dict(ledger.known) if ledger else {}
     missing = [drive for drive in dict.fromkeys(drives) if drive not in known]
     done(len(set(drives)) - len(missing))
-    batches = [
-        pool.submit(swim_together, model, part, duration)
-        for part in _batches(missing, getattr(pool, "workers", 1))
-    ]
+    share = -(-len(missing) // getattr(pool, "workers", 1))
+    batches = [pool.submit(swim_together, model, part, duration) for part in side_by_side(missing, share)]
     for batch in as_completed(batches):
         swam = batch.result()
         known |= {one.drive: one for one in swam}
@@ -140,10 +138,3 @@ def sweep(
             ledger.add(swam)
         done(len([drive for drive in set(drives) if drive in known]))
     return [known[drive] for drive in drives]
-
-
-def _batches(drives: Sequence[Boxes], workers: int) -> Iterator[Sequence[Boxes]]:
-    """As many side by side as the lanes take, but work for every process."""
-    size = min(LANES[-1], max(1, -(-len(drives) // workers)))
-    for first in range(0, len(drives), size):
-        yield drives[first : first + size]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hasel_common.progress import part, progress_bar
+from hasel_sim.errors import ClusterError
 from hasel_sim.model import Model, save_model
 
 from hasel_sysid.command_line.best_so_far import BestSoFar
@@ -52,7 +53,7 @@ def _fit(options: argparse.Namespace) -> int:
             result = identify(problem, given.model, options.method, part(progress, "", 0.0, 0.9))
             label, last = f"{given.label}, fitted", part(progress, "", 0.95, 1.0)
             comparison = compare(result.model, given.experiments, pool, given.unseen, label, last)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, ClusterError):
         if problem is not None and problem.best is not None:
             path = _save(given.model.with_values(problem.best.model.values), options.output)
             print(f"wrote the best model so far, without uncertainties, to {path}", file=sys.stderr)

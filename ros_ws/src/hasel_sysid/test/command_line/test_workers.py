@@ -1,11 +1,10 @@
 """On how many cores a command computes."""
 
 import os
+from contextlib import contextmanager
 from types import SimpleNamespace
 
-import pytest
 from hasel_sysid.command_line import workers
-from hasel_sysid.errors import SysidError
 
 
 def test_only_the_cores_that_may_be_used_count(monkeypatch):
@@ -20,27 +19,16 @@ def test_only_the_cores_that_may_be_used_count(monkeypatch):
     assert workers.usable_cores() == 2
 
 
-@pytest.mark.parametrize(
-    ("known", "has", "said"),
-    [(0, {}, "has no worker; start one with"), (1, {"tcp://a:1": False}, "have not got this code")],
-)
-def test_a_cluster_is_asked_first(monkeypatch, known, has, said):
-    """Without workers, or with workers that lack the code, one sentence instead of waiting for ever."""
+def test_a_cluster_must_have_the_sources_of_what_is_called_there(monkeypatch):
+    """Those of identification too."""
+    asked = {}
 
-    class Client:
-        def __init__(self, *_, **__): ...
-        def __enter__(self):
-            return self
+    @contextmanager
+    def executor(jobs, scheduler, packages):
+        asked.update(scheduler=scheduler, packages=packages)
+        yield
 
-        def __exit__(self, *_): ...
-        def wait_for_workers(self, *_, **__):
-            if not known:
-                raise TimeoutError
-
-        def run(self, *_):
-            return has
-
-    monkeypatch.setattr("distributed.Client", Client)
-    options = SimpleNamespace(jobs=None, scheduler="tcp://127.0.0.1:8786")
-    with pytest.raises(SysidError, match=said), workers.workers(options):
-        pass
+    monkeypatch.setattr(workers, "executor", executor)
+    with workers.workers(SimpleNamespace(jobs=None, scheduler="tcp://127.0.0.1:8786")):
+        assert asked["scheduler"] == "tcp://127.0.0.1:8786"
+    assert {"hasel_common", "hasel_recording", "hasel_sim", "hasel_sysid"} == set(asked["packages"])

@@ -1,0 +1,1 @@
+"""How much sooner two workers of a Dask cluster answer than one."""
