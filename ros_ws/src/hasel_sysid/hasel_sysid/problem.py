@@ -4,16 +4,18 @@ A series is one output of one run. All outputs are in one unit and of one noise 
 """
 
 from collections.abc import Collection, Iterator, Sequence
-from concurrent.futures import Executor
+from concurrent.futures import Executor, Future
+from contextlib import AbstractContextManager
 from copy import copy
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
+from hasel_common.workload import Stage, Workload
 from hasel_sim.errors import ModelError, SimulationError
 from hasel_sim.model import Model
 from hasel_sim.parallel import submit_each
-from hasel_sim.run import Simulation
+from hasel_sim.run import Run, Simulation
 
 from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment
@@ -101,6 +103,8 @@ class Evaluation:
         return self.simulated() + self.residual
 
 
+_DERIVATIVE = 0.5
+"""Time that a derivative takes, of that of a simulation without any."""
 _CLOSE = 0.15
 """Share of the motion up to which an error changes the motion to first order only."""
 
@@ -119,9 +123,10 @@ class Problem:
         pool: Executor,
         noise: NoiseModel | None = None,
         time_limit: TimeLimit | None = None,
+        workload: Workload | None = None,
     ) -> None:
         """noise: of the measured outputs, where it is known; otherwise it is looked for in the recordings.
-        time_limit: of the search for an explanation, whose parts look at it themselves.
+        time_limit: of the search for an explanation, whose parts look at it themselves; workload: counts simulations.
         """
         if not experiments:
             raise SysidError("no recording was given; expected at least one: name .csv or .mcap files")
@@ -129,6 +134,7 @@ class Problem:
         self.evaluations = 0
         self._noise = noise
         self.time_limit = time_limit or TimeLimit()
+        self.workload = workload or Workload()
 
     @cached_property
     def measured_noise(self) -> NoiseModel | None:
@@ -167,6 +173,14 @@ class Problem:
             out.__dict__.pop(measured, None)
         return out
 
+    def work(self, model: Model, names: Sequence[str] = ()) -> float:
+        """Of simulating every run with derivatives by so many parameters, in proportion to the time that it takes."""
+        return work_of(model, [experiment.run for experiment in self.experiments], len(names))
+
+    def stage(self, stage: Stage, model: Model) -> AbstractContextManager[None]:
+        """Meanwhile this stage of the workload is worked on; model: one of those that it simulates."""
+        return self.workload.stage(stage, self.work(model))
+
     def evaluate(self, model: Model, names: Sequence[str] = ()) -> Evaluation:
         """Simulate every run with the model, with derivatives by the named parameters."""
         result = self.evaluate_each([model], [names])[0]
@@ -178,8 +192,12 @@ class Problem:
         self, models: Sequence[Model], names: Sequence[Sequence[str]]
     ) -> list[Evaluation | SimulationError]:
         """Several models at once, so that all workers stay busy; the error of one that cannot be simulated."""
+        self.workload.check()
         pending = submit_each(self.pool, models, [e.run for e in self.experiments], names)
         self.evaluations += len(models)
+        for model, by, futures in zip(models, names, pending, strict=True):
+            for experiment, future in zip(self.experiments, futures, strict=True):
+                future.add_done_callback(partial(self._count, work_of(model, [experiment.run], len(by))))
         results: list[Evaluation | SimulationError] = []
         for model, by, futures in zip(models, names, pending, strict=True):
             try:
@@ -189,6 +207,9 @@ class Problem:
             except ModelError as error:  # values with which this body cannot be built
                 results.append(SimulationError(str(error)))
         return results
+
+    def _count(self, work: float, _future: Future) -> None:
+        self.workload.did(work)
 
     def _collect(self, model: Model, names: tuple[str, ...], simulations: list[Simulation]) -> Evaluation:
         residuals, jacobians, runs, offsets, measured_at = [], [], [], [], []
@@ -229,6 +250,13 @@ class Problem:
         )
 
 
+def work_of(model: Model, runs: Sequence[Run], derivatives: int = 0) -> float:
+    """Of simulating runs with so many derivatives, in proportion to the time that it takes: elements times steps."""
+    numerics = model.description.numerics
+    duration_s = sum(float(run.time[-1] - run.start) for run in runs)
+    return numerics.mesh_density * numerics.steps_per_second * duration_s * (1.0 + _DERIVATIVE * derivatives)
+
+
 def low_fidelity(model: Model) -> Model:
     """The model at half the cost: seven tenths of the mesh density, reduced quadrature and half the steps."""
     numerics = model.description.numerics
@@ -265,7 +293,7 @@ class LowFidelityProblem(Problem):
 
     def __init__(self, of: Problem, known: Evaluation) -> None:
         """known: a model, evaluated by `of`."""
-        super().__init__(of.experiments, of.pool, of.measured_noise, of.time_limit)
+        super().__init__(of.experiments, of.pool, of.measured_noise, of.time_limit, of.workload)
         self.known, self._of, self._lower = known, of, of.low_fidelity
         self._error: np.ndarray | float = 0.0
         try:

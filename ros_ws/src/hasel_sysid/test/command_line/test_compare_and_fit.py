@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hasel_common.workload import Workload
 from hasel_recording import Recording, read_recording, write_recording
 from hasel_sim.model import load_model, save_model
 from hasel_sysid.command_line import compare, convert, fit
@@ -193,14 +194,14 @@ def interrupted_after(monkeypatch):
 
     def interrupt(command, calls: int) -> None:
         @contextmanager
-        def bar(title: str):
+        def bar(title: str, plan, usual_speed: float):
             left = iter(range(calls))
 
             def show(text: str, share: float) -> None:
                 if next(left, None) is None:
                     raise KeyboardInterrupt
 
-            yield show
+            yield Workload(plan, tell=show)
 
         monkeypatch.setattr(command, "progress_bar", bar)
 

@@ -1,0 +1,160 @@
+"""How far a long work has come: what is done now, how many of how many, and the time left by what was measured."""
+
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import timedelta
+
+Show = Callable[[str, float], None]
+"""Called with a line of text and the share done, 0 to 1."""
+
+_MEASURED_S = 1.0
+"""What the usual speed counts beside the one that is measured: as much as so long a time of work."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A part of a work. text: what is done; work: how much of it there usually is; chance: of its being reached where
+    the stage before it was; known: whether it is neither more nor less than that.
+    """
+
+    text: str
+    work: float = 0.0
+    chance: float = 1.0
+    known: bool = False
+
+
+@dataclass(frozen=True)
+class HowFar:
+    """stage: what is done now; done, of: how many were finished, and are expected in all (0: nothing tells it yet);
+    units: what is counted; share: of the work, 0 to 1; left_s: time left [s], None where nothing tells it yet.
+    """
+
+    stage: str
+    done: int
+    of: int
+    units: str
+    share: float
+    left_s: float | None
+
+    def __str__(self) -> str:
+        of = f" of {self.of}" if self.of else ""
+        counted = f"{self.done}{of} {self.units}" if self.done else ""
+        left = "" if self.left_s is None else f"about {timedelta(seconds=round(self.left_s))} left"
+        return ", ".join(filter(None, [self.stage, counted, left]))
+
+
+class Workload:
+    """Counts what is done, and expects as much more as usually follows the stage that was reached.
+
+    Who works begins stages and counts; who shows it looks at any time, from any thread.
+    """
+
+    def __init__(
+        self,
+        plan: Sequence[Stage] = (),
+        units: str = "simulations",
+        usual_speed: float | None = None,
+        tell: Show | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """plan: the stages in their order; units: what is counted; usual_speed: work per second before any is measured;
+        tell: called by `check`, and may raise there to break the work off; clock: tells the time [s].
+        """
+        self._plan, self._units, self._usual_speed, self._tell = tuple(plan), units, usual_speed, tell
+        self._clock, self._lock = clock, threading.Lock()
+        self._texts: list[str] = []
+        self._here, self._size, self._before = Stage(""), 1.0, 0.0
+        self._after = _expected(self._plan)
+        self._done, self._work, self._share = 0, 0.0, 0.0
+        self._first: tuple[float, float] | None = None
+
+    @contextmanager
+    def stage(self, stage: Stage, size: float = 1.0) -> Iterator[None]:
+        """Meanwhile a stage is worked on; size: work of this and all later stages in units of what the plan tells.
+
+        One of the plan's is as the plan has it, unless it is known now. A stage within another one is a part of it, and
+        lends its text only.
+        """
+        outermost = not self._texts
+        with self._lock:
+            self._texts.append(stage.text)
+            if outermost:
+                self._size, self._before = size, self._work
+                number = next((n for n, one in enumerate(self._plan) if one.text == stage.text), None)
+                self._here = stage if number is None or stage.known else self._plan[number]
+                if number is not None:
+                    self._after = _expected(self._plan[number + 1 :])
+        try:
+            self.check()
+            yield
+        finally:
+            with self._lock:
+                self._texts.pop()
+                if outermost:
+                    self._here = Stage("")
+
+    def did(self, work: float = 1.0) -> None:
+        """Count one more, and the work that it was."""
+        with self._lock:
+            self._done += 1
+            self._work += work
+            if self._first is None:  # what went before it was the start of processes more than work
+                self._first = self._clock(), self._work
+
+    def check(self) -> None:
+        """Tell how far it is: called between pieces of work, and raises where they are no longer wanted."""
+        if self._tell:
+            now = self.now()
+            self._tell(str(now), now.share)
+
+    def counting(self, count: int, work: float) -> Show:
+        """Counts a part of so many pieces, `work` in all, by the share done that it is told."""
+        counted = 0
+
+        def show(_text: str, share: float) -> None:
+            nonlocal counted
+            for _ in range(round(share * count) - counted):
+                self.did(work / count)
+                counted += 1
+            self.check()
+
+        return show
+
+    def now(self) -> HowFar:
+        """How far it is; the share never goes back, the time left follows what turns out."""
+        with self._lock:
+            stage, rest = ": ".join(self._texts), self._rest()
+            if not self._plan:
+                return HowFar(stage, self._done, 0, self._units, 0.0, None)
+            whole = self._work + rest
+            self._share = max(self._share, self._work / whole if whole else 0.0)
+            of = round(self._done * whole / self._work) if self._work else 0
+            return HowFar(stage, self._done, of, self._units, self._share, self._left(rest))
+
+    def _rest(self) -> float:
+        """Work that is still expected. Of a stage that takes as much as it usually does half as much again may come."""
+        usual, done = self._here.work * self._size, self._work - self._before
+        here = max(usual - done, 0.0) if self._here.known or not usual else usual**2 / (usual + done)
+        return here + self._after * self._size
+
+    def _left(self, rest: float) -> float | None:
+        """Seconds for the rest, at the speed since the first piece was done."""
+        seconds = work = 0.0
+        if self._first is not None:
+            began, before = self._first
+            seconds, work = self._clock() - began, self._work - before
+        if self._usual_speed is not None:
+            seconds, work = seconds + _MEASURED_S, work + _MEASURED_S * self._usual_speed
+        return rest * seconds / work if work else None
+
+
+def _expected(stages: Sequence[Stage]) -> float:
+    """Work of the stages, each as likely as it is to be reached."""
+    found, chance = 0.0, 1.0
+    for stage in stages:
+        chance *= stage.chance
+        found += chance * stage.work
+    return found
