@@ -13,6 +13,9 @@ Show = Callable[[str, float], None]
 _MEASURED_S = 1.0
 """What the usual speed counts beside the one that is measured: as much as so long a time of work."""
 
+_STILL = 0.25
+"""Share of its usual work that is expected of a stage that goes on although it has done so much."""
+
 
 @dataclass(frozen=True)
 class Stage:
@@ -29,18 +32,20 @@ class Stage:
 @dataclass(frozen=True)
 class HowFar:
     """stage: what is done now; done, of: how many were finished, and are expected in all (0: nothing tells it yet);
-    units: what is counted; share: of the work, 0 to 1; left_s: time left [s], None where nothing tells it yet.
+    certain: whether it will be so many; units: what is counted; share: of the work, 0 to 1; left_s: time left [s], None
+    where nothing tells it yet.
     """
 
     stage: str
     done: int
     of: int
+    certain: bool
     units: str
     share: float
     left_s: float | None
 
     def __str__(self) -> str:
-        of = f" of {self.of}" if self.of else ""
+        of = f" of {'' if self.certain else 'about '}{self.of}" if self.of else ""
         counted = f"{self.done}{of} {self.units}" if self.done else ""
         left = "" if self.left_s is None else f"about {timedelta(seconds=round(self.left_s))} left"
         return ", ".join(filter(None, [self.stage, counted, left]))
@@ -66,26 +71,31 @@ class Workload:
         self._plan, self._units, self._usual_speed, self._tell = tuple(plan), units, usual_speed, tell
         self._clock, self._lock = clock, threading.Lock()
         self._texts: list[str] = []
-        self._here, self._size, self._before = Stage(""), 1.0, 0.0
+        self._here, self._before = Stage(""), 0.0
         self._after = _expected(self._plan)
         self._done, self._work, self._share = 0, 0.0, 0.0
         self._first: tuple[float, float] | None = None
 
-    @contextmanager
-    def stage(self, stage: Stage, size: float = 1.0) -> Iterator[None]:
-        """Meanwhile a stage is worked on; size: work of this and all later stages in units of what the plan tells.
+    def expect(self, plan: Sequence[Stage]) -> None:
+        """Go by this plan from now on."""
+        with self._lock:
+            self._plan, self._after = tuple(plan), _expected(plan)
 
-        One of the plan's is as the plan has it, unless it is known now. A stage within another one is a part of it, and
-        lends its text only.
+    @contextmanager
+    def stage(self, stage: Stage) -> Iterator[None]:
+        """Meanwhile a stage is worked on.
+
+        One of the plan's texts is as the plan has it, unless it is known now. A stage within another one is a part of
+        it, and lends its text only.
         """
         outermost = not self._texts
         with self._lock:
             self._texts.append(stage.text)
             if outermost:
-                self._size, self._before = size, self._work
                 number = next((n for n, one in enumerate(self._plan) if one.text == stage.text), None)
-                self._here = stage if number is None or stage.known else self._plan[number]
+                self._here, self._before = stage, self._work
                 if number is not None:
+                    self._here = stage if stage.known else self._plan[number]
                     self._after = _expected(self._plan[number + 1 :])
         try:
             self.check()
@@ -110,35 +120,22 @@ class Workload:
             now = self.now()
             self._tell(str(now), now.share)
 
-    def counting(self, count: int, work: float) -> Show:
-        """Counts a part of so many pieces, `work` in all, by the share done that it is told."""
-        counted = 0
-
-        def show(_text: str, share: float) -> None:
-            nonlocal counted
-            for _ in range(round(share * count) - counted):
-                self.did(work / count)
-                counted += 1
-            self.check()
-
-        return show
-
     def now(self) -> HowFar:
         """How far it is; the share never goes back, the time left follows what turns out."""
         with self._lock:
             stage, rest = ": ".join(self._texts), self._rest()
             if not self._plan:
-                return HowFar(stage, self._done, 0, self._units, 0.0, None)
+                return HowFar(stage, self._done, 0, False, self._units, 0.0, None)
             whole = self._work + rest
             self._share = max(self._share, self._work / whole if whole else 0.0)
             of = round(self._done * whole / self._work) if self._work else 0
-            return HowFar(stage, self._done, of, self._units, self._share, self._left(rest))
+            certain = self._here.known and not self._after
+            return HowFar(stage, self._done, of, certain, self._units, self._share, self._left(rest))
 
     def _rest(self) -> float:
-        """Work that is still expected. Of a stage that takes as much as it usually does half as much again may come."""
-        usual, done = self._here.work * self._size, self._work - self._before
-        here = max(usual - done, 0.0) if self._here.known or not usual else usual**2 / (usual + done)
-        return here + self._after * self._size
+        """Work that is still expected."""
+        usual, done = self._here.work, self._work - self._before
+        return max(usual - done, 0.0 if self._here.known else _STILL * usual) + self._after
 
     def _left(self, rest: float) -> float | None:
         """Seconds for the rest, at the speed since the first piece was done."""

@@ -51,7 +51,7 @@ def _bench(options: argparse.Namespace) -> None:
         _fit_only(fitted, unseen, muscle, options, console)
         return
     candidates = len(options.effects or muscle_catalogue())
-    with progress_bar("fit", plan_of_search(candidates), "evaluations") as fitted.workload:
+    with progress_bar("fit", plan_of_search(1.0, candidates), "evaluations") as fitted.workload:
         found = improve_muscle(fitted, muscle, unseen, options.effects or None)
     fails = where_it_fails(fitted, found.stages[1].muscle)
     rival = rival_table(fitted, unseen, found.muscle) if unseen is not None else None

@@ -7,21 +7,21 @@ from hasel_common.workload import Stage
 
 START = Stage("start", 1.0, known=True)
 FIT = Stage("fit", 15.0)
-SET_UP = Stage("faults of the set-up", 5.0)
+SET_UP = Stage("faults of the set-up", 18.0)
 BEGINNINGS = Stage("first of the beginning of every run")
-TYPICAL = Stage("every effect at its typical size", 25.0)
-ALONE = Stage("every effect alone", 30.0, chance=0.8)
-OTHER_SIZES = Stage("every effect alone, from all other sizes", 30.0, chance=0.3)
-NUMBERS = Stage("every number of the model file", 5.0)
-NUMBERS_ALONE = Stage("every number of the model file alone", 30.0)
-NUMBERS_OTHER_SIZES = Stage("every number of the model file alone, from all other sizes", 30.0)
-ROUNDS = Stage("effects beside each other", 30.0)
+TYPICAL = Stage("every effect at its typical size", 24.0)
+ALONE = Stage("every effect alone", 40.0, chance=0.8)
+OTHER_SIZES = Stage("every effect alone, from all other sizes", 120.0, chance=0.1)
+NUMBERS = Stage("every number of the model file", 8.0)
+NUMBERS_ALONE = Stage("every number of the model file alone", 20.0)
+NUMBERS_OTHER_SIZES = Stage("every number of the model file alone, from all other sizes", 90.0)
+ROUNDS = Stage("effects beside each other", 45.0)
 SET_UP_BESIDE = Stage("faults of the set-up beside them", 10.0)
 ENDING = Stage("the answer by finer numerics", 10.0)
 COMPARISON = Stage("comparison", 1.0, known=True)
 NEXT_RUNS = Stage("the next runs", 10.0)
 
-USUAL_SPEED = 1000.0
+USUAL_SPEED = 20_000.0
 """Work per second (`problem.work_of`) that is expected before any is measured: of two processes on a laptop."""
 
 _CANDIDATES = 31
@@ -30,39 +30,37 @@ _SEARCH = (TYPICAL, ALONE, OTHER_SIZES)
 _NUMBERS = (NUMBERS, NUMBERS_ALONE, NUMBERS_OTHER_SIZES)
 
 
-def plan_of_fit() -> list[Stage]:
-    """The stages of a fit."""
-    return [FIT, COMPARISON]
+def plan_of_fit(size: float) -> list[Stage]:
+    """The stages of a fit. size: work of one simulation of all runs (`problem.work_of`)."""
+    return _times(size, [FIT, COMPARISON])
 
 
-def plan_of_search(candidates: int) -> list[Stage]:
-    """The stages of a search among so many effects, by the model of a fit."""
-    return _of([*_SEARCH, ROUNDS], candidates)
+def plan_of_search(size: float, candidates: int) -> list[Stage]:
+    """The stages of a search among so many effects for what a fitted model lacks; size: as of a fit."""
+    return _times(size * candidates / _CANDIDATES, [*_SEARCH, ROUNDS])
 
 
-def plan_of_diagnosis(candidates: int) -> list[Stage]:
-    """The stages of a fit and a diagnosis among so many effects."""
-    return [FIT, *plan_of_search(candidates), COMPARISON]
+def plan_of_diagnosis(size: float, candidates: int) -> list[Stage]:
+    """The stages of a fit and a diagnosis among so many effects; size: as of a fit."""
+    first, last = plan_of_fit(size)
+    return [first, *plan_of_search(size, candidates), last]
 
 
-def plan_of_improve(candidates: int) -> list[Stage]:
-    """The stages of `improve` among so many effects."""
-    return [
-        START,
-        FIT,
-        SET_UP,
-        *_of([*_SEARCH, *_NUMBERS, ROUNDS], candidates),
-        SET_UP_BESIDE,
-        ENDING,
-        NEXT_RUNS,
-    ]
+def plan_of_improve(size: float, candidates: int) -> list[Stage]:
+    """The stages of `improve` among so many effects; size: as of a fit."""
+    search = _times(size * candidates / _CANDIDATES, [*_SEARCH, *_NUMBERS, ROUNDS])
+    return [*_times(size, [START, FIT, SET_UP]), *search, *_times(size, [SET_UP_BESIDE, ENDING, NEXT_RUNS])]
 
 
-def plan_of_suggest(candidates: int) -> list[Stage]:
-    """The stages of a diagnosis among so many effects, and of the runs that tell apart what it leaves in doubt."""
-    return [*plan_of_diagnosis(candidates)[:-1], NEXT_RUNS]
+def plan_of_next_runs(size: float) -> list[Stage]:
+    """The stage that looks for the runs that tell apart what a diagnosis left in doubt; size: as of a fit."""
+    return _times(size, [NEXT_RUNS])
 
 
-def _of(stages: Sequence[Stage], candidates: int) -> list[Stage]:
-    """Stages of a search among so many effects."""
-    return [replace(stage, work=stage.work * candidates / _CANDIDATES) for stage in stages]
+def plan_of_suggest(size: float, candidates: int) -> list[Stage]:
+    """The stages of a diagnosis, and of the runs that tell apart what it leaves in doubt; size: as of a fit."""
+    return [*plan_of_diagnosis(size, candidates)[:-1], *plan_of_next_runs(size)]
+
+
+def _times(size: float, stages: Sequence[Stage]) -> list[Stage]:
+    return [replace(stage, work=stage.work * size) for stage in stages]

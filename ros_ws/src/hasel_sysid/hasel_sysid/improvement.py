@@ -80,7 +80,7 @@ def improve(
     constant = _wrong_constant(found, policy)
 
     stages[0] = replace(stages[0], diagnosis=said.of_no_effect() if constant else said)
-    with problem.stage(ENDING, model):
+    with problem.workload.stage(ENDING):
         if constant:
             add(constant.fit, (), constant.name)
         else:
@@ -185,7 +185,7 @@ def _searched(
     """What a fitted baseline lacks; where it is out of phase, first of its beginning."""
     begun: list[FittedSet] = []
     if not in_phase(fit.evaluation):
-        with problem.stage(BEGINNINGS, fit.model):
+        with problem.workload.stage(BEGINNINGS):
             begun = _on_growing_horizons(problem, fit, effects, policy)
     return Search(problem, fit, effects, policy, _laws(problem), with_constants, begun).run()
 

@@ -5,13 +5,12 @@ A series is one output of one run. All outputs are in one unit and of one noise 
 
 from collections.abc import Collection, Iterator, Sequence
 from concurrent.futures import Executor, Future
-from contextlib import AbstractContextManager
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
 import numpy as np
-from hasel_common.workload import Stage, Workload
+from hasel_common.workload import Workload
 from hasel_sim.errors import ModelError, SimulationError
 from hasel_sim.model import Model
 from hasel_sim.parallel import submit_each
@@ -176,10 +175,6 @@ class Problem:
     def work(self, model: Model, names: Sequence[str] = ()) -> float:
         """Of simulating every run with derivatives by so many parameters, in proportion to the time that it takes."""
         return work_of(model, [experiment.run for experiment in self.experiments], len(names))
-
-    def stage(self, stage: Stage, model: Model) -> AbstractContextManager[None]:
-        """Meanwhile this stage of the workload is worked on; model: one of those that it simulates."""
-        return self.workload.stage(stage, self.work(model))
 
     def evaluate(self, model: Model, names: Sequence[str] = ()) -> Evaluation:
         """Simulate every run with the model, with derivatives by the named parameters."""

@@ -46,7 +46,7 @@ def recorded_or_read(
     """
     if _describes(problem, fit):
         return search(problem, fit), None
-    with problem.stage(SET_UP, start):
+    with problem.workload.stage(SET_UP):
         readings = _readings(problem, [start, fit.model], fit)
     if readings and _describes(readings[0].problem, readings[0].fit):
         return search(readings[0].problem, readings[0].fit), readings[0].fault
@@ -54,7 +54,7 @@ def recorded_or_read(
     if goodness_of_fit(recorded.answer.fit.evaluation, recorded.likelihood.allowed).adequate:
         return recorded, None
     likeliest = recorded.models[best_of(recorded.models)].fitted.fit
-    with problem.stage(SET_UP_BESIDE, start):
+    with problem.workload.stage(SET_UP_BESIDE):
         readings = [*_readings(problem, [likeliest.model], likeliest), *readings]
     if not readings or problem.time_limit.is_over():
         return recorded, None

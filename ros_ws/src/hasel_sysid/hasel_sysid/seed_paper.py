@@ -18,8 +18,8 @@ def fit_adam(problem: Problem, model: Model, steps: int = 100) -> FittedModel:
     The learning rates act on values in units of their start, as the paper's normalised parameters do; the best of
     all steps is returned.
     """
-    work = steps * problem.work(model, model.free) / problem.work(model)
-    with problem.stage(Stage("Adam", work, known=True), model):
+    work = steps * problem.work(model, model.free)
+    with problem.workload.stage(Stage("Adam", work, known=True)):
         return _fit_adam(problem, model, steps)
 
 

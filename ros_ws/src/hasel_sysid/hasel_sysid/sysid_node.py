@@ -2,7 +2,7 @@
 
 import sys
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,7 @@ from hasel_common.endpoints import STEADY, Role, frame_of, publisher, subscripti
 from hasel_common.managed_node import ManagedNode, start_and_spin
 from hasel_common.progress import LogLines
 from hasel_common.topics import DIAGNOSIS, ERROR, FIT, MEASURED, NAMESPACE, SIMULATED, STATE
-from hasel_common.workload import HowFar, Stage, Workload
+from hasel_common.workload import HowFar, Workload
 from hasel_interfaces.msg import BendingAngle, Diagnosis, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import RecordingError
@@ -26,9 +26,8 @@ from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallb
 from rclpy.executors import MultiThreadedExecutor
 from std_msgs.msg import Header
 
-from hasel_sysid.candidates import effects_of
 from hasel_sysid.errors import SysidError
-from hasel_sysid.expected_work import USUAL_SPEED, plan_of_diagnosis, plan_of_fit
+from hasel_sysid.expected_work import USUAL_SPEED
 from hasel_sysid.live import running_error
 from hasel_sysid.live.epochs import Epochs, StreamEpoch
 from hasel_sysid.live.fitting import chosen_recordings, diagnose_recordings, fit_recordings, status
@@ -147,7 +146,7 @@ class SysidNode(ManagedNode):
     def _serve_fit(self, request: FitModel.Request, response: FitModel.Response) -> FitModel.Response:
         def fit() -> str:
             model, recordings = self._model(), self._recordings(request.recordings)
-            work = self._begin("fit", plan_of_fit())
+            work = self._begin("fit")
             result = fit_recordings(model, recordings, request.method, self._value("jobs"), work)
             path = Path(self._value("output")) / f"{model.name}_fitted.yaml"
             save_model(result.model, path)
@@ -161,7 +160,7 @@ class SysidNode(ManagedNode):
         def diagnose() -> str:
             effects = [within(self._value("own_files"), effect) for effect in request.effects if effect]
             model, recordings = self._model(), self._recordings(request.recordings)
-            work = self._begin("diagnosis", plan_of_diagnosis(len(effects_of(model, effects or None))))
+            work = self._begin("diagnosis")
             found = diagnose_recordings(model, recordings, effects, self._value("jobs"), work)
             response.diagnosis = diagnosis_message(found, status(found), self._header())
             self._diagnosis.publish(response.diagnosis)
@@ -169,9 +168,9 @@ class SysidNode(ManagedNode):
 
         return self._serve(diagnose, response)
 
-    def _begin(self, title: str, plan: Sequence[Stage]) -> Workload:
-        """Count from now on a work of these stages, for `/diagnostics` and the log."""
-        self._work = work = Workload(plan, usual_speed=USUAL_SPEED)
+    def _begin(self, title: str) -> Workload:
+        """What counts a work from now on, for `/diagnostics` and the log."""
+        self._work = work = Workload(usual_speed=USUAL_SPEED)
         self._lines = LogLines(title, work.now, self.get_logger().info)
         return work
 

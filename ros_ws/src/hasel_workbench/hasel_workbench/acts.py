@@ -12,9 +12,9 @@ from hasel_sysid.dataset import prepared
 from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import FittedModel, identify
-from hasel_sysid.expected_work import NEXT_RUNS, USUAL_SPEED
+from hasel_sysid.expected_work import USUAL_SPEED, plan_of_next_runs
 from hasel_sysid.improvement import diagnose
-from hasel_sysid.problem import Problem
+from hasel_sysid.problem import Problem, work_of
 from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest
 
 from hasel_workbench.cards import source_of
@@ -31,6 +31,11 @@ def nothing_is_tried(state: SessionState) -> None:
     """Raise SysidError while something is being tried."""
     if state.trial is not None:
         raise SysidError(f"'{state.trial.label}' is being tried; keep it or take it back first")
+
+
+def size_of(state: SessionState) -> float:
+    """Work of simulating all fitted runs once with what is shown."""
+    return work_of(state.shown.model, [each.run for each in state.experiments])
 
 
 def fitted(state: SessionState, pool: Executor, work: Workload) -> Step:
@@ -100,7 +105,7 @@ def suggestions(state: SessionState, pool: Executor, progress: Progress) -> tupl
     """The runs that best tell apart what the last diagnosis left in doubt, at no more than was driven already."""
     if state.diagnosis is None:
         raise SysidError("nothing was diagnosed so far; expected a ranking to decide about: diagnose first")
-    work = Workload([NEXT_RUNS], usual_speed=USUAL_SPEED, tell=progress)
+    work = Workload(plan_of_next_runs(size_of(state)), usual_speed=USUAL_SPEED, tell=progress)
     problem = Problem(state.experiments, pool, workload=work)
     candidates = rivals(state.diagnosis, partial(fitted_briefly, problem))
     highest = max(state.current.model.levels, default=0.0)

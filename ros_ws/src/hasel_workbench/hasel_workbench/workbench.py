@@ -117,7 +117,8 @@ class Workbench:
     def fit(self, progress: Progress = silent) -> None:
         """Fit what is being tried, which goes on being tried; else the current model, as a new step."""
         with self._change() as state:
-            work = Workload(plan_of_fit(), usual_speed=USUAL_SPEED, tell=progress)
+            plan = plan_of_fit(acts.size_of(state))
+            work = Workload(plan, usual_speed=USUAL_SPEED, tell=progress)
             step = acts.fitted(state, self.pool, work)
             self._commit(replace(state, trial=step) if state.trial else self._kept(state, step))
 
@@ -125,7 +126,7 @@ class Workbench:
         """Rank the effects that the current model may lack; fits it first where that was not done."""
         with self._change() as state:
             acts.nothing_is_tried(state)
-            plan = plan_of_diagnosis(len(effects_of(state.current.model, self.effects)))
+            plan = plan_of_diagnosis(acts.size_of(state), len(effects_of(state.current.model, self.effects)))
             work = Workload(plan, usual_speed=USUAL_SPEED, tell=progress)
             if state.current.fit is None:
                 state = self._kept(state, acts.fitted(state, self.pool, work))

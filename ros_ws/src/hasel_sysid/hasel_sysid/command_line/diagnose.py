@@ -19,7 +19,7 @@ from hasel_sysid.diagnosis import diagnosis_json
 from hasel_sysid.estimation import fit_baseline
 from hasel_sysid.expected_work import COMPARISON, USUAL_SPEED, plan_of_diagnosis
 from hasel_sysid.improvement import diagnose
-from hasel_sysid.problem import Problem
+from hasel_sysid.problem import Problem, work_of
 from hasel_sysid.report.from_diagnosis import diagnosis_content
 from hasel_sysid.report.pictures import vector_figures
 from hasel_sysid.report.write import write_report
@@ -38,14 +38,15 @@ def run(options: argparse.Namespace) -> int:
 
 def _diagnose(options: argparse.Namespace) -> int:
     given, limit = load_inputs(options), TimeLimit(options.seconds)
-    plan = plan_of_diagnosis(len(effects_of(given.model, options.effects)))
+    size = work_of(given.model, [each.run for each in given.experiments])
+    plan = plan_of_diagnosis(size, len(effects_of(given.model, options.effects)))
     with workers(options) as pool, progress_bar("diagnose", plan, usual_speed=USUAL_SPEED) as work:
         given = that_can_be_simulated(given, pool)
         problem = Problem(given.experiments, pool, given.noise, limit, work)
         fit = fit_baseline(problem, given.model)
         found = diagnose(problem, fit, options.effects)
         label = f"{given.label}, fitted"
-        with problem.stage(COMPARISON, fit.model):
+        with problem.workload.stage(COMPARISON):
             comparison = compare(fit.model, given.experiments, pool, given.unseen, label, work)
     tell(comparison.set_up, given.said)
 

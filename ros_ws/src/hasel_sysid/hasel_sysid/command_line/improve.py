@@ -26,7 +26,7 @@ from hasel_sysid.expected_work import START, USUAL_SPEED, plan_of_improve
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.improvement import improve
 from hasel_sysid.ledger import Ledger
-from hasel_sysid.problem import Problem
+from hasel_sysid.problem import Problem, work_of
 from hasel_sysid.report.from_improvement import improvement_content
 from hasel_sysid.report.pictures import stages_picture, vector_figures, waterfall_picture
 from hasel_sysid.report.write import write_report
@@ -60,12 +60,13 @@ def _improve(options: argparse.Namespace) -> int:
         written.append(stage)
 
     try:
-        plan = plan_of_improve(len(effects_of(model, options.effects)))
+        size = work_of(model, [each.run for each in given.experiments])
+        plan = plan_of_improve(size, len(effects_of(model, options.effects)))
         with workers(options) as pool, progress_bar("improve", plan, usual_speed=USUAL_SPEED) as work:
             given = that_can_be_simulated(given, pool)
             experiments, unseen = given.experiments, given.unseen
             problem = Problem(experiments, pool, given.noise, limit, work)
-            with problem.stage(START, model):
+            with problem.workload.stage(START):
                 start = compare(model, experiments, pool, unseen, label, work)
             validation = Problem(unseen, pool, workload=work) if unseen else None
             found = improve(problem, model, validation, options.effects, on_stage=keep)

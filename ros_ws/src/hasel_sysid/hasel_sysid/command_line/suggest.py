@@ -20,7 +20,7 @@ from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import fit_baseline
 from hasel_sysid.expected_work import USUAL_SPEED, plan_of_suggest
 from hasel_sysid.improvement import diagnose
-from hasel_sysid.problem import Problem
+from hasel_sysid.problem import Problem, work_of
 from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest
 
 GOAL_FILE = "suggested_run.yaml"
@@ -40,7 +40,8 @@ def run(options: argparse.Namespace) -> int:
 
 def _suggest(options: argparse.Namespace) -> None:
     given = load_inputs(options)
-    plan = plan_of_suggest(len(effects_of(given.model, options.effects)))
+    size = work_of(given.model, [each.run for each in given.experiments])
+    plan = plan_of_suggest(size, len(effects_of(given.model, options.effects)))
     with workers(options) as pool, progress_bar("suggest", plan, usual_speed=USUAL_SPEED) as work:
         given = that_can_be_simulated(given, pool)
         problem = Problem(given.experiments, pool, given.noise, workload=work)

@@ -211,7 +211,7 @@ def fit_baseline(problem: Problem, model: Model) -> FittedModel:
     because something else is missing, the values are those of the longest horizon that it is in phase with, and the
     result says so. Raises SimulationError when no start can be simulated.
     """
-    with problem.stage(FIT, model):
+    with problem.workload.stage(FIT):
         return _fit_baseline(problem, model)
 
 
@@ -237,7 +237,7 @@ def _on_growing_horizons(problem: Problem, model: Model) -> FittedModel | None:
     every, reached, found = horizons(problem), None, None
     for number, short in enumerate(every):
         try:
-            with short.stage(Stage(f"horizon {number + 1} of {len(every)}"), model):
+            with short.workload.stage(Stage(f"horizon {number + 1} of {len(every)}")):
                 found = fit_from_starts(short, model)
         except SimulationError:
             break
@@ -257,12 +257,12 @@ def fit_from_starts(problem: Problem, model: Model) -> FittedModel:
     """
     before, coarse = problem.evaluations, _Coarse(problem)
     own = {name for effect in model.effects for p in effect.parameters for name in [f"{effect.id}.{p.name}"]}
-    with problem.stage(Stage("low-fidelity model"), model):
+    with problem.workload.stage(Stage("low-fidelity model")):
         begin = [_that_runs(coarse, model)]
         for effect in model.effects:
             begin += _standard_starts(coarse, begin[0], effect)
         led = descend(coarse, begin, [name for name in model.free if name not in own])
-    with problem.stage(Stage("the model itself"), model):
+    with problem.workload.stage(Stage("the model itself")):
         start = problem.evaluate(led[0].model if led else begin[0], model.free)
         evaluation, ended = minimise(problem, start, 0.5 * TOLERANCE, MOST_STEPS)
     return replace(fitted_model(evaluation, problem.evaluations - before), converged=ended)

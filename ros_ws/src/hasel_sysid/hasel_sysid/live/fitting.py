@@ -8,9 +8,11 @@ from hasel_recording import Recording, read_recordings
 from hasel_sim.model import Model
 from hasel_sim.parallel import executor
 
+from hasel_sysid.candidates import effects_of
 from hasel_sysid.dataset import for_model, prepared, simulable, usable
 from hasel_sysid.diagnosis import Diagnosis, Verdict
 from hasel_sysid.estimation import FittedModel, fit_baseline, identify
+from hasel_sysid.expected_work import plan_of_diagnosis, plan_of_fit
 from hasel_sysid.experiment import GENTLEST
 from hasel_sysid.improvement import diagnose
 from hasel_sysid.policy import POLICY
@@ -37,6 +39,7 @@ def fit_recordings(
     with executor(jobs or None) as pool:
         start = prepared(model, experiments)
         problem = Problem(simulable(start, experiments, pool, GENTLEST), pool, workload=workload)
+        workload.expect(plan_of_fit(problem.work(start)))
         return identify(problem, start, method or DEFAULT_METHOD)
 
 
@@ -55,6 +58,7 @@ def diagnose_recordings(
     with executor(jobs or None) as pool:
         start = prepared(model, experiments)
         problem = Problem(simulable(start, experiments, pool, GENTLEST), pool, workload=workload)
+        workload.expect(plan_of_diagnosis(problem.work(start), len(effects_of(start, effects or None))))
         fit = fit_baseline(problem, start)
         return diagnose(problem, fit, effects or None)
 

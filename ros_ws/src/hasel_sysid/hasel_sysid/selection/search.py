@@ -146,12 +146,12 @@ class Search:
         )
 
     def _typical_work(self) -> float:
-        """Of simulating every typical size once, in simulations of all runs by the model itself."""
+        """Of simulating every typical size once."""
         model, count = self.baseline.model, sum(one.typical for each in self.effects for one in starts(each))
-        return count * self.problem.work(self.problem.low_fidelity(model)) / self.problem.work(model)
+        return count * self.problem.work(self.problem.low_fidelity(model))
 
     def _stage(self, stage: Stage) -> AbstractContextManager[None]:
-        return self.problem.stage(stage, self.baseline.model)
+        return self.problem.workload.stage(stage)
 
     # the currency
 
