@@ -19,8 +19,8 @@ _STILL = 0.25
 
 @dataclass(frozen=True)
 class Stage:
-    """A part of a work. text: what is done; work: how much of it there usually is; chance: of its being reached where
-    the stage before it was; known: whether it is neither more nor less than that.
+    """A part of a work. text: what is done; work: how much of it there usually is; chance: share of all such works that
+    reach it; known: whether it is neither more nor less than that.
     """
 
     text: str
@@ -52,7 +52,8 @@ class HowFar:
 
 
 class Workload:
-    """Counts what is done, and expects as much more as usually follows the stage that was reached.
+    """Counts what is done, and expects the stages that are likelier than not to follow those that were reached: a work
+    that reached a rare one is one of the few that reach all that are as frequent.
 
     Who works begins stages and counts; who shows it looks at any time, from any thread.
     """
@@ -72,14 +73,21 @@ class Workload:
         self._clock, self._lock = clock, threading.Lock()
         self._texts: list[str] = []
         self._here, self._before = Stage(""), 0.0
-        self._after = _expected(self._plan)
+        self._frequency = 1.0
+        self._after = self._expected(-1)
         self._done, self._work, self._share = 0, 0.0, 0.0
         self._first: tuple[float, float] | None = None
 
     def expect(self, plan: Sequence[Stage]) -> None:
         """Go by this plan from now on."""
         with self._lock:
-            self._plan, self._after = tuple(plan), _expected(plan)
+            self._plan = tuple(plan)
+            self._after = self._expected(-1)
+
+    def _expected(self, number: int) -> float:
+        """Work of the stages that are likely to come after one of the plan."""
+        later = self._plan[number + 1 :]
+        return sum(stage.work for stage in later if stage.chance > 0.5 * self._frequency)
 
     @contextmanager
     def stage(self, stage: Stage) -> Iterator[None]:
@@ -96,7 +104,8 @@ class Workload:
                 self._here, self._before = stage, self._work
                 if number is not None:
                     self._here = stage if stage.known else self._plan[number]
-                    self._after = _expected(self._plan[number + 1 :])
+                    self._frequency = min(self._frequency, self._plan[number].chance)
+                    self._after = self._expected(number)
         try:
             self.check()
             yield
@@ -147,11 +156,3 @@ class Workload:
             seconds, work = seconds + _MEASURED_S, work + _MEASURED_S * self._usual_speed
         return rest * seconds / work if work else None
 
-
-def _expected(stages: Sequence[Stage]) -> float:
-    """Work of the stages, each as likely as it is to be reached."""
-    found, chance = 0.0, 1.0
-    for stage in stages:
-        chance *= stage.chance
-        found += chance * stage.work
-    return found

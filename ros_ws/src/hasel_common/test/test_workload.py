@@ -3,7 +3,8 @@
 import pytest
 from hasel_common.workload import Stage, Workload
 
-FIT, SEARCH, RARE = Stage("fit", 10.0), Stage("search", 30.0), Stage("more", 100.0, chance=0.1)
+FIT, SEARCH = Stage("fit", 10.0), Stage("search", 30.0)
+RARE, AS_RARE = Stage("more", 100.0, chance=0.1), Stage("most", 50.0, chance=0.1)
 
 
 class Clock:
@@ -23,14 +24,14 @@ def clock() -> Clock:
 
 
 def test_the_time_left_goes_by_the_speed_that_was_measured(clock):
-    """Nine of the ten of a fit in 9 s, one of it and 40 expected of the rest: 41 s."""
+    """Nine in 9 s; the fit goes on although all its ten are done: a quarter of it, and the 30 of the search."""
     work = Workload([FIT, SEARCH, RARE], clock=clock)
     with work.stage(FIT):
         for clock.time_s in range(10):
             work.did()
         now = work.now()
-    assert now.left_s == pytest.approx(40.0 + 2.5)
-    assert (now.done, now.of) == (10, 52)
+    assert now.left_s == pytest.approx(2.5 + 30.0)
+    assert (now.done, now.of) == (10, 42)
 
 
 def test_what_passes_before_the_first_piece_is_done_is_no_speed(clock):
@@ -49,17 +50,17 @@ def test_there_is_an_estimate_before_anything_was_measured(clock):
     assert Workload(clock=clock).now().left_s is None
 
 
-def test_a_stage_that_is_reached_is_expected_no_longer_by_its_chance(clock):
-    """What is rare counts by a tenth until it begins, then in full; the share does not go back."""
-    work = Workload([FIT, RARE], usual_speed=1.0, clock=clock)
+def test_what_is_rare_is_expected_once_it_is_reached():
+    """With all that is as rare; the share does not go back."""
+    work = Workload([FIT, RARE, SEARCH, AS_RARE])
     with work.stage(FIT):
         for _ in range(10):
             work.did()
     before = work.now()
     with work.stage(RARE):
         after = work.now()
-    assert (before.of, after.of) == (20, 110)
-    assert before.share == after.share == pytest.approx(0.5)
+    assert (before.of, after.of) == (40, 190)
+    assert before.share == after.share == pytest.approx(0.25)
 
 
 def test_a_stage_that_goes_on_beyond_its_usual_work_is_not_yet_at_its_end():

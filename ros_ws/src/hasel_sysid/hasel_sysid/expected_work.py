@@ -7,19 +7,19 @@ from hasel_common.workload import Stage
 
 START = Stage("start", 1.0, known=True)
 FIT = Stage("fit", 15.0)
-SET_UP = Stage("faults of the set-up", 18.0)
+SET_UP = Stage("faults of the set-up", 28.0, chance=0.4)
 BEGINNINGS = Stage("first of the beginning of every run")
 TYPICAL = Stage("every effect at its typical size", 24.0)
-ALONE = Stage("every effect alone", 40.0, chance=0.8)
-OTHER_SIZES = Stage("every effect alone, from all other sizes", 120.0, chance=0.1)
-NUMBERS = Stage("every number of the model file", 8.0)
-NUMBERS_ALONE = Stage("every number of the model file alone", 20.0)
-NUMBERS_OTHER_SIZES = Stage("every number of the model file alone, from all other sizes", 90.0)
-ROUNDS = Stage("effects beside each other", 45.0)
-SET_UP_BESIDE = Stage("faults of the set-up beside them", 10.0)
-ENDING = Stage("the answer by finer numerics", 10.0)
+ALONE = Stage("every effect alone", 36.0, chance=0.6)
+OTHER_SIZES = Stage("every effect alone, from all other sizes", 110.0, chance=0.1)
+NUMBERS = Stage("every number of the model file", 8.0, chance=0.1)
+NUMBERS_ALONE = Stage("every number of the model file alone", 20.0, chance=0.1)
+NUMBERS_OTHER_SIZES = Stage("every number of the model file alone, from all other sizes", 90.0, chance=0.1)
+ROUND = Stage("effects beside each other", 45.0, chance=0.1)
+SET_UP_BESIDE = Stage("faults of the set-up beside them", 18.0, chance=0.02)
+ENDING = Stage("the answer by finer numerics", 8.0, chance=0.4)
 COMPARISON = Stage("comparison", 1.0, known=True)
-NEXT_RUNS = Stage("the next runs", 10.0)
+NEXT_RUNS = Stage("the next runs", 10.0, chance=0.02)
 
 USUAL_SPEED = 20_000.0
 """Work per second (`problem.work_of`) that is expected before any is measured: of two processes on a laptop."""
@@ -37,7 +37,7 @@ def plan_of_fit(size: float) -> list[Stage]:
 
 def plan_of_search(size: float, candidates: int) -> list[Stage]:
     """The stages of a search among so many effects for what a fitted model lacks; size: as of a fit."""
-    return _times(size * candidates / _CANDIDATES, [*_SEARCH, ROUNDS])
+    return _times(size * candidates / _CANDIDATES, [*_SEARCH, ROUND])
 
 
 def plan_of_diagnosis(size: float, candidates: int) -> list[Stage]:
@@ -48,13 +48,13 @@ def plan_of_diagnosis(size: float, candidates: int) -> list[Stage]:
 
 def plan_of_improve(size: float, candidates: int) -> list[Stage]:
     """The stages of `improve` among so many effects; size: as of a fit."""
-    search = _times(size * candidates / _CANDIDATES, [*_SEARCH, *_NUMBERS, ROUNDS])
+    search = _times(size * candidates / _CANDIDATES, [*_SEARCH, *_NUMBERS, ROUND])
     return [*_times(size, [START, FIT, SET_UP]), *search, *_times(size, [SET_UP_BESIDE, ENDING, NEXT_RUNS])]
 
 
 def plan_of_next_runs(size: float) -> list[Stage]:
     """The stage that looks for the runs that tell apart what a diagnosis left in doubt; size: as of a fit."""
-    return _times(size, [NEXT_RUNS])
+    return _times(size, [replace(NEXT_RUNS, chance=1.0)])
 
 
 def plan_of_suggest(size: float, candidates: int) -> list[Stage]:

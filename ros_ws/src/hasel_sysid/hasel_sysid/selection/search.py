@@ -30,7 +30,7 @@ from hasel_sysid.expected_work import (
     NUMBERS_ALONE,
     NUMBERS_OTHER_SIZES,
     OTHER_SIZES,
-    ROUNDS,
+    ROUND,
     TYPICAL,
 )
 from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
@@ -129,8 +129,7 @@ class Search:
                 with self._stage(NUMBERS):
                     self._constants, _ = screen_typical(self._low, constants_of(self.baseline.model))
                 self._each_alone(NUMBERS_ALONE, NUMBERS_OTHER_SIZES, self._constants)
-            with self._stage(ROUNDS):
-                self._rounds()
+            self._rounds()
         choice = self._choose()
         return Searched(
             self.models,
@@ -281,7 +280,8 @@ class Search:
             rows = self._proposals(self._choose())
             if not rows:
                 return
-            with self._stage(Stage(", ".join(" + ".join(sorted(row.names)) for row in rows))):
+            named = Stage(", ".join(" + ".join(sorted(row.names)) for row in rows))
+            with self._stage(ROUND), self._stage(named):
                 self._keep({row.names: partial(self._fitted, row) for row in rows})
 
     def _proposals(self, choice: Choice) -> list[Row]:
