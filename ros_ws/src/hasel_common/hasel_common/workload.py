@@ -155,4 +155,3 @@ class Workload:
         if self._usual_speed is not None:
             seconds, work = seconds + _MEASURED_S, work + _MEASURED_S * self._usual_speed
         return rest * seconds / work if work else None
-

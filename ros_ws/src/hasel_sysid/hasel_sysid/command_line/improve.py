@@ -63,11 +63,11 @@ def _improve(options: argparse.Namespace) -> int:
         size = work_of(model, [each.run for each in given.experiments])
         plan = plan_of_improve(size, len(effects_of(model, options.effects)))
         with workers(options) as pool, progress_bar("improve", plan, usual_speed=USUAL_SPEED) as work:
-            given = that_can_be_simulated(given, pool)
-            experiments, unseen = given.experiments, given.unseen
-            problem = Problem(experiments, pool, given.noise, limit, work)
-            with problem.workload.stage(START):
+            with work.stage(START):
+                given = that_can_be_simulated(given, pool)
+                experiments, unseen = given.experiments, given.unseen
                 start = compare(model, experiments, pool, unseen, label, work)
+            problem = Problem(experiments, pool, given.noise, limit, work)
             validation = Problem(unseen, pool, workload=work) if unseen else None
             found = improve(problem, model, validation, options.effects, on_stage=keep)
             if found.set_up:

@@ -1,0 +1,82 @@
+"""The time left that `improve` tells, on recorded timings of whole searches.
+
+`timings/improve.csv`: when stages began and simulations ended, from searches of nine runs by two processes on a machine
+that had other work, too.
+"""
+
+import csv
+from contextlib import ExitStack
+from dataclasses import replace
+from itertools import groupby
+from pathlib import Path
+
+import pytest
+from hasel_common.workload import HowFar, Stage, Workload
+from hasel_sysid.expected_work import TYPICAL, USUAL_SPEED, plan_of_improve
+
+TIMINGS = Path(__file__).with_name("timings") / "improve.csv"
+SIZE = 4014.0
+"""Work of one simulation of the nine runs: 240 steps per second of 16.7 s."""
+CANDIDATES = 31
+TABLE_FROM = ()
+"""By these the table of `expected_work` was made."""
+KEPT_ASIDE = ()
+"""The table knows nothing of these."""
+
+
+def recorded(case: str) -> list[dict[str, str]]:
+    """The rows of a case, in order of time."""
+    with TIMINGS.open(newline="") as file:
+        return [row for row in csv.DictReader(file) if row["case"] == case]
+
+
+def told_at(case: str, share: float) -> tuple[HowFar, float]:
+    """What was told after this share of the whole time, and the time that was really left [s]."""
+    rows = recorded(case)
+    end = float(rows[-1]["time_s"])
+    time_s = [0.0]
+    work = Workload(plan_of_improve(SIZE, CANDIDATES), usual_speed=USUAL_SPEED, clock=lambda: time_s[0])
+    stage = ExitStack()
+    for row in rows:
+        if float(row["time_s"]) > share * end:
+            break
+        time_s[0] = float(row["time_s"])
+        if row["stage"]:
+            stage.close()
+            stage.enter_context(work.stage(_known(Stage(row["stage"]))))
+        for _ in range(int(row["simulations"] or 0)):
+            work.did(float(row["work"]) / int(row["simulations"]))
+    time_s[0] = share * end
+    return work.now(), (1.0 - share) * end
+
+
+def _known(stage: Stage) -> Stage:
+    """As the search begins it: how many typical sizes there are is known."""
+    return replace(stage, work=24.2 * SIZE, known=True) if stage.text == TYPICAL.text else stage
+
+
+@pytest.mark.parametrize("case", [*TABLE_FROM, *KEPT_ASIDE])
+def test_the_time_left_is_right_within_a_factor_of_two_after_a_third(case):
+    """Whatever is missing, and however long it takes to be found."""
+    told, left_s = told_at(case, 1 / 3)
+    assert told.left_s is not None
+    assert 0.5 < told.left_s / left_s < 2.0
+
+
+@pytest.mark.parametrize("case", [*TABLE_FROM, *KEPT_ASIDE])
+def test_something_is_told_within_five_seconds(case):
+    """Before any simulation has ended by what usual machines do, then by what was measured."""
+    seconds = float(recorded(case)[-1]["time_s"])
+    told, _ = told_at(case, 5.0 / seconds)
+    assert told.left_s is not None
+    assert told.left_s > 0
+
+
+def test_the_recorded_cases_are_unlike():
+    """From twenty seconds to minutes, from few hundred simulations to many thousand; each has an end."""
+    with TIMINGS.open(newline="") as file:
+        cases = {name: list(rows) for name, rows in groupby(csv.DictReader(file), lambda row: row["case"])}
+    counts = [sum(int(row["simulations"] or 0) for row in rows) for rows in cases.values()]
+    assert set(cases) == {*TABLE_FROM, *KEPT_ASIDE}
+    assert max(counts) > 5 * min(counts)
+    assert all(rows[-1]["stage"] == "end" for rows in cases.values())
