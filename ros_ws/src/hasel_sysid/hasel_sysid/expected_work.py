@@ -1,4 +1,10 @@
-"""How much work each stage usually is, for the time left; in simulations of all runs by the fitted model."""
+"""How much work each stage usually is, for the time left; in simulations of all runs by the fitted model.
+
+By recorded searches (`test/timings/improve.csv`): the middle of what a stage took, where its work is long in doubt the
+geometric one. `chance` is how often the stage comes: six searches of ten have something to explain, four of ten have a
+model that does not describe its runs, one of ten finds no effect that alone, from its typical size, explains them.
+Simulations from other sizes than typical take longer each, as strong effects do: counted is their time.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -22,7 +28,7 @@ COMPARISON = Stage("comparison", 1.0, known=True)
 NEXT_RUNS = Stage("the next runs", 10.0, chance=0.02)
 
 USUAL_SPEED = 20_000.0
-"""Work per second (`problem.work_of`) that is expected before any is measured: of two processes on a laptop."""
+"""Work per second (`problem.work_of`) that is expected before any is measured: of two processes with a core each."""
 
 _CANDIDATES = 31
 """Effects of the catalogue beside the swimmer, by which the stages of a search were measured."""

@@ -4,10 +4,10 @@ A series is one output of one run. All outputs are in one unit and of one noise 
 """
 
 from collections.abc import Collection, Iterator, Sequence
-from concurrent.futures import Executor, Future
+from concurrent.futures import Executor
 from copy import copy
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 
 import numpy as np
 from hasel_common.workload import Workload
@@ -188,11 +188,13 @@ class Problem:
     ) -> list[Evaluation | SimulationError]:
         """Several models at once, so that all workers stay busy; the error of one that cannot be simulated."""
         self.workload.check()
-        pending = submit_each(self.pool, models, [e.run for e in self.experiments], names)
+        runs = [experiment.run for experiment in self.experiments]
+
+        def count(model: int, run: int) -> None:
+            self.workload.did(work_of(models[model], [runs[run]], len(names[model])))
+
+        pending = submit_each(self.pool, models, runs, names, count)
         self.evaluations += len(models)
-        for model, by, futures in zip(models, names, pending, strict=True):
-            for experiment, future in zip(self.experiments, futures, strict=True):
-                future.add_done_callback(partial(self._count, work_of(model, [experiment.run], len(by))))
         results: list[Evaluation | SimulationError] = []
         for model, by, futures in zip(models, names, pending, strict=True):
             try:
@@ -202,9 +204,6 @@ class Problem:
             except ModelError as error:  # values with which this body cannot be built
                 results.append(SimulationError(str(error)))
         return results
-
-    def _count(self, work: float, _future: Future) -> None:
-        self.workload.did(work)
 
     def _collect(self, model: Model, names: tuple[str, ...], simulations: list[Simulation]) -> Evaluation:
         residuals, jacobians, runs, offsets, measured_at = [], [], [], [], []
