@@ -12,9 +12,12 @@ Show = Callable[[str, float], None]
 
 _MEASURED_S = 1.0
 """What the usual speed counts beside the one that is measured: as much as so long a time of work."""
-
 _STILL = 0.25
 """Share of its usual work that is expected of a stage that goes on although it has done so much."""
+_TOO_RARE = 1 / 3
+"""A stage is expected of a work only where more than this share of such works reach it: the few that take several times
+as long would make all others look long.
+"""
 
 
 @dataclass(frozen=True)
@@ -31,9 +34,9 @@ class Stage:
 
 @dataclass(frozen=True)
 class HowFar:
-    """stage: what is done now; done, of: how many were finished, and are expected in all (0: nothing tells it yet);
-    certain: whether it will be so many; units: what is counted; share: of the work, 0 to 1; left_s: time left [s], None
-    where nothing tells it yet.
+    """stage: what is done now, or was last; done, of: how many were finished, and are expected in all (0: nothing tells
+    it yet); certain: whether it will be so many; units: what is counted; share: of the work, 0 to 1; left_s: time left
+    [s], None where nothing tells it yet.
     """
 
     stage: str
@@ -52,8 +55,8 @@ class HowFar:
 
 
 class Workload:
-    """Counts what is done, and expects the stages that are likelier than not to follow those that were reached: a work
-    that reached a rare one is one of the few that reach all that are as frequent.
+    """Counts what is done, and expects what usually follows the stages that were reached: a work that reached a rare
+    one is one of the few that reach all that are as frequent.
 
     Who works begins stages and counts; who shows it looks at any time, from any thread.
     """
@@ -72,6 +75,7 @@ class Workload:
         self._plan, self._units, self._usual_speed, self._tell = tuple(plan), units, usual_speed, tell
         self._clock, self._lock = clock, threading.Lock()
         self._texts: list[str] = []
+        self._text = ""
         self._here, self._before = Stage(""), 0.0
         self._frequency = 1.0
         self._after = self._expected(-1)
@@ -85,9 +89,9 @@ class Workload:
             self._after = self._expected(-1)
 
     def _expected(self, number: int) -> float:
-        """Work of the stages that are likely to come after one of the plan."""
-        later = self._plan[number + 1 :]
-        return sum(stage.work for stage in later if stage.chance > 0.5 * self._frequency)
+        """Work of the stages that come after one of the plan, by how often they do."""
+        later = [(min(1.0, stage.chance / self._frequency), stage.work) for stage in self._plan[number + 1 :]]
+        return sum(chance * work for chance, work in later if chance > _TOO_RARE)
 
     @contextmanager
     def stage(self, stage: Stage) -> Iterator[None]:
@@ -99,6 +103,7 @@ class Workload:
         outermost = not self._texts
         with self._lock:
             self._texts.append(stage.text)
+            self._text = ": ".join(self._texts)
             if outermost:
                 number = next((n for n, one in enumerate(self._plan) if one.text == stage.text), None)
                 self._here, self._before = stage, self._work
@@ -114,6 +119,8 @@ class Workload:
                 self._texts.pop()
                 if outermost:
                     self._here = Stage("")
+                else:
+                    self._text = ": ".join(self._texts)
 
     def did(self, work: float = 1.0) -> None:
         """Count one more, and the work that it was."""
@@ -132,7 +139,7 @@ class Workload:
     def now(self) -> HowFar:
         """How far it is; the share never goes back, the time left follows what turns out."""
         with self._lock:
-            stage, rest = ": ".join(self._texts), self._rest()
+            stage, rest = self._text, self._rest()
             if not self._plan:
                 return HowFar(stage, self._done, 0, False, self._units, 0.0, None)
             whole = self._work + rest

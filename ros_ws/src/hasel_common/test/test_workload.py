@@ -63,6 +63,22 @@ def test_what_is_rare_is_expected_once_it_is_reached():
     assert before.share == after.share == pytest.approx(0.25)
 
 
+def test_what_often_comes_is_expected_by_its_chance():
+    """Six tenths of it; what comes in fewer than one case of three would make every other look long."""
+    work = Workload([FIT, Stage("often", 20.0, chance=0.6), RARE])
+    with work.stage(FIT):
+        work.did()
+        assert work.now().of == 10 + 12
+
+
+def test_between_two_stages_the_last_one_is_told():
+    """Nobody is left without a word of what it is about."""
+    work = Workload([FIT, SEARCH])
+    with work.stage(FIT), work.stage(Stage("low-fidelity model")):
+        work.did()
+    assert work.now().stage == "fit"
+
+
 def test_a_stage_that_goes_on_beyond_its_usual_work_is_not_yet_at_its_end():
     """A quarter of it is expected still; nothing of one that is known, nor after the last one."""
     usual, known = Workload([FIT]), Workload([Stage("fit", 10.0, known=True)])

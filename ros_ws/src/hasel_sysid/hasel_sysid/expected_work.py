@@ -1,9 +1,8 @@
 """How much work each stage usually is, for the time left; in simulations of all runs by the fitted model.
 
-By recorded searches (`test/timings/improve.csv`): the middle of what a stage took, where its work is long in doubt the
-geometric one. `chance` is how often the stage comes: six searches of ten have something to explain, four of ten have a
-model that does not describe its runs, one of ten finds no effect that alone, from its typical size, explains them.
-Simulations from other sizes than typical take longer each, as strong effects do: counted is their time.
+By recorded searches (`test/timings/improve.csv`): the middle of what a stage took. Of rare stages it is the geometric
+middle, as searches that reach them take from three to ten times as long as one that does not; `chance` is about how
+often a stage comes.
 """
 
 from collections.abc import Sequence
@@ -17,11 +16,11 @@ SET_UP = Stage("faults of the set-up", 28.0, chance=0.4)
 BEGINNINGS = Stage("first of the beginning of every run")
 TYPICAL = Stage("every effect at its typical size", 24.0)
 ALONE = Stage("every effect alone", 36.0, chance=0.6)
-OTHER_SIZES = Stage("every effect alone, from all other sizes", 110.0, chance=0.1)
-NUMBERS = Stage("every number of the model file", 8.0, chance=0.1)
-NUMBERS_ALONE = Stage("every number of the model file alone", 20.0, chance=0.1)
-NUMBERS_OTHER_SIZES = Stage("every number of the model file alone, from all other sizes", 110.0, chance=0.1)
-ROUND = Stage("effects beside each other", 70.0, chance=0.1)
+OTHER_SIZES = Stage("every effect alone, from all other sizes", 110.0, chance=0.15)
+NUMBERS = Stage("every number of the model file", 8.0, chance=0.13)
+NUMBERS_ALONE = Stage("every number of the model file alone", 20.0, chance=0.13)
+NUMBERS_OTHER_SIZES = Stage("every number of the model file alone, from all other sizes", 130.0, chance=0.13)
+ROUND = Stage("effects beside each other", 80.0, chance=0.13)
 SET_UP_BESIDE = Stage("faults of the set-up beside them", 18.0, chance=0.02)
 ENDING = Stage("the answer by finer numerics", 8.0, chance=0.4)
 COMPARISON = Stage("comparison", 1.0, known=True)
