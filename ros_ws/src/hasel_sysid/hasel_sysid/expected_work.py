@@ -1,4 +1,4 @@
-"""How much work each stage usually is, for the time left; in simulations of all runs by the fitted model.
+"""How much work a simulation is, and each stage usually is in simulations of all runs by the fitted model.
 
 By recorded searches (`test/timings/improve.csv`): the middle of what a stage took. Of rare stages it is the geometric
 middle, as searches that reach them take from three to ten times as long as one that does not; `chance` is about how
@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from hasel_common.workload import Stage
+from hasel_sim.model import Model
+from hasel_sim.run import Run
 
 START = Stage("start", 1.0, known=True)
 FIT = Stage("fit", 15.0)
@@ -26,8 +28,10 @@ ENDING = Stage("the answer by finer numerics", 8.0, chance=0.4)
 COMPARISON = Stage("comparison", 1.0, known=True)
 NEXT_RUNS = Stage("the next runs", 10.0, chance=0.02)
 
+_DERIVATIVE = 0.5
+"""Time that a derivative takes, of that of a simulation without any."""
 USUAL_SPEED = 20_000.0
-"""Work per second (`problem.work_of`) that is expected before any is measured: of two processes with a core each."""
+"""Work per second (`work_of`) that is expected before any is measured: of two processes with a core each."""
 
 _CANDIDATES = 31
 """Effects of the catalogue beside the swimmer, by which the stages of a search were measured."""
@@ -35,8 +39,15 @@ _SEARCH = (TYPICAL, ALONE, OTHER_SIZES)
 _NUMBERS = (NUMBERS, NUMBERS_ALONE, NUMBERS_OTHER_SIZES)
 
 
+def work_of(model: Model, runs: Sequence[Run], derivatives: int = 0) -> float:
+    """Of simulating runs with so many derivatives, in proportion to the time that it takes: elements times steps."""
+    numerics = model.description.numerics
+    duration_s = sum(float(run.time[-1] - run.start) for run in runs)
+    return numerics.mesh_density * numerics.steps_per_second * duration_s * (1.0 + _DERIVATIVE * derivatives)
+
+
 def plan_of_fit(size: float) -> list[Stage]:
-    """The stages of a fit. size: work of one simulation of all runs (`problem.work_of`)."""
+    """The stages of a fit. size: work of one simulation of all runs (`work_of`)."""
     return _times(size, [FIT, COMPARISON])
 
 

@@ -14,9 +14,10 @@ from hasel_common.workload import Workload
 from hasel_sim.errors import ModelError, SimulationError
 from hasel_sim.model import Model
 from hasel_sim.parallel import submit_each
-from hasel_sim.run import Run, Simulation
+from hasel_sim.run import Simulation
 
 from hasel_sysid.errors import SysidError
+from hasel_sysid.expected_work import work_of
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.noise.sources import measured_noise
@@ -102,8 +103,6 @@ class Evaluation:
         return self.simulated() + self.residual
 
 
-_DERIVATIVE = 0.5
-"""Time that a derivative takes, of that of a simulation without any."""
 _CLOSE = 0.15
 """Share of the motion up to which an error changes the motion to first order only."""
 
@@ -242,13 +241,6 @@ class Problem:
             tuple(measured_at),
             self.free_offset,
         )
-
-
-def work_of(model: Model, runs: Sequence[Run], derivatives: int = 0) -> float:
-    """Of simulating runs with so many derivatives, in proportion to the time that it takes: elements times steps."""
-    numerics = model.description.numerics
-    duration_s = sum(float(run.time[-1] - run.start) for run in runs)
-    return numerics.mesh_density * numerics.steps_per_second * duration_s * (1.0 + _DERIVATIVE * derivatives)
 
 
 def low_fidelity(model: Model) -> Model:

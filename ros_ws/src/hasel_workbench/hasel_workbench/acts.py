@@ -12,9 +12,9 @@ from hasel_sysid.dataset import prepared
 from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import FittedModel, identify
-from hasel_sysid.expected_work import USUAL_SPEED, plan_of_next_runs
+from hasel_sysid.expected_work import USUAL_SPEED, plan_of_next_runs, work_of
 from hasel_sysid.improvement import diagnose
-from hasel_sysid.problem import Problem, work_of
+from hasel_sysid.problem import Problem
 from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest
 
 from hasel_workbench.cards import source_of

@@ -18,9 +18,8 @@ from hasel_sysid.command_line.shown import code_after, show
 from hasel_sysid.command_line.workers import workers
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.dataset import for_model, simulable
-from hasel_sysid.expected_work import USUAL_SPEED
+from hasel_sysid.expected_work import USUAL_SPEED, work_of
 from hasel_sysid.experiment import Experiment
-from hasel_sysid.problem import work_of
 from hasel_sysid.report.from_results import comparison_content, never_fitted
 from hasel_sysid.report.write import write_report
 

@@ -17,9 +17,9 @@ from hasel_sysid.command_line.workers import workers
 from hasel_sysid.compare import compare
 from hasel_sysid.diagnosis import diagnosis_json
 from hasel_sysid.estimation import fit_baseline
-from hasel_sysid.expected_work import COMPARISON, USUAL_SPEED, plan_of_diagnosis
+from hasel_sysid.expected_work import COMPARISON, USUAL_SPEED, plan_of_diagnosis, work_of
 from hasel_sysid.improvement import diagnose
-from hasel_sysid.problem import Problem, work_of
+from hasel_sysid.problem import Problem
 from hasel_sysid.report.from_diagnosis import diagnosis_content
 from hasel_sysid.report.pictures import vector_figures
 from hasel_sysid.report.write import write_report

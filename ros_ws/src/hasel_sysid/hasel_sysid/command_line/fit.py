@@ -19,8 +19,7 @@ from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.data_gate import DataFinding
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import FittedModel, identify
-from hasel_sysid.expected_work import COMPARISON, USUAL_SPEED, plan_of_fit
-from hasel_sysid.problem import work_of
+from hasel_sysid.expected_work import COMPARISON, USUAL_SPEED, plan_of_fit, work_of
 from hasel_sysid.report.from_results import fit_content
 from hasel_sysid.report.pictures import vector_figures
 from hasel_sysid.report.write import write_report

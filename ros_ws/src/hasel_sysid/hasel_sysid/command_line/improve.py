@@ -22,11 +22,11 @@ from hasel_sysid.command_line.workers import workers
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.compare.compare import comparison_of
 from hasel_sysid.data_gate import DataFinding
-from hasel_sysid.expected_work import START, USUAL_SPEED, plan_of_improve
+from hasel_sysid.expected_work import START, USUAL_SPEED, plan_of_improve, work_of
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.improvement import improve
 from hasel_sysid.ledger import Ledger
-from hasel_sysid.problem import Problem, work_of
+from hasel_sysid.problem import Problem
 from hasel_sysid.report.from_improvement import improvement_content
 from hasel_sysid.report.pictures import stages_picture, vector_figures, waterfall_picture
 from hasel_sysid.report.write import write_report

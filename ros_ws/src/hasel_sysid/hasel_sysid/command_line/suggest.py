@@ -18,9 +18,9 @@ from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.workers import workers
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import fit_baseline
-from hasel_sysid.expected_work import USUAL_SPEED, plan_of_suggest
+from hasel_sysid.expected_work import USUAL_SPEED, plan_of_suggest, work_of
 from hasel_sysid.improvement import diagnose
-from hasel_sysid.problem import Problem, work_of
+from hasel_sysid.problem import Problem
 from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest
 
 GOAL_FILE = "suggested_run.yaml"

@@ -14,8 +14,8 @@ from hasel_sysid.compare.swimming_speed import swimming_speed
 from hasel_sysid.data_gate import check_against_model, check_recording
 from hasel_sysid.dataset import prepared
 from hasel_sysid.errors import SysidError
+from hasel_sysid.expected_work import work_of
 from hasel_sysid.experiment import Experiment
-from hasel_sysid.problem import work_of
 from hasel_sysid.where_it_fails.analyse import where_it_fails
 from hasel_sysid.where_it_fails.run_series import RunSeries, run_series
 

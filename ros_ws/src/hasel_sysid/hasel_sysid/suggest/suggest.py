@@ -15,9 +15,9 @@ from hasel_sim.simulate import simulate_many
 
 from hasel_sysid.drive_match import model_channels
 from hasel_sysid.errors import SysidError
-from hasel_sysid.expected_work import NEXT_RUNS
+from hasel_sysid.expected_work import NEXT_RUNS, work_of
 from hasel_sysid.noise.model import NoiseModel
-from hasel_sysid.problem import low_fidelity, work_of
+from hasel_sysid.problem import low_fidelity
 from hasel_sysid.suggest.manoeuvre import Manoeuvre, manoeuvres
 
 
