@@ -1,8 +1,8 @@
 """How much work a simulation is, and each stage usually is in simulations of all runs by the fitted model.
 
-By recorded searches (`test/timings/improve.csv`): the middle of what a stage took. Of rare stages it is the geometric
-middle, as searches that reach them take from three to ten times as long as one that does not; `chance` is about how
-often a stage comes.
+By recorded searches (`test/timings/improve.csv`): about the middle of what a stage took; of the rare ones some more,
+as strong effects take longer per simulation. `chance` is about how often a stage comes in use: what is recorded holds
+more of the long searches, which take three to six times as long as the others.
 """
 
 from collections.abc import Sequence

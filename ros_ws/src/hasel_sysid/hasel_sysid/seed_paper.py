@@ -7,6 +7,7 @@ from hasel_common.workload import Stage
 from hasel_sim.model import Model
 
 from hasel_sysid.estimation.fit import FittedModel, fitted_model
+from hasel_sysid.expected_work import FIT
 from hasel_sysid.problem import Problem
 
 _AMPLITUDE_RATE, _OTHER_RATE = 0.05, 0.005
@@ -19,7 +20,7 @@ def fit_adam(problem: Problem, model: Model, steps: int = 100) -> FittedModel:
     all steps is returned.
     """
     work = steps * problem.work(model, model.free)
-    with problem.workload.stage(Stage("Adam", work, known=True)):
+    with problem.workload.stage(replace(FIT, work=work, known=True)), problem.workload.stage(Stage("Adam")):
         return _fit_adam(problem, model, steps)
 
 
