@@ -102,6 +102,7 @@ class LogLines:
         if now.stage in ("", self._last) and time_s - self._said_at < self._wait:
             return
         self._last, self._said_at, self._wait = now.stage or self._last, time_s, _LINE_EVERY_S
-        what = str(now) if now.stage == self._title else ": ".join(filter(None, [self._title, str(now)]))
+        named = now.stage.partition(": ")[0] == self._title
+        what = str(now) if named else ": ".join(filter(None, [self._title, str(now)]))
         share = f"{now.share:.0%}, " if now.share else ""
         self._say(f"{what} ({share}{timedelta(seconds=round(time_s - self._began))} so far)")

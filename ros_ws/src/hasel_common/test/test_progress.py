@@ -42,6 +42,13 @@ def test_a_log_has_a_line_for_every_stage_and_one_each_ten_seconds():
     ]
 
 
+def test_a_line_names_the_work_once():
+    """Where its first stage has the same name, too."""
+    assert lines_of([(1.0, far("fit: the model itself", 3))], "fit") == [
+        "fit: the model itself, 3 of about 100 simulations (3%, 0:00:01 so far)"
+    ]
+
+
 def test_the_first_line_comes_within_five_seconds():
     """Also where no stage has begun so far."""
     looks = [(0.5 * number, far("", 0, 30.0)) for number in range(1, 12)]
