@@ -1,117 +1,108 @@
-"""Progress with the time left: a bar on the terminal, lines in a log."""
+"""Showing how far a work has come: a bar on the terminal, lines in a log."""
 
 import sys
+import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from datetime import timedelta
 
 from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    Progress,
-    ProgressColumn,
-    Task,
-    TaskProgressColumn,
-    TextColumn,
-    TimeElapsedColumn,
-)
-from rich.text import Text
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 
-Show = Callable[[str, float], None]
-"""Called with a line of text and the share done, 0 to 1."""
+from hasel_common.workload import HowFar, Stage, Workload
 
-
-_ENOUGH_TO_TELL = 0.02
-"""Share done before which what is left is not told."""
 _LINE_EVERY_S = 10.0
 """In a log a line says that it goes on, also where no new stage begins."""
-
-
-def time_left(elapsed_s: float, share: float) -> str:
-    """Such as `about 0:02:10 left`, if the rest goes on as what was done; empty at the very beginning."""
-    if share < _ENOUGH_TO_TELL or not elapsed_s:
-        return ""
-    return f"about {timedelta(seconds=round(elapsed_s * (1.0 - share) / share))} left"
-
-
-class TimeLeft(ProgressColumn):
-    """How long the rest takes if it goes on as what was done; steps are too uneven to go by the last ones."""
-
-    def render(self, task: Task) -> Text:
-        """Such as `about 0:02:10 left`; nothing at the very beginning."""
-        return Text(time_left(task.elapsed or 0.0, task.completed))
+_FIRST_LINE_S = 4.0
+"""The first one comes sooner: who has just begun wants to know whether to wait."""
+_LOOK_EVERY_S = 0.5
+"""So that no line is late by more, and a bar moves."""
 
 
 @contextmanager
-def progress_bar(title: str) -> Iterator[Show]:
-    """A bar on stderr that never goes back; call what it gives with a line of text and the share done, 0 to 1.
+def progress_bar(
+    title: str, plan: Sequence[Stage] = (), units: str = "simulations", usual_speed: float | None = None
+) -> Iterator[Workload]:
+    """A bar on stderr that never goes back; what it gives counts the work, see there for its plan, units and speed.
 
-    Where stderr is no terminal, it is lines; see `log_lines`.
+    Where stderr is no terminal, it is lines; see `LogLines`.
     """
+    work = Workload(plan, units, usual_speed)
     console = Console(stderr=True)
     if not console.is_terminal:
-        yield never_back(log_lines(title))
+        with _looked_at(LogLines(title, work.now).look):
+            yield work
         return
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TaskProgressColumn(),
-        TimeElapsedColumn(),
-        TimeLeft(),
-    )
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console) as bar:
         task = bar.add_task(title, total=1.0)
-        yield never_back(lambda text, share: bar.update(task, description=text, completed=share))
+
+        def look() -> None:
+            now = work.now()
+            bar.update(task, description=str(now) or title, completed=now.share)
+
+        with _looked_at(look):
+            yield work
+        look()
+
+
+@contextmanager
+def _looked_at(look: Callable[[], None]) -> Iterator[None]:
+    """Look again and again from a thread of its own: what is at work may say nothing for long."""
+    ended = threading.Event()
+
+    def again() -> None:
+        while not ended.wait(_LOOK_EVERY_S):
+            look()
+
+    thread = threading.Thread(target=again, name="progress", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
 
 
 @contextmanager
 def counted(title: str, units: str, total: int | None) -> Iterator[Callable[[int], None]]:
-    """The same over `total` steps, such as frames (None: not known how many); call it with how many are done.
+    """The same over `total` steps, such as frames (None: not known how many); call it with how many are done."""
+    stage = Stage(title, float(total or 0), known=True)
+    with progress_bar(title, [stage] if total else [], units) as work, work.stage(stage):
 
-    In a log nothing is said of what takes less than ten seconds.
+        def show(done: int) -> None:
+            for _ in range(done - work.now().done):
+                work.did()
+
+        yield show
+
+
+class LogLines:
+    """A line for every stage, and one each 10 s within it: what is done, how many of how many, how long still.
+
+    The first line comes within 5 s. A stage of the title's own name has no line at its begin.
     """
-    of = f" of {total}" if total else ""
-    with progress_bar(title) as show:
-        yield lambda done: show(f"{title}: {done}{of} {units}", done / total if total else 0.0)
 
+    def __init__(
+        self,
+        title: str,
+        now: Callable[[], HowFar],
+        say: Callable[[str], None] = lambda line: print(line, file=sys.stderr, flush=True),
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """now: tells how far it is; say: takes a line; clock: tells the time [s]."""
+        self._title, self._now, self._say, self._clock = title, now, say, clock
+        self._began = self._said_at = clock()
+        self._last, self._wait = title, _FIRST_LINE_S
 
-def log_lines(title: str, clock: Callable[[], float] = time.monotonic) -> Show:
-    """A line on stderr for every stage, and one each 10 s within it: what is done, how long so far, how long still.
-
-    A stage is named by what stands before a text's first colon, else by its first word; one of the title's own name
-    has no line at its begin.
-    """
-    begun = clock()
-    last, said_at = title, begun
-
-    def show(text: str, share: float) -> None:
-        nonlocal last, said_at
-        now = clock()
-        stage = text.partition(": ")[0] if ": " in text else text.partition(" ")[0]
-        if stage == last and now - said_at < _LINE_EVERY_S:
+    def look(self) -> None:
+        """Say a line where one is due."""
+        now, time_s = self._now(), self._clock()
+        if now.stage in ("", self._last) and time_s - self._said_at < self._wait:
             return
-        last, said_at = stage, now
-        left = time_left(now - begun, share)
-        times = f"{timedelta(seconds=round(now - begun))} so far{f', {left}' if left else ''}"
-        what = text if stage == title else f"{title}: {text}"
-        print(f"{what} ({f'{share:.0%}, ' if share else ''}{times})", file=sys.stderr, flush=True)
-
-    return show
-
-
-def never_back(progress: Show) -> Show:
-    """Shares that only grow, up to 1: a step that turns out to be longer than was thought stays where it is."""
-    done = 0.0
-
-    def show(text: str, share: float) -> None:
-        nonlocal done
-        done = max(done, min(share, 1.0))
-        progress(text, done)
-
-    return show
-
-
-def part(progress: Show, title: str, begin: float, end: float) -> Show:
-    """A part of a longer work that takes the shares from `begin` to `end` of the bar."""
-    return lambda text, share: progress(title + text, begin + (end - begin) * min(max(share, 0.0), 1.0))
+        self._last, self._said_at, self._wait = now.stage or self._last, time_s, _LINE_EVERY_S
+        named = now.stage.partition(": ")[0] == self._title
+        what = str(now) if named else ": ".join(filter(None, [self._title, str(now)]))
+        share = f"{now.share:.0%}, " if now.share else ""
+        self._say(f"{what} ({share}{timedelta(seconds=round(time_s - self._began))} so far)")

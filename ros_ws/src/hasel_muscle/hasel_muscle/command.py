@@ -6,11 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hasel_common.progress import progress_bar
+from hasel_sim.muscle.catalogue import muscle_catalogue
 from hasel_sim.muscle.muscle import Muscle
 from hasel_sim.muscle.muscle_file import muscle_text
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.errors import SysidError
+from hasel_sysid.expected_work import plan_of_search
 from rich.console import Console
 
 from hasel_muscle import shown
@@ -48,8 +50,9 @@ def _bench(options: argparse.Namespace) -> None:
     if options.fit_only:
         _fit_only(fitted, unseen, muscle, options, console)
         return
-    with progress_bar("fit") as progress:
-        found = improve_muscle(fitted, muscle, unseen, options.effects or None, progress)
+    candidates = len(options.effects or muscle_catalogue())
+    with progress_bar("fit", plan_of_search(1.0, candidates), "evaluations") as fitted.workload:
+        found = improve_muscle(fitted, muscle, unseen, options.effects or None)
     fails = where_it_fails(fitted, found.stages[1].muscle)
     rival = rival_table(fitted, unseen, found.muscle) if unseen is not None else None
     swings = swinging(readable(options.recordings, options.map), found.muscle, options.unseen_voltages)

@@ -14,7 +14,6 @@ from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation.covariance import with_numerical_error
 from hasel_sysid.estimation.fit import (
     FittedModel,
-    Progress,
     descend,
     exact,
     fit_from_starts,
@@ -74,7 +73,6 @@ def improve_muscle(
     muscle: Muscle,
     unseen: BenchProblem | None = None,
     candidates: Sequence[str] | None = None,
-    progress: Progress | None = None,
 ) -> BenchImprovement:
     """Compare, fit, and add the smallest set of effects that predicts voltages left out as well as the best one.
 
@@ -100,7 +98,7 @@ def improve_muscle(
         for effect in find_muscle_effects(tuple(candidates or muscle_catalogue()))
         if effect.id not in present
     ]
-    found = Search(problem, fit, effects, _OFTEN, lambda *_: True, progress, with_constants=False).run()
+    found = Search(problem, fit, effects, _OFTEN, lambda *_: True, with_constants=False).run()
     stages = [stage(fitted_model(problem.evaluate(as_model(muscle)))), stage(fit)]
     path, groups = found.choice.path, _groups(found)
     for before, names in zip(path, path[1:], strict=False):

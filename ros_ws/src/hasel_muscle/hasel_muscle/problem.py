@@ -115,10 +115,15 @@ class BenchProblem(Problem):
         """A formula has no numerics that could be finer."""
         return {}
 
+    def work(self, model: Model, names: Sequence[str] = ()) -> float:
+        """Evaluations of the formula, two for each derivative."""
+        return 1.0 + 2.0 * len(names)
+
     def evaluate_each(
         self, models: Sequence[Model], names: Sequence[Sequence[str]]
     ) -> list[Evaluation | SimulationError]:
         """As of a problem that simulates; the models are muscles."""
+        self.workload.check()
         self.evaluations += len(models)
         found: list[Evaluation | SimulationError] = []
         for model, by in zip(models, names, strict=True):
@@ -126,6 +131,7 @@ class BenchProblem(Problem):
                 found.append(self._collect(model, tuple(by), self._simulated(as_muscle(model), tuple(by))))
             except SimulationError as error:
                 found.append(error)
+            self.workload.did(self.work(model, by))
         return found
 
     def _simulated(self, muscle: Muscle, names: tuple[str, ...]) -> list[Simulation]:

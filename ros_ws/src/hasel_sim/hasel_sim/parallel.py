@@ -123,13 +123,22 @@ def submit_all(
 
 
 def submit_each(
-    pool: Executor, models: Sequence[Model], runs: Sequence[Run], slopes_by: Sequence[Sequence[str]]
+    pool: Executor,
+    models: Sequence[Model],
+    runs: Sequence[Run],
+    slopes_by: Sequence[Sequence[str]],
+    ended: Callable[[int, int], None] | None = None,
 ) -> list[list["Future[Simulation]"]]:
     """Start the simulation of every run with every model, [models][runs]; slopes_by: names of each model's parameters.
 
-    Runs of one model, and models of one kind with the same names, fill the lanes of a process together.
+    Runs of one model, and models of one kind with the same names, fill the lanes of a process together. ended: called
+    with the numbers of model and run as soon as a simulation has ended, also by an error, from any thread.
     """
     futures: list[list[Future[Simulation]]] = [[Future() for _ in runs] for _ in models]
+    if ended:
+        for model, of_model in enumerate(futures):
+            for run, future in enumerate(of_model):
+                future.add_done_callback(partial(_tell, ended, model, run))
     alike: dict[tuple, list[int]] = {}
     for number, (model, names) in enumerate(zip(models, slopes_by, strict=True)):
         alike.setdefault((kind_of(model), tuple(names)), []).append(number)
@@ -140,6 +149,10 @@ def submit_each(
             done = pool.submit(simulate_many, [(models[model], runs[run]) for model, run in batch], names)
             done.add_done_callback(partial(_hand_on, futures=asked))
     return futures
+
+
+def _tell(ended: Callable[[int, int], None], model: int, run: int, _future: Future) -> None:
+    ended(model, run)
 
 
 def _by_length(models: Sequence[int], runs: Sequence[Run]) -> list[tuple[int, int]]:

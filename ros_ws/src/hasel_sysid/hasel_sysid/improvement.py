@@ -9,8 +9,9 @@ from hasel_sim.model import Model
 
 from hasel_sysid.candidates import Candidate, effects_of
 from hasel_sysid.diagnosis import Diagnosis, Verdict
-from hasel_sysid.estimation.fit import FittedModel, Progress, exact, fit_baseline, fitted_model, refined
+from hasel_sysid.estimation.fit import FittedModel, exact, fit_baseline, fitted_model, refined
 from hasel_sysid.estimation.growing_horizon import horizons, in_phase
+from hasel_sysid.expected_work import BEGINNINGS, ENDING
 from hasel_sysid.model_checking.constancy import against_law
 from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
 from hasel_sysid.policy import POLICY, Policy
@@ -29,14 +30,13 @@ def diagnose(
     problem: Problem,
     fit: FittedModel,
     only: Sequence[str] | None = None,
-    progress: Progress | None = None,
 ) -> Diagnosis:
     """Rank every effect of the catalogue (or the named ones) as an explanation of what `fit` leaves.
 
     The search of `improve`, among sets of one effect. Raises ModelError for an unknown effect.
     """
     policy, effects = replace(POLICY, most_effects=1), effects_of(fit.model, only)
-    found = Search(problem, fit, effects, policy, _laws(problem), progress, with_constants=False).run()
+    found = Search(problem, fit, effects, policy, _laws(problem), with_constants=False).run()
     said = diagnosis(found, effects)
     named = said.best is not None and said.best.verdict is Verdict.MISSING
     described = goodness_of_fit((said.best.fit if named else fit).evaluation, said.noise)
@@ -49,7 +49,6 @@ def improve(
     validation: Problem | None = None,
     only: Sequence[str] | None = None,
     most_effects: int = POLICY.most_effects,
-    progress: Progress | None = None,
     on_stage: OnStage | None = None,
 ) -> Improvement:
     """Improve a model by the smallest set of effects that predicts runs left out of the fit as well as the best one.
@@ -59,7 +58,7 @@ def improve(
     Where the problem's time is over before the search is, the reason says what was not tried.
     """
     policy = replace(POLICY, most_effects=most_effects)
-    fit = fit_baseline(problem, model, _part(progress, "fit", 0.0, 0.15))
+    fit = fit_baseline(problem, model)
     effects = effects_of(fit.model, only)
     stages: list[Stage] = []
 
@@ -71,8 +70,7 @@ def improve(
 
     add(refined(problem, fit), ())
     search = partial(_searched, effects=effects, policy=policy, with_constants=not only)
-    report = _part(progress, "search", 0.15, 0.95)
-    found, fault = recorded_or_read(problem, model, fit, search, policy, report)
+    found, fault = recorded_or_read(problem, model, fit, search, policy)
     if fault:
         problem = problem.with_experiments(fault.read(problem.experiments))
         validation = validation and validation.with_experiments(fault.read(validation.experiments))
@@ -82,12 +80,13 @@ def improve(
     constant = _wrong_constant(found, policy)
 
     stages[0] = replace(stages[0], diagnosis=said.of_no_effect() if constant else said)
-    if constant:
-        add(constant.fit, (), constant.name)
-    else:
-        for names in found.choice.path[1:]:
-            order = [name for name in found.choice.in_order if name in names]
-            add(_ended(problem, found.models[names].fitted.fit), order)
+    with problem.workload.stage(ENDING):
+        if constant:
+            add(constant.fit, (), constant.name)
+        else:
+            for names in found.choice.path[1:]:
+                order = [name for name in found.choice.in_order if name in names]
+                add(_ended(problem, found.models[names].fitted.fit), order)
     reason, nothing_else = _why_the_last(found, policy, stages[0], constant)
     concluded = _conclude(stages, reason, nothing_else)
     if concluded.status is Status.NOTHING_MISSING and (doubt := _unseen_runs_differ(stages[-1], said)):
@@ -179,14 +178,16 @@ def _refitted(problem: Problem, sets: Sequence[FittedSet]) -> list[FittedSet]:
 def _searched(
     problem: Problem,
     fit: FittedModel,
-    progress: Progress | None,
     effects: Sequence[Candidate],
     policy: Policy,
     with_constants: bool,
 ) -> Searched:
     """What a fitted baseline lacks; where it is out of phase, first of its beginning."""
-    begun = [] if in_phase(fit.evaluation) else _on_growing_horizons(problem, fit, effects, policy)
-    return Search(problem, fit, effects, policy, _laws(problem), progress, with_constants, begun).run()
+    begun: list[FittedSet] = []
+    if not in_phase(fit.evaluation):
+        with problem.workload.stage(BEGINNINGS):
+            begun = _on_growing_horizons(problem, fit, effects, policy)
+    return Search(problem, fit, effects, policy, _laws(problem), with_constants, begun).run()
 
 
 def _wrong_constant(found: Searched, policy: Policy) -> WrongConstant | None:
@@ -314,9 +315,3 @@ def _what_was_not_tried(problem: Problem, first: Diagnosis) -> str:
 def listed(names: Sequence[str]) -> str:
     """Names in a sentence: a, b and c."""
     return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
-
-
-def _part(progress: Progress | None, name: str, begin: float, end: float) -> Progress | None:
-    if progress is None:
-        return None
-    return lambda text, done: progress(f"{name}: {text}", begin + (end - begin) * min(done, 1.0))

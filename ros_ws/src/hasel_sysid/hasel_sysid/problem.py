@@ -10,12 +10,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from hasel_common.workload import Workload
 from hasel_sim.errors import ModelError, SimulationError
 from hasel_sim.model import Model
 from hasel_sim.parallel import submit_each
 from hasel_sim.run import Simulation
 
 from hasel_sysid.errors import SysidError
+from hasel_sysid.expected_work import work_of
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.noise.sources import measured_noise
@@ -119,9 +121,10 @@ class Problem:
         pool: Executor,
         noise: NoiseModel | None = None,
         time_limit: TimeLimit | None = None,
+        workload: Workload | None = None,
     ) -> None:
         """noise: of the measured outputs, where it is known; otherwise it is looked for in the recordings.
-        time_limit: of the search for an explanation, whose parts look at it themselves.
+        time_limit: of the search for an explanation, whose parts look at it themselves; workload: counts simulations.
         """
         if not experiments:
             raise SysidError("no recording was given; expected at least one: name .csv or .mcap files")
@@ -129,6 +132,7 @@ class Problem:
         self.evaluations = 0
         self._noise = noise
         self.time_limit = time_limit or TimeLimit()
+        self.workload = workload or Workload()
 
     @cached_property
     def measured_noise(self) -> NoiseModel | None:
@@ -167,6 +171,10 @@ class Problem:
             out.__dict__.pop(measured, None)
         return out
 
+    def work(self, model: Model, names: Sequence[str] = ()) -> float:
+        """Of simulating every run with derivatives by so many parameters, in proportion to the time that it takes."""
+        return work_of(model, [experiment.run for experiment in self.experiments], len(names))
+
     def evaluate(self, model: Model, names: Sequence[str] = ()) -> Evaluation:
         """Simulate every run with the model, with derivatives by the named parameters."""
         result = self.evaluate_each([model], [names])[0]
@@ -178,7 +186,13 @@ class Problem:
         self, models: Sequence[Model], names: Sequence[Sequence[str]]
     ) -> list[Evaluation | SimulationError]:
         """Several models at once, so that all workers stay busy; the error of one that cannot be simulated."""
-        pending = submit_each(self.pool, models, [e.run for e in self.experiments], names)
+        self.workload.check()
+        runs = [experiment.run for experiment in self.experiments]
+
+        def count(model: int, run: int) -> None:
+            self.workload.did(work_of(models[model], [runs[run]], len(names[model])))
+
+        pending = submit_each(self.pool, models, runs, names, count)
         self.evaluations += len(models)
         results: list[Evaluation | SimulationError] = []
         for model, by, futures in zip(models, names, pending, strict=True):
@@ -265,7 +279,7 @@ class LowFidelityProblem(Problem):
 
     def __init__(self, of: Problem, known: Evaluation) -> None:
         """known: a model, evaluated by `of`."""
-        super().__init__(of.experiments, of.pool, of.measured_noise, of.time_limit)
+        super().__init__(of.experiments, of.pool, of.measured_noise, of.time_limit, of.workload)
         self.known, self._of, self._lower = known, of, of.low_fidelity
         self._error: np.ndarray | float = 0.0
         try:

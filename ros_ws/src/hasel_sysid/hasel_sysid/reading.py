@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
-from hasel_sysid.estimation.fit import FittedModel, Progress, fit_baseline
+from hasel_sysid.estimation.fit import FittedModel, fit_baseline
+from hasel_sysid.expected_work import SET_UP, SET_UP_BESIDE
 from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
 from hasel_sysid.noise.bounds import known_noise
 from hasel_sysid.noise.model import allowed_noise
@@ -17,7 +18,7 @@ from hasel_sysid.selection.cross_validation import leave_one_run_out
 from hasel_sysid.selection.search import Searched
 from hasel_sysid.set_up import SetUpFault, hypotheses
 
-SearchRuns = Callable[[Problem, FittedModel, Progress | None], Searched]
+SearchRuns = Callable[[Problem, FittedModel], Searched]
 """From runs and a baseline fitted to them to what it lacks."""
 
 
@@ -36,7 +37,6 @@ def recorded_or_read(
     fit: FittedModel,
     search: SearchRuns,
     policy: Policy,
-    progress: Progress | None,
 ) -> tuple[Searched, SetUpFault | None]:
     """The search of the runs as recorded, or as the likeliest fault of the set-up has them read.
 
@@ -45,19 +45,21 @@ def recorded_or_read(
     and is likelier than the answer without it.
     """
     if _describes(problem, fit):
-        return search(problem, fit, progress), None
-    readings = _readings(problem, [start, fit.model], fit)
+        return search(problem, fit), None
+    with problem.workload.stage(SET_UP):
+        readings = _readings(problem, [start, fit.model], fit)
     if readings and _describes(readings[0].problem, readings[0].fit):
-        return search(readings[0].problem, readings[0].fit, progress), readings[0].fault
-    recorded = search(problem, fit, progress)
+        return search(readings[0].problem, readings[0].fit), readings[0].fault
+    recorded = search(problem, fit)
     if goodness_of_fit(recorded.answer.fit.evaluation, recorded.likelihood.allowed).adequate:
         return recorded, None
     likeliest = recorded.models[best_of(recorded.models)].fitted.fit
-    readings = [*_readings(problem, [likeliest.model], likeliest), *readings]
+    with problem.workload.stage(SET_UP_BESIDE):
+        readings = [*_readings(problem, [likeliest.model], likeliest), *readings]
     if not readings or problem.time_limit.is_over():
         return recorded, None
     best = min(readings, key=lambda one: one.fit.evaluation.sum_of_squares)
-    found = search(best.problem, fit_baseline(best.problem, fit.model), progress)
+    found = search(best.problem, fit_baseline(best.problem, fit.model))
     return (found, best.fault) if _is_believed(best.fault, found, recorded, policy) else (recorded, None)
 
 

@@ -3,22 +3,28 @@
 from dataclasses import replace
 
 import numpy as np
+from hasel_common.workload import Stage
 from hasel_sim.model import Model
 
-from hasel_sysid.estimation.fit import FittedModel, Progress, fitted_model
+from hasel_sysid.estimation.fit import FittedModel, fitted_model
+from hasel_sysid.expected_work import FIT
 from hasel_sysid.problem import Problem
 
 _AMPLITUDE_RATE, _OTHER_RATE = 0.05, 0.005
 
 
-def fit_adam(
-    problem: Problem, model: Model, progress: Progress | None = None, steps: int = 100
-) -> FittedModel:
+def fit_adam(problem: Problem, model: Model, steps: int = 100) -> FittedModel:
     """Fit by gradient descent, kept for comparison; the default method needs a tenth of its simulations.
 
     The learning rates act on values in units of their start, as the paper's normalised parameters do; the best of
     all steps is returned.
     """
+    work = steps * problem.work(model, model.free)
+    with problem.workload.stage(replace(FIT, work=work, known=True)), problem.workload.stage(Stage("Adam")):
+        return _fit_adam(problem, model, steps)
+
+
+def _fit_adam(problem: Problem, model: Model, steps: int) -> FittedModel:
     import torch  # takes seconds and 200 MB, which no other method needs
 
     names = model.free
@@ -28,7 +34,7 @@ def fit_adam(
     rates = [_AMPLITUDE_RATE if name.startswith("amplitude_") else _OTHER_RATE for name in names]
     optimiser = torch.optim.Adam([{"params": [g], "lr": r} for g, r in zip(groups, rates, strict=True)])
     best = None
-    for step in range(steps):
+    for _ in range(steps):
         values = {name: g.item() * u for name, g, u in zip(names, groups, unit, strict=True)}
         inside = {
             name: float(np.clip(value, model.parameters[name].lower, model.parameters[name].upper))
@@ -41,9 +47,4 @@ def fit_adam(
         for g, slope, u in zip(groups, gradient, unit, strict=True):
             g.grad = torch.tensor(slope * u, dtype=torch.float64)
         optimiser.step()
-        if progress:
-            progress(
-                f"Adam, step {step + 1}: mean |Δ sin θ| = {evaluation.mean_absolute_error:.5f}",
-                (step + 1) / steps,
-            )
     return replace(fitted_model(best, steps), method="Adam (the seed paper's procedure)")

@@ -10,7 +10,9 @@ from hasel_common.declared_parameters import declare, words
 from hasel_common.diagnostics import Diagnostics, Level, Part
 from hasel_common.endpoints import STEADY, Role, frame_of, publisher, subscription
 from hasel_common.managed_node import ManagedNode, start_and_spin
+from hasel_common.progress import LogLines
 from hasel_common.topics import DIAGNOSIS, ERROR, FIT, MEASURED, NAMESPACE, SIMULATED, STATE
+from hasel_common.workload import HowFar, Workload
 from hasel_interfaces.msg import BendingAngle, Diagnosis, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import RecordingError
@@ -25,6 +27,7 @@ from rclpy.executors import MultiThreadedExecutor
 from std_msgs.msg import Header
 
 from hasel_sysid.errors import SysidError
+from hasel_sysid.expected_work import USUAL_SPEED
 from hasel_sysid.live import running_error
 from hasel_sysid.live.epochs import Epochs, StreamEpoch
 from hasel_sysid.live.fitting import chosen_recordings, diagnose_recordings, fit_recordings, status
@@ -52,7 +55,9 @@ class SysidNode(ManagedNode):
         self._pairing, self._heard = Pairing(gap), Heard(reset)
         self._errors = RunningErrors(reset, window)
         self._latest: running_error.RunningError | None = None
-        self._pairs, self._busy, self._doing = 0, threading.Lock(), ""
+        self._pairs, self._busy = 0, threading.Lock()
+        self._work: Workload | None = None
+        self._lines: LogLines | None = None
         self._frame_id = frame_of(self, self._value("frame_id"))
         self._error = publisher(self, RunningError, ERROR, Role.EVERY_SAMPLE)
         self._fit = publisher(self, Fit, FIT, Role.RESULTS)
@@ -90,7 +95,8 @@ class SysidNode(ManagedNode):
     @property
     def doing(self) -> str:
         """What is being worked on, in a sentence; empty: nothing."""
-        return self._doing
+        work = self._work
+        return "" if work is None else str(work.now()) or "the request that came last"
 
     def _value(self, name: str):
         return self.get_parameter(name).value
@@ -120,27 +126,28 @@ class SysidNode(ManagedNode):
 
     def _report(self) -> None:
         latest = self._latest
-        sentence = self._doing or (
+        work, lines = self._work, self._lines
+        sentence = self.doing or (
             "idle"
             if latest is None
             else f"mean |Δ sin θ| {latest.recent:.4f} in the last {latest.window:g} s, "
             f"{latest.mean_absolute:.4f} in this run so far"
         )
-        values = {
+        values: dict[str, object] = {
             f"publishers of {heard.topic_name}": heard.get_publisher_count()
             for heard in self._inputs.values()
         }
         values["pairs"] = self._pairs
+        if work is not None and lines is not None:
+            lines.look()
+            values |= _how_far(work.now())
         self._diagnostics.tell(Level.OK, sentence, values)
-
-    def _progress(self, sentence: str, share: float) -> None:
-        self._doing = f"{share:.0%}: {sentence}"
-        self.get_logger().info(self._doing)
 
     def _serve_fit(self, request: FitModel.Request, response: FitModel.Response) -> FitModel.Response:
         def fit() -> str:
             model, recordings = self._model(), self._recordings(request.recordings)
-            result = fit_recordings(model, recordings, request.method, self._value("jobs"), self._progress)
+            work = self._begin("fit")
+            result = fit_recordings(model, recordings, request.method, self._value("jobs"), work)
             path = Path(self._value("output")) / f"{model.name}_fitted.yaml"
             save_model(result.model, path)
             response.fit = fit_message(result, str(path.resolve()), self._header())
@@ -153,12 +160,19 @@ class SysidNode(ManagedNode):
         def diagnose() -> str:
             effects = [within(self._value("own_files"), effect) for effect in request.effects if effect]
             model, recordings = self._model(), self._recordings(request.recordings)
-            found = diagnose_recordings(model, recordings, effects, self._value("jobs"), self._progress)
+            work = self._begin("diagnosis")
+            found = diagnose_recordings(model, recordings, effects, self._value("jobs"), work)
             response.diagnosis = diagnosis_message(found, status(found), self._header())
             self._diagnosis.publish(response.diagnosis)
             return str(found)
 
         return self._serve(diagnose, response)
+
+    def _begin(self, title: str) -> Workload:
+        """What counts a work from now on, for `/diagnostics` and the log."""
+        self._work = work = Workload(usual_speed=USUAL_SPEED)
+        self._lines = LogLines(title, work.now, self.get_logger().info)
+        return work
 
     def _header(self) -> Header:
         return Header(stamp=self.get_clock().now().to_msg(), frame_id=self._frame_id)
@@ -178,9 +192,9 @@ class SysidNode(ManagedNode):
             )
             return response
         if not self._busy.acquire(blocking=False):
-            response.success, response.message = False, f"busy ({self._doing}); ask again when that is done"
+            response.success, response.message = False, f"busy ({self.doing}); ask again when that is done"
             return response
-        self._doing = "the request that came last"
+        self._work = Workload()
         try:
             response.message, response.success = action(), True
             self.get_logger().info(response.message)
@@ -188,9 +202,20 @@ class SysidNode(ManagedNode):
             response.message, response.success = str(error), False
             self.get_logger().warning(response.message)
         finally:
-            self._doing = ""
+            self._work = self._lines = None
             self._busy.release()
         return response
+
+
+def _how_far(now: HowFar) -> dict[str, object]:
+    """What `/diagnostics` tells of a work under way; empty where nothing tells it yet."""
+    return {
+        "stage": now.stage,
+        f"{now.units} done": now.done,
+        f"{now.units} expected": now.of or "",
+        "share": f"{now.share:.3f}",
+        "time left [s]": "" if now.left_s is None else f"{now.left_s:.0f}",
+    }
 
 
 def main() -> None:

@@ -4,6 +4,7 @@ import json
 import math
 
 import pytest
+from hasel_common.workload import Workload
 from hasel_sysid.diagnosis import Verdict
 from hasel_sysid.improvement import improve
 from hasel_sysid.ledger import Ledger
@@ -255,6 +256,7 @@ def test_who_stops_a_search_keeps_the_fitted_baseline():
         if "every effect alone" in text:
             raise KeyboardInterrupt
 
+    problem.workload = Workload(tell=stopped)
     with pytest.raises(KeyboardInterrupt):
-        improve(problem, world.model, progress=stopped, on_stage=written.append)
+        improve(problem, world.model, on_stage=written.append)
     assert [stage.effects for stage in written] == [()]

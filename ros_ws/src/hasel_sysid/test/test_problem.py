@@ -4,14 +4,17 @@ from concurrent.futures import Executor, Future
 
 import numpy as np
 import pytest
+from hasel_common.workload import Stage, Workload
 from hasel_recording import Recording
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import load_model
+from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run, Simulation
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.problem import Problem
 from hasel_sysid.testing.made_up_world import MadeUpWorld
+from hasel_sysid.testing.simulated_runs import simulated_runs
 
 RUN = Run("let go", np.linspace(0.0, 1.0, 20), None)
 NAMES = ("first", "second")
@@ -52,3 +55,23 @@ def test_some_of_its_runs_are_judged_by_the_noise_of_all():
     np.testing.assert_array_equal(alone.residual, every.residual[every.runs == 2])
     known = Problem(whole.experiments, Lost(), NoiseModel(0.002, 0.0, 0.5))
     assert known.with_experiments(known.experiments[:1]).measured_noise == known.measured_noise
+
+
+def test_a_simulation_is_counted_as_soon_as_it_has_ended():
+    """In one process too, before the others of all runs have; one with derivatives is more work."""
+    swimmer = load_model("swimmer").with_levels(np.array([5500.0]))
+    problem = simulated_runs(swimmer, [(5500.0, 2.0)] * 20, np.arange(12) / 120)
+    seen = []
+
+    class Watched(SerialExecutor):
+        def submit(self, function, /, *arguments, **keywords):
+            seen.append(problem.workload.now().done)
+            return super().submit(function, *arguments, **keywords)
+
+    problem.pool, problem.workload = Watched(), Workload([Stage("fit", 1e6)])
+    problem.evaluate(swimmer)
+    assert seen[0] == 0 < seen[1] < 20
+    assert problem.workload.now().done == 20
+    without = problem.workload.now().share
+    problem.evaluate(swimmer, swimmer.free)
+    assert problem.workload.now().share > 2.5 * without

@@ -5,17 +5,20 @@ from concurrent.futures import Executor
 from dataclasses import replace
 from functools import partial
 
+from hasel_common.workload import Workload
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 from hasel_sysid.dataset import prepared
 from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import FittedModel, identify
+from hasel_sysid.expected_work import USUAL_SPEED, plan_of_next_runs, work_of
 from hasel_sysid.improvement import diagnose
+from hasel_sysid.problem import Problem
 from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest
 
 from hasel_workbench.cards import source_of
-from hasel_workbench.evaluate import Progress, WatchedProblem, evaluated
+from hasel_workbench.evaluate import Progress, evaluated
 from hasel_workbench.state import SessionState
 from hasel_workbench.step import Step
 
@@ -30,22 +33,23 @@ def nothing_is_tried(state: SessionState) -> None:
         raise SysidError(f"'{state.trial.label}' is being tried; keep it or take it back first")
 
 
-def fitted(state: SessionState, pool: Executor, progress: Progress) -> Step:
+def size_of(state: SessionState) -> float:
+    """Work of simulating all fitted runs once with what is shown."""
+    return work_of(state.shown.model, [each.run for each in state.experiments])
+
+
+def fitted(state: SessionState, pool: Executor, work: Workload) -> Step:
     """What is being tried, else the current step, fitted."""
     shown = state.shown
     model = prepared(shown.model, state.experiments)
-    problem = WatchedProblem(state.experiments, pool, lambda: progress("fitting", 0.0))
-    result = identify(problem, model, "least_squares", progress)
+    result = identify(Problem(state.experiments, pool, workload=work), model, "least_squares")
     label, did = (shown.label, (*shown.did, FIT)) if state.trial else ("fit", (FIT,))
-    return _evaluated(state, label, result.model, pool, progress, result, did)
+    return _evaluated(state, label, result.model, pool, lambda *_: work.check(), result, did)
 
 
-def diagnosed(
-    state: SessionState, pool: Executor, only: Sequence[str] | None, progress: Progress
-) -> Diagnosis:
+def diagnosed(state: SessionState, pool: Executor, only: Sequence[str] | None, work: Workload) -> Diagnosis:
     """What the current step, which is fitted, may lack."""
-    problem = WatchedProblem(state.experiments, pool, lambda: progress("trying effects", 0.0))
-    return diagnose(problem, state.current.fit, only, progress)
+    return diagnose(Problem(state.experiments, pool, workload=work), state.current.fit, only)
 
 
 def with_effect(
@@ -101,10 +105,11 @@ def suggestions(state: SessionState, pool: Executor, progress: Progress) -> tupl
     """The runs that best tell apart what the last diagnosis left in doubt, at no more than was driven already."""
     if state.diagnosis is None:
         raise SysidError("nothing was diagnosed so far; expected a ranking to decide about: diagnose first")
-    problem = WatchedProblem(state.experiments, pool, lambda: progress("explanations", 0.0))
+    work = Workload(plan_of_next_runs(size_of(state)), usual_speed=USUAL_SPEED, tell=progress)
+    problem = Problem(state.experiments, pool, workload=work)
     candidates = rivals(state.diagnosis, partial(fitted_briefly, problem))
     highest = max(state.current.model.levels, default=0.0)
-    found = suggest(pool, candidates, state.diagnosis.noise, float(highest), progress, brief=True)
+    found = suggest(pool, candidates, state.diagnosis.noise, float(highest), work, brief=True)
     if not found:
         raise SysidError(
             "no experiment of the library can be simulated with these explanations: plan it by hand"

@@ -18,19 +18,6 @@ def silent(_text: str, _share: float) -> None:
     """Tell nobody."""
 
 
-class WatchedProblem(Problem):
-    """A problem that asks before every evaluation whether it is still wanted."""
-
-    def __init__(self, experiments: Sequence[Experiment], pool: Executor, wanted: Callable[[], None]) -> None:
-        super().__init__(experiments, pool)
-        self._wanted = wanted
-
-    def evaluate_each(self, models, names):
-        """As the problem itself does."""
-        self._wanted()
-        return super().evaluate_each(models, names)
-
-
 def evaluated(
     label: str,
     model: Model,

@@ -7,13 +7,16 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
+from hasel_common.workload import Workload
 from hasel_recording import Recording
 from hasel_sim.model import Model, save_model
 from hasel_sim.run import Simulation
 from hasel_sim.simulate import simulate
+from hasel_sysid.candidates import effects_of
 from hasel_sysid.command_line.chosen_model import chosen_model
 from hasel_sysid.compare.compare import with_amplitudes
 from hasel_sysid.errors import SysidError
+from hasel_sysid.expected_work import USUAL_SPEED, plan_of_diagnosis, plan_of_fit
 from hasel_sysid.experiment import Experiment
 
 from hasel_workbench import acts
@@ -114,17 +117,21 @@ class Workbench:
     def fit(self, progress: Progress = silent) -> None:
         """Fit what is being tried, which goes on being tried; else the current model, as a new step."""
         with self._change() as state:
-            step = acts.fitted(state, self.pool, progress)
+            plan = plan_of_fit(acts.size_of(state))
+            work = Workload(plan, usual_speed=USUAL_SPEED, tell=progress)
+            step = acts.fitted(state, self.pool, work)
             self._commit(replace(state, trial=step) if state.trial else self._kept(state, step))
 
     def diagnose(self, progress: Progress = silent) -> None:
         """Rank the effects that the current model may lack; fits it first where that was not done."""
         with self._change() as state:
             acts.nothing_is_tried(state)
+            plan = plan_of_diagnosis(acts.size_of(state), len(effects_of(state.current.model, self.effects)))
+            work = Workload(plan, usual_speed=USUAL_SPEED, tell=progress)
             if state.current.fit is None:
-                state = self._kept(state, acts.fitted(state, self.pool, progress))
+                state = self._kept(state, acts.fitted(state, self.pool, work))
                 self._commit(state)
-            found = acts.diagnosed(state, self.pool, self.effects, progress)
+            found = acts.diagnosed(state, self.pool, self.effects, work)
             self._commit(replace(state, diagnosis=found, diagnosed=state.at, suggestions=()))
 
     def switch_on(self, effect: str, progress: Progress = silent) -> None:

@@ -1,8 +1,10 @@
 """The session: load, compare, diagnose, try, keep, take back, export; no page is needed."""
 
 import json
+import re
 import subprocess
 import sys
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +13,7 @@ from hasel_recording import read_recording
 from hasel_recording.reading import distinct_names
 from hasel_sim.model import load_model, save_model
 from hasel_sysid.errors import SysidError
+from hasel_workbench.jobs import Jobs
 from hasel_workbench.prediction import beyond_first_order
 from hasel_workbench.script import script
 from hasel_workbench.waterfall import waterfall
@@ -255,6 +258,24 @@ def test_more_runs_judge_every_step_anew(loaded, unseen_rig):
     assert [step.label for step in after] == ["start", "+ quadratic_drag"]
     assert all(len(step.comparison.runs) == 4 for step in after)
     assert [step.error for step in after] != before
+
+
+def test_a_page_is_told_what_how_many_of_how_many_and_the_time_left(loaded):
+    """In the text beside the bar, of a fit and of the diagnosis that goes on from it."""
+    jobs, seen = Jobs(), {}
+    jobs.start("diagnose", loaded.diagnose)
+    while (doing := jobs.doing) is not None:
+        seen[doing.text] = doing.share
+        time.sleep(0.01)
+    assert [each.text for each in jobs.said] == []
+    told = re.compile(r"(.*), (\d+) of (?:about )?(\d+) simulations, about \d:\d\d:\d\d left")
+    found = [match for match in map(told.fullmatch, seen) if match]
+    stages = {match[1].partition(":")[0] for match in found}
+    assert {"fit", "every effect at its typical size"} <= stages
+    assert all(int(match[2]) <= int(match[3]) for match in found)
+    shares = list(seen.values())
+    assert shares == sorted(shares)
+    assert 0.0 < shares[len(shares) // 2] < 1.0
 
 
 def test_nothing_changes_where_work_is_broken_off(loaded):

@@ -5,6 +5,7 @@ import sys
 from collections.abc import Sequence
 
 from hasel_common.progress import progress_bar
+from hasel_common.workload import Stage
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
@@ -17,6 +18,7 @@ from hasel_sysid.command_line.shown import code_after, show
 from hasel_sysid.command_line.workers import workers
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.dataset import for_model, simulable
+from hasel_sysid.expected_work import USUAL_SPEED, work_of
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.report.from_results import comparison_content, never_fitted
 from hasel_sysid.report.write import write_report
@@ -45,22 +47,25 @@ def _compare(options: argparse.Namespace) -> int:
     firsts: list[str] = []
     try:
         jobs = _worth_it(models, [*experiments, *unseen])
-        with workers(options, jobs) as pool, progress_bar("compare") as progress:
-            for done, (label, model) in enumerate(models):
+        runs = [each.run for each in (*experiments, *unseen)]
+        stage = Stage("compare", sum(work_of(model, runs) for _, model in models), known=True)
+        with (
+            workers(options, jobs) as pool,
+            progress_bar("compare", [stage], usual_speed=USUAL_SPEED) as work,
+            work.stage(stage),
+        ):
+            for label, model in models:
                 firsts.append(never_fitted(label, model))
                 if firsts[-1]:
                     print(f"note: {firsts[-1]}", file=sys.stderr)
 
-                def step(text: str, share: float, done: int = done) -> None:
-                    progress(text, (done + share) / len(models))
-
                 every = for_model(model, [*experiments, *unseen])
                 fitted, others = every[:seen], every[seen:]
                 try:
-                    found = compare(model, fitted, pool, others, label, step)
+                    found = compare(model, fitted, pool, others, label, work)
                 except SimulationError:
                     fitted, others = (simulable(model, part, pool) for part in (fitted, others))
-                    found = compare(model, fitted, pool, others, label, step)
+                    found = compare(model, fitted, pool, others, label, work)
                 comparisons.append(found)
     except KeyboardInterrupt:
         if comparisons:

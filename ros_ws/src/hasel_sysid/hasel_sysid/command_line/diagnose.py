@@ -4,8 +4,9 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from hasel_common.progress import part, progress_bar
+from hasel_common.progress import progress_bar
 
+from hasel_sysid.candidates import effects_of
 from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import diagnose_parser
@@ -16,6 +17,7 @@ from hasel_sysid.command_line.workers import workers
 from hasel_sysid.compare import compare
 from hasel_sysid.diagnosis import diagnosis_json
 from hasel_sysid.estimation import fit_baseline
+from hasel_sysid.expected_work import COMPARISON, USUAL_SPEED, plan_of_diagnosis, work_of
 from hasel_sysid.improvement import diagnose
 from hasel_sysid.problem import Problem
 from hasel_sysid.report.from_diagnosis import diagnosis_content
@@ -36,13 +38,16 @@ def run(options: argparse.Namespace) -> int:
 
 def _diagnose(options: argparse.Namespace) -> int:
     given, limit = load_inputs(options), TimeLimit(options.seconds)
-    with workers(options) as pool, progress_bar("diagnose") as progress:
+    size = work_of(given.model, [each.run for each in given.experiments])
+    plan = plan_of_diagnosis(size, len(effects_of(given.model, options.effects)))
+    with workers(options) as pool, progress_bar("diagnose", plan, usual_speed=USUAL_SPEED) as work:
         given = that_can_be_simulated(given, pool)
-        problem = Problem(given.experiments, pool, given.noise, limit)
-        fit = fit_baseline(problem, given.model, part(progress, "fit: ", 0.0, 0.3))
-        found = diagnose(problem, fit, options.effects, part(progress, "diagnosis: ", 0.3, 0.95))
-        label, last = f"{given.label}, fitted", part(progress, "", 0.95, 1.0)
-        comparison = compare(fit.model, given.experiments, pool, given.unseen, label, last)
+        problem = Problem(given.experiments, pool, given.noise, limit, work)
+        fit = fit_baseline(problem, given.model)
+        found = diagnose(problem, fit, options.effects)
+        label = f"{given.label}, fitted"
+        with problem.workload.stage(COMPARISON):
+            comparison = compare(fit.model, given.experiments, pool, given.unseen, label, work)
     tell(comparison.set_up, given.said)
 
     def everything() -> None:

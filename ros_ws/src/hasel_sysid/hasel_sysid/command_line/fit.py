@@ -5,7 +5,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from hasel_common.progress import part, progress_bar
+from hasel_common.progress import progress_bar
 from hasel_sim.errors import ClusterError
 from hasel_sim.model import Model, save_model
 
@@ -20,6 +20,7 @@ from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.data_gate import DataFinding
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import FittedModel, identify
+from hasel_sysid.expected_work import COMPARISON, USUAL_SPEED, plan_of_fit, work_of
 from hasel_sysid.report.from_results import fit_content
 from hasel_sysid.report.pictures import vector_figures
 from hasel_sysid.report.write import write_report
@@ -45,14 +46,18 @@ def _fit(options: argparse.Namespace) -> int:
             "or set free: true in the model file"
         )
     options.output.mkdir(parents=True, exist_ok=True)
-    problem = None
+    problem, size = None, work_of(given.model, [each.run for each in given.experiments])
     try:
-        with workers(options) as pool, progress_bar("fit") as progress:
+        with (
+            workers(options) as pool,
+            progress_bar("fit", plan_of_fit(size), usual_speed=USUAL_SPEED) as work,
+        ):
             given = that_can_be_simulated(given, pool)
-            problem = BestSoFar(given.experiments, pool)
-            result = identify(problem, given.model, options.method, part(progress, "", 0.0, 0.9))
-            label, last = f"{given.label}, fitted", part(progress, "", 0.95, 1.0)
-            comparison = compare(result.model, given.experiments, pool, given.unseen, label, last)
+            problem = BestSoFar(given.experiments, pool, workload=work)
+            result = identify(problem, given.model, options.method)
+            label = f"{given.label}, fitted"
+            with problem.workload.stage(COMPARISON):
+                comparison = compare(result.model, given.experiments, pool, given.unseen, label, work)
     except (KeyboardInterrupt, ClusterError):
         if problem is not None and problem.best is not None:
             path = _save(given.model.with_values(problem.best.model.values), options.output)

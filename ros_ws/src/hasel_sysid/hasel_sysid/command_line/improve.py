@@ -6,10 +6,12 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 
-from hasel_common.progress import part, progress_bar
+from hasel_common.progress import progress_bar
+from hasel_common.workload import Workload
 from hasel_sim.model import Model, save_model
 from hasel_sim.parallel import simulate_all
 
+from hasel_sysid.candidates import effects_of
 from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import improve_parser
@@ -20,6 +22,7 @@ from hasel_sysid.command_line.workers import workers
 from hasel_sysid.compare import Comparison, compare
 from hasel_sysid.compare.compare import comparison_of
 from hasel_sysid.data_gate import DataFinding
+from hasel_sysid.expected_work import START, USUAL_SPEED, plan_of_improve, work_of
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.improvement import improve
 from hasel_sysid.ledger import Ledger
@@ -57,22 +60,20 @@ def _improve(options: argparse.Namespace) -> int:
         written.append(stage)
 
     try:
-        with workers(options) as pool, progress_bar("improve") as progress:
-            given = that_can_be_simulated(given, pool)
-            experiments, unseen = given.experiments, given.unseen
-            start = compare(model, experiments, pool, unseen, label, part(progress, "start: ", 0.0, 0.03))
-            found = improve(
-                Problem(experiments, pool, given.noise, limit),
-                model,
-                Problem(unseen, pool) if unseen else None,
-                options.effects,
-                progress=part(progress, "", 0.03, 0.97),
-                on_stage=keep,
-            )
+        size = work_of(model, [each.run for each in given.experiments])
+        plan = plan_of_improve(size, len(effects_of(model, options.effects)))
+        with workers(options) as pool, progress_bar("improve", plan, usual_speed=USUAL_SPEED) as work:
+            with work.stage(START):
+                given = that_can_be_simulated(given, pool)
+                experiments, unseen = given.experiments, given.unseen
+                start = compare(model, experiments, pool, unseen, label, work)
+            problem = Problem(experiments, pool, given.noise, limit, work)
+            validation = Problem(unseen, pool, workload=work) if unseen else None
+            found = improve(problem, model, validation, options.effects, on_stage=keep)
             if found.set_up:
                 experiments, unseen = found.set_up.read(experiments), found.set_up.read(unseen)
             stages = [_comparison(stage, experiments, unseen, pool, label) for stage in found.stages]
-            suggestions = [] if limit.is_over() else _next_runs(found, pool)
+            suggestions = [] if limit.is_over() else _next_runs(found, pool, work)
     except KeyboardInterrupt:
         if written:
             print(f"wrote the stages so far ({len(written)}), see {ledger.path}", file=sys.stderr)
@@ -101,13 +102,13 @@ def _undecided(comparison: Comparison) -> list[DataFinding]:
     return [finding for finding in comparison.set_up if finding.fault not in DECIDED]
 
 
-def _next_runs(found: Improvement, pool: Executor) -> list[Suggestion]:
+def _next_runs(found: Improvement, pool: Executor, work: Workload) -> list[Suggestion]:
     """The runs that would best tell apart what is still in doubt, at no more voltage than was used already."""
     candidates = in_doubt(found.diagnosis, found.missing)
     if found.set_up or found.constant or found.status is Status.NOTHING_MISSING or len(candidates) < 2:
         return []
     highest = max(found.model.levels, default=0.0)
-    return suggest(pool, candidates, found.diagnosis.noise, highest, brief=True)
+    return suggest(pool, candidates, found.diagnosis.noise, highest, work, brief=True)
 
 
 def _comparison(

@@ -10,6 +10,7 @@ from hasel_recording import HASEL_PAIR
 from hasel_sim.model import Model
 from ruamel.yaml import YAML
 
+from hasel_sysid.candidates import effects_of
 from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
 from hasel_sysid.command_line.json_file import write_json
 from hasel_sysid.command_line.parsers import suggest_parser
@@ -17,6 +18,7 @@ from hasel_sysid.command_line.running import run_command
 from hasel_sysid.command_line.workers import workers
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import fit_baseline
+from hasel_sysid.expected_work import USUAL_SPEED, plan_of_suggest, work_of
 from hasel_sysid.improvement import diagnose
 from hasel_sysid.problem import Problem
 from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest
@@ -38,20 +40,20 @@ def run(options: argparse.Namespace) -> int:
 
 def _suggest(options: argparse.Namespace) -> None:
     given = load_inputs(options)
-    with workers(options) as pool, progress_bar("suggest") as progress:
+    size = work_of(given.model, [each.run for each in given.experiments])
+    plan = plan_of_suggest(size, len(effects_of(given.model, options.effects)))
+    with workers(options) as pool, progress_bar("suggest", plan, usual_speed=USUAL_SPEED) as work:
         given = that_can_be_simulated(given, pool)
-        problem = Problem(given.experiments, pool, given.noise)
+        problem = Problem(given.experiments, pool, given.noise, workload=work)
         named = any(not name.startswith("+") for name in options.effects or ())
-        fit = fit_baseline(problem, given.model, lambda text, share: progress(text, 0.15 * share))
-        found = diagnose(
-            problem, fit, options.effects, lambda text, share: progress(text, 0.15 + 0.6 * share)
-        )
+        fit = fit_baseline(problem, given.model)
+        found = diagnose(problem, fit, options.effects)
         ranked = suggest(
             pool,
             rivals(found, partial(fitted_briefly, problem) if named else None),
             found.noise,
             _highest(options.max_level, given.model),
-            lambda text, share: progress(text, 0.75 + 0.25 * share),
+            work,
         )
     if not ranked:
         raise SysidError(

@@ -1,8 +1,9 @@
 """Simulate every run and collect what is different."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Executor, as_completed
 
+from hasel_common.workload import Workload
 from hasel_sim.model import Model
 from hasel_sim.parallel import submit_all
 from hasel_sim.run import Simulation
@@ -13,12 +14,10 @@ from hasel_sysid.compare.swimming_speed import swimming_speed
 from hasel_sysid.data_gate import check_against_model, check_recording
 from hasel_sysid.dataset import prepared
 from hasel_sysid.errors import SysidError
+from hasel_sysid.expected_work import work_of
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.where_it_fails.analyse import where_it_fails
 from hasel_sysid.where_it_fails.run_series import RunSeries, run_series
-
-Progress = Callable[[str, float], None]
-"""Called with a line of text and the share done, 0 to 1."""
 
 
 def compare(
@@ -27,19 +26,19 @@ def compare(
     pool: Executor,
     unseen: Sequence[Experiment] = (),
     label: str | None = None,
-    progress: Progress | None = None,
+    workload: Workload | None = None,
 ) -> Comparison:
     """Simulate all experiments and the unseen ones with one model.
 
     A model without amplitudes gets its start values; one that has some keeps them, so that unseen levels are
-    interpolated. label: what to call the model (default: its name).
+    interpolated. label: what to call the model (default: its name); workload: counts the simulations.
     Raises SysidError for runs the body cannot have, SimulationError when the motion cannot be followed.
     """
     every = [*experiments, *unseen]
     if not every:
         raise SysidError("no recording was given; expected at least one: name .csv or .mcap files")
     model = with_amplitudes(model, every)
-    simulations = _simulate(model, every, pool, progress)
+    simulations = _simulate(model, every, pool, workload)
     return comparison_of(model, experiments, simulations, unseen, label)
 
 
@@ -106,11 +105,11 @@ def series_of(experiment: Experiment, simulation: Simulation) -> RunSeries:
 
 
 def _simulate(
-    model: Model, experiments: Sequence[Experiment], pool: Executor, progress: Progress | None
+    model: Model, experiments: Sequence[Experiment], pool: Executor, workload: Workload | None
 ) -> list[Simulation]:
     futures = submit_all(pool, model, [experiment.run for experiment in experiments])
-    for done, future in enumerate(as_completed(futures), start=1):
-        if progress:
-            name = experiments[futures.index(future)].name
-            progress(f"simulated {name}", done / len(futures))
+    if workload:
+        for future in as_completed(futures):
+            workload.did(work_of(model, [experiments[futures.index(future)].run]))
+            workload.check()
     return [future.result() for future in futures]

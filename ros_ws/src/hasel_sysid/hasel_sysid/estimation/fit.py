@@ -3,10 +3,11 @@
 Manifold mapping: Echeverría and Hemker, Computational Methods in Applied Mathematics 5 (2005) 107.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from hasel_common.workload import Stage
 from hasel_sim.effects.base import Effect
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model, Parameter
@@ -32,12 +33,10 @@ from hasel_sysid.estimation.least_squares import (
     values_and_bounds,
 )
 from hasel_sysid.estimation.starts import MOST_FOLLOWED, screen, starts
+from hasel_sysid.expected_work import FIT
 from hasel_sysid.experiment import GENTLEST
 from hasel_sysid.noise.model import estimate_noise
 from hasel_sysid.problem import Evaluation, LowFidelityProblem, Problem
-
-Progress = Callable[[str, float], None]
-"""Called with a line of text and the share done, 0 to 1."""
 
 TOLERANCE = 1e-3
 """Relative change of the sum of squares at which a fit ends."""
@@ -205,37 +204,41 @@ def fit(
     return fitted_model(mapped(problem, found[0]), problem.evaluations - before)
 
 
-def fit_baseline(problem: Problem, model: Model, progress: Progress | None = None) -> FittedModel:
+def fit_baseline(problem: Problem, model: Model) -> FittedModel:
     """The fit of a model from its standard starts.
 
     Where that ends out of phase with the runs, once more on growing horizons. Where more frames lose its phase again,
     because something else is missing, the values are those of the longest horizon that it is in phase with, and the
     result says so. Raises SimulationError when no start can be simulated.
     """
+    with problem.workload.stage(FIT):
+        return _fit_baseline(problem, model)
+
+
+def _fit_baseline(problem: Problem, model: Model) -> FittedModel:
     if not model.free:
         return fitted_model(problem.evaluate(model), 1)
     failed = None
     try:
-        near = fit_from_starts(problem, model, progress)
+        near = fit_from_starts(problem, model)
     except SimulationError as error:
         near, failed = None, error
     if near is not None and in_phase(near.evaluation):
         return near
-    far = _on_growing_horizons(problem, model, progress)
+    far = _on_growing_horizons(problem, model)
     found = far or near
     if found is None:
         raise failed or SimulationError("the model cannot be simulated: choose other values to begin with")
     return found
 
 
-def _on_growing_horizons(problem: Problem, model: Model, progress: Progress | None) -> FittedModel | None:
+def _on_growing_horizons(problem: Problem, model: Model) -> FittedModel | None:
     """The fit of the longest horizon that the model is in phase with; None where it is with none."""
     every, reached, found = horizons(problem), None, None
     for number, short in enumerate(every):
-        if progress:
-            progress(f"horizon {number + 1} of {len(every)}", number / len(every))
         try:
-            found = fit_from_starts(short, model)
+            with short.workload.stage(Stage(f"horizon {number + 1} of {len(every)}")):
+                found = fit_from_starts(short, model)
         except SimulationError:
             break
         if not in_phase(found.evaluation):
@@ -247,23 +250,21 @@ def _on_growing_horizons(problem: Problem, model: Model, progress: Progress | No
     return replace(whole, in_phase_until=length(reached))
 
 
-def fit_from_starts(problem: Problem, model: Model, progress: Progress | None = None) -> FittedModel:
+def fit_from_starts(problem: Problem, model: Model) -> FittedModel:
     """The fit of a model from its own values and, where it has effects, from their standard starts.
 
     Raises SimulationError when no start can be simulated.
     """
     before, coarse = problem.evaluations, _Coarse(problem)
     own = {name for effect in model.effects for p in effect.parameters for name in [f"{effect.id}.{p.name}"]}
-    if progress:
-        progress("low-fidelity model", 0.2)
-    begin = [_that_runs(coarse, model)]
-    for effect in model.effects:
-        begin += _standard_starts(coarse, begin[0], effect)
-    led = descend(coarse, begin, [name for name in model.free if name not in own])
-    if progress:
-        progress("the model itself", 0.6)
-    start = problem.evaluate(led[0].model if led else begin[0], model.free)
-    evaluation, ended = minimise(problem, start, 0.5 * TOLERANCE, MOST_STEPS)
+    with problem.workload.stage(Stage("low-fidelity model")):
+        begin = [_that_runs(coarse, model)]
+        for effect in model.effects:
+            begin += _standard_starts(coarse, begin[0], effect)
+        led = descend(coarse, begin, [name for name in model.free if name not in own])
+    with problem.workload.stage(Stage("the model itself")):
+        start = problem.evaluate(led[0].model if led else begin[0], model.free)
+        evaluation, ended = minimise(problem, start, 0.5 * TOLERANCE, MOST_STEPS)
     return replace(fitted_model(evaluation, problem.evaluations - before), converged=ended)
 
 
@@ -271,7 +272,7 @@ class _Coarse(Problem):
     """A problem by the low-fidelity model alone, before anything is known of its error."""
 
     def __init__(self, of: Problem) -> None:
-        super().__init__(of.experiments, of.pool, of.measured_noise, of.time_limit)
+        super().__init__(of.experiments, of.pool, of.measured_noise, of.time_limit, of.workload)
         self._of = of
 
     def evaluate_each(

@@ -3,14 +3,16 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from hasel_common.workload import Workload
 from hasel_recording import Recording, read_recordings
 from hasel_sim.model import Model
 from hasel_sim.parallel import executor
 
+from hasel_sysid.candidates import effects_of
 from hasel_sysid.dataset import for_model, prepared, simulable, usable
 from hasel_sysid.diagnosis import Diagnosis, Verdict
 from hasel_sysid.estimation import FittedModel, fit_baseline, identify
-from hasel_sysid.estimation.fit import Progress
+from hasel_sysid.expected_work import plan_of_diagnosis, plan_of_fit
 from hasel_sysid.experiment import GENTLEST
 from hasel_sysid.improvement import diagnose
 from hasel_sysid.policy import POLICY
@@ -27,17 +29,18 @@ def chosen_recordings(paths: Sequence[str | Path], heard: Sequence[Recording]) -
 
 
 def fit_recordings(
-    model: Model, recordings: Sequence[Recording], method: str, jobs: int, progress: Progress | None = None
+    model: Model, recordings: Sequence[Recording], method: str, jobs: int, workload: Workload
 ) -> FittedModel:
     """Fit the model's free parameters in `jobs` processes (0: one per core), this one staying responsive.
 
-    Raises RecordingError, SysidError, SimulationError or ModelError.
+    workload: counts the simulations. Raises RecordingError, SysidError, SimulationError or ModelError.
     """
     experiments = for_model(model.with_levels([]), usable(recordings))
     with executor(jobs or None) as pool:
         start = prepared(model, experiments)
-        problem = Problem(simulable(start, experiments, pool, GENTLEST), pool)
-        return identify(problem, start, method or DEFAULT_METHOD, progress)
+        problem = Problem(simulable(start, experiments, pool, GENTLEST), pool, workload=workload)
+        workload.expect(plan_of_fit(problem.work(start)))
+        return identify(problem, start, method or DEFAULT_METHOD)
 
 
 def diagnose_recordings(
@@ -45,18 +48,19 @@ def diagnose_recordings(
     recordings: Sequence[Recording],
     effects: Sequence[str],
     jobs: int,
-    progress: Progress | None = None,
+    workload: Workload,
 ) -> Diagnosis:
     """Fit and rank the effects (all known ones when none is named) that could be missing.
 
-    Raises RecordingError, SysidError, SimulationError or ModelError.
+    workload: counts the simulations. Raises RecordingError, SysidError, SimulationError or ModelError.
     """
     experiments = for_model(model.with_levels([]), usable(recordings))
     with executor(jobs or None) as pool:
         start = prepared(model, experiments)
-        problem = Problem(simulable(start, experiments, pool, GENTLEST), pool)
-        fit = fit_baseline(problem, start, progress)
-        return diagnose(problem, fit, effects or None, progress)
+        problem = Problem(simulable(start, experiments, pool, GENTLEST), pool, workload=workload)
+        workload.expect(plan_of_diagnosis(problem.work(start), len(effects_of(start, effects or None))))
+        fit = fit_baseline(problem, start)
+        return diagnose(problem, fit, effects or None)
 
 
 def status(diagnosis: Diagnosis) -> str:

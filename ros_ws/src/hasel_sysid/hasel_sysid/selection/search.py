@@ -9,19 +9,30 @@ repeat
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
+from hasel_common.workload import Stage
 from hasel_sim.errors import HaselSimError
 from hasel_sim.model import Model
 from hasel_sim.parallel import all_at_once
 
 from hasel_sysid.candidates import Candidate, compatible, constants_of
 from hasel_sysid.estimation.covariance import changes_by_refinement
-from hasel_sysid.estimation.fit import FittedModel, Progress, fit, fitted_model, mapped
+from hasel_sysid.estimation.fit import FittedModel, fit, fitted_model, mapped
 from hasel_sysid.estimation.growing_horizon import in_phase
-from hasel_sysid.estimation.starts import Screened
+from hasel_sysid.estimation.starts import Screened, starts
+from hasel_sysid.expected_work import (
+    ALONE,
+    NUMBERS,
+    NUMBERS_ALONE,
+    NUMBERS_OTHER_SIZES,
+    OTHER_SIZES,
+    ROUND,
+    TYPICAL,
+)
 from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
 from hasel_sysid.model_checking.nothing_missing import ScoreTest, score_test
 from hasel_sysid.noise.bounds import known_noise
@@ -83,7 +94,6 @@ class Search:
         effects: Sequence[Candidate],
         policy: Policy,
         is_law: IsLaw,
-        progress: Progress | None = None,
         with_constants: bool = True,
         begun: Sequence[FittedSet] = (),
     ) -> None:
@@ -91,7 +101,7 @@ class Search:
         whether those of the model file come after the effects; begun: sets that were fitted already.
         """
         self.problem, self.baseline, self.effects, self.policy = problem, baseline, effects, policy
-        self._is_law, self._progress, self._with_constants = is_law, progress, with_constants
+        self._is_law, self._with_constants = is_law, with_constants
         self._low = LowFidelityProblem(problem, baseline.evaluation)
         self.fits = {NOTHING: FittedSet({}, baseline), **{one.names: one for one in begun}}
         self._tried: set[Names] = set(self.fits)
@@ -108,17 +118,18 @@ class Search:
 
     def run(self) -> Searched:
         """Search until nothing promises more, or time is over."""
-        self._say("every effect at its typical size", 0.05)
-        self.screened, untried = screen_typical(self._low, self.effects)
+        with self._stage(replace(TYPICAL, work=self._typical_work(), known=True)):
+            self.screened, untried = screen_typical(self._low, self.effects)
         self.untried = [candidate.name for candidate in untried]
         self.first = self._tested(NOTHING)
         self.threshold = self.first.threshold
         if self.first.chance < self.policy.level:
-            self._each_alone("every effect", self.screened, 0.2)
+            self._each_alone(ALONE, OTHER_SIZES, self.screened)
             if self._with_constants and self._something_is_missing():
-                self._constants, _ = screen_typical(self._low, constants_of(self.baseline.model))
-                self._each_alone("every number of the model file", self._constants, 0.4)
-            self._rounds(0.5)
+                with self._stage(NUMBERS):
+                    self._constants, _ = screen_typical(self._low, constants_of(self.baseline.model))
+                self._each_alone(NUMBERS_ALONE, NUMBERS_OTHER_SIZES, self._constants)
+            self._rounds()
         choice = self._choose()
         return Searched(
             self.models,
@@ -133,9 +144,13 @@ class Search:
             self.untried,
         )
 
-    def _say(self, text: str, share: float) -> None:
-        if self._progress:
-            self._progress(text, share)
+    def _typical_work(self) -> float:
+        """Of simulating every typical size once."""
+        model, count = self.baseline.model, sum(one.typical for each in self.effects for one in starts(each))
+        return count * self.problem.work(self.problem.low_fidelity(model))
+
+    def _stage(self, stage: Stage) -> AbstractContextManager[None]:
+        return self.problem.workload.stage(stage)
 
     # the currency
 
@@ -225,13 +240,13 @@ class Search:
 
     # what is fitted
 
-    def _each_alone(self, what: str, typical: list[Screened], share: float) -> None:
+    def _each_alone(self, first: Stage, then: Stage, typical: list[Screened]) -> None:
         """From typical sizes; where something is still missing, from all others."""
-        self._say(f"{what} alone", share)
-        self._race(at_typical_size(self._low, typical, self._least()))
+        with self._stage(first):
+            self._race(at_typical_size(self._low, typical, self._least()))
         if self._something_is_missing():
-            self._say(f"{what} alone, from all other sizes", share + 0.1)
-            self._race(at_other_sizes(self._low, typical, self.policy.fits))
+            with self._stage(then):
+                self._race(at_other_sizes(self._low, typical, self.policy.fits))
 
     def _race(self, entries: Entries) -> None:
         """Candidates alone: raced by the low-fidelity model, those within reach of the best then by the model."""
@@ -259,15 +274,15 @@ class Search:
     def _least(self) -> float:
         return min(one.fit.evaluation.sum_of_squares for one in self.fits.values())
 
-    def _rounds(self, share: float) -> None:
+    def _rounds(self) -> None:
         """Propose and fit until nothing promises more."""
         while not self.problem.time_limit.is_over():
             rows = self._proposals(self._choose())
             if not rows:
                 return
-            share += 0.3 * (1.0 - share)
-            self._say(", ".join(" + ".join(sorted(row.names)) for row in rows), share)
-            self._keep({row.names: partial(self._fitted, row) for row in rows})
+            named = Stage(", ".join(" + ".join(sorted(row.names)) for row in rows))
+            with self._stage(ROUND), self._stage(named):
+                self._keep({row.names: partial(self._fitted, row) for row in rows})
 
     def _proposals(self, choice: Choice) -> list[Row]:
         """What to fit next: better than any model, else parts of the answer, else its rivals."""

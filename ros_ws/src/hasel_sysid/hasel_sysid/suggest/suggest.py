@@ -1,11 +1,12 @@
 """Which experiment would make the remaining explanations differ most, in units of the noise."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
+from hasel_common.workload import Workload
 from hasel_recording import HASEL_PAIR
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
@@ -14,11 +15,10 @@ from hasel_sim.simulate import simulate_many
 
 from hasel_sysid.drive_match import model_channels
 from hasel_sysid.errors import SysidError
+from hasel_sysid.expected_work import NEXT_RUNS, work_of
 from hasel_sysid.noise.model import NoiseModel
 from hasel_sysid.problem import low_fidelity
 from hasel_sysid.suggest.manoeuvre import Manoeuvre, manoeuvres
-
-Progress = Callable[[str, float], None]
 
 
 @dataclass(frozen=True)
@@ -46,14 +46,14 @@ def suggest(
     candidates: dict[str, Model],
     noise: NoiseModel,
     highest: float,
-    progress: Progress | None = None,
+    workload: Workload | None = None,
     brief: bool = False,
 ) -> list[Suggestion]:
     """Rank all safe experiments, best first.
 
     candidates: fitted models by the effect that each adds; highest: largest level allowed, in the unit of the drive;
-    brief: only a few experiments, at the highest level. An experiment is as good as it is for the pair of explanations
-    that it separates least. Raises SysidError where none is possible.
+    brief: only a few experiments, at the highest level; workload: counts simulations. An experiment is as good as it is
+    for the pair of explanations that it separates least. Raises SysidError where none is possible.
     """
     model = next(iter(candidates.values()))
     levels, channels, unit = model.levels, model_channels(model) or HASEL_PAIR, model.drive_unit
@@ -69,19 +69,24 @@ def suggest(
             f"{levels[0]:g} {unit}; raise --max-voltage"
         )
     coarse = {name: low_fidelity(model) for name, model in candidates.items()}
+    workload = workload or Workload()
+    runs = [manoeuvre.run() for manoeuvre in library]
+    work = sum(work_of(each, runs) for each in coarse.values())
     futures = [
         {name: pool.submit(_simulated, each, group) for name, each in coarse.items()}
         for group in _alike(library)
     ]
     found = []
-    for number, (group, pending) in enumerate(zip(_alike(library), futures, strict=True)):
-        simulated = {name: future.result() for name, future in pending.items()}
-        for index, manoeuvre in enumerate(group):
-            series = {name: each[index] for name, each in simulated.items() if each[index] is not None}
-            if len(series) == len(coarse):
-                found.append(_suggestion(manoeuvre, series, noise))
-        if progress:
-            progress(str(group[-1]), (number + 1) / len(futures))
+    with workload.stage(replace(NEXT_RUNS, work=work, known=True)):
+        for group, pending in zip(_alike(library), futures, strict=True):
+            simulated = {name: future.result() for name, future in pending.items()}
+            for index, manoeuvre in enumerate(group):
+                series = {name: each[index] for name, each in simulated.items() if each[index] is not None}
+                if len(series) == len(coarse):
+                    found.append(_suggestion(manoeuvre, series, noise))
+                for model in coarse.values():
+                    workload.did(work_of(model, [manoeuvre.run()]))
+            workload.check()
     return sorted(found, key=lambda suggestion: -suggestion.difference)
 
 

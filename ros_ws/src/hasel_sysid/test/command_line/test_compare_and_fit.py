@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hasel_common.workload import Workload
 from hasel_recording import Recording, read_recording, write_recording
 from hasel_sim.model import load_model, save_model
 from hasel_sysid.command_line import compare, convert, fit
@@ -189,18 +190,18 @@ def test_convert_goes_both_ways(folder, tmp_path):
 
 @pytest.fixture
 def interrupted_after(monkeypatch):
-    """Let Ctrl-C come when a command reports its progress for the n-th time."""
+    """Let Ctrl-C come when a command tells how far it is for the n-th time."""
 
     def interrupt(command, calls: int) -> None:
         @contextmanager
-        def bar(title: str):
+        def bar(title: str, plan, usual_speed: float):
             left = iter(range(calls))
 
             def show(text: str, share: float) -> None:
                 if next(left, None) is None:
                     raise KeyboardInterrupt
 
-            yield show
+            yield Workload(plan, tell=show)
 
         monkeypatch.setattr(command, "progress_bar", bar)
 
@@ -209,7 +210,7 @@ def interrupted_after(monkeypatch):
 
 def test_ctrl_c_leaves_the_best_model(folder, tmp_path, capsys, interrupted_after):
     """A fit that is interrupted says so in one line and leaves the best model so far."""
-    interrupted_after(fit, 2)
+    interrupted_after(fit, 5)
     assert fit.main([*_arguments(folder, "coarse.yaml"), "--output", str(tmp_path)]) == 130
     assert "wrote the best model so far" in capsys.readouterr().err
     assert load_model(tmp_path / "fitted_model.yaml").values["slope"] != 1.0
@@ -225,7 +226,7 @@ def test_ctrl_c_before_anything_is_known(folder, tmp_path, capsys, interrupted_a
 
 def test_ctrl_c_keeps_the_models_compared_so_far(folder, tmp_path, capsys, interrupted_after):
     """An interrupt during the second of two models reports the first."""
-    interrupted_after(compare, 3)
+    interrupted_after(compare, 4)
     arguments = [*_arguments(folder, "truth.yaml"), "--model", str(folder / "coarse.yaml")]
     assert compare.main([*arguments, "--output", str(tmp_path)]) == 130
     assert "1 of 2 models were compared" in capsys.readouterr().err

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hasel_common.workload import Workload
 from hasel_recording import Recording, read_recording
 from hasel_sim.model import load_model
 from hasel_sim.parallel import SerialExecutor
@@ -112,15 +113,13 @@ def test_right_model_leaves_only_noise_on_unseen_data(unseen_rig: Path):
     model = load_model("swimmer").with_levels(np.array([3500.0, 4500.0, 5500.0])).with_values(values)
     paths = [unseen_rig / "nothing_hidden" / name for name in ("fit_5500V_3.5Hz.csv", "val_4800V_2.5Hz.csv")]
     fitted, unseen = (experiment_of(read_recording(path)) for path in paths)
-    seen_progress = []
-    compared = compare(
-        model, [fitted], SerialExecutor(), [unseen], progress=lambda text, share: seen_progress.append(share)
-    )
+    work = Workload()
+    compared = compare(model, [fitted], SerialExecutor(), [unseen], workload=work)
     assert compared.mean_absolute_error < 0.004
     assert compared.mean_absolute_error_unseen < 0.004
     assert compared.set_up == ()
     assert compared.where.failures == ()
-    assert seen_progress[-1] == 1.0
+    assert work.now().done == 2
     lagging = compare(model.with_values({"slope": 0.12}), [fitted], SerialExecutor(), [unseen])
     assert lagging.mean_absolute_error > 3 * compared.mean_absolute_error
     assert lagging.where.sentences() != compared.where.sentences()

@@ -10,9 +10,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
 from hasel_common.endpoints import Role
 from hasel_common.managed_node import ManagedNode
 from hasel_common.topics import MEASURED, SIMULATED, STATE
+from hasel_common.workload import Stage
 from hasel_interfaces.msg import BendingAngle, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import Recording
@@ -23,6 +25,7 @@ from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 from hasel_sim.simulator_messages import angle_message, to_nanoseconds, to_time
 from hasel_sysid import sysid_node
+from hasel_sysid.errors import SysidError
 from hasel_sysid.sysid_node import SysidNode
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.parameter import Parameter
@@ -208,6 +211,44 @@ def test_what_was_heard_is_fitted_while_the_node_goes_on(talk, recording, held_f
     assert found == pytest.approx(TRUTH, rel=1e-3)
     assert load_model(talk.fits[0].model).values == pytest.approx(found)
     assert talk.fits[0].mean_absolute_error < 1e-4
+
+
+def test_diagnostics_tell_how_far_a_fit_is(talk, recording, held_fit, monkeypatch):
+    """Stage, how many of how many, share and time left, in the sentence and as values of their own."""
+
+    def half_way(_model, _recordings, _method, _jobs, workload):
+        fit = Stage("fit", 10.0, known=True)
+        workload.expect([fit])
+        with workload.stage(fit):
+            for _ in range(5):
+                workload.did()
+            held_fit.answered.wait(60.0)
+        raise SysidError("it was only looked at")
+
+    monkeypatch.setattr(sysid_node, "fit_recordings", half_way)
+    entries = []
+    talk.user.create_subscription(
+        DiagnosticArray, "/diagnostics", lambda array: entries.extend(array.status), 10
+    )
+    talk.say(recording, recording.sin_theta)
+    talk.until(lambda: len(talk.errors) == 61)
+    answer = talk.fit()
+
+    def told() -> list[dict[str, str]]:
+        every = [({v.key: v.value for v in entry.values}, entry.message) for entry in entries]
+        return [{**values, "message": said} for values, said in every if "simulations" in said]
+
+    talk.until(told)
+    held_fit.answered.set()
+    talk.until(answer.done)
+    now = told()[-1]
+    assert now["message"].startswith("fit, 5 of 10 simulations, about 0:00:0")
+    assert (now["stage"], now["simulations done"], now["simulations expected"]) == ("fit", "5", "10")
+    assert float(now["share"]) == 0.5
+    assert float(now["time left [s]"]) >= 0.0
+    entries.clear()
+    talk.until(lambda: entries)
+    assert "stage" not in {v.key for v in entries[-1].values}
 
 
 def test_a_missing_effect_is_named(talk, swimmer, recording):

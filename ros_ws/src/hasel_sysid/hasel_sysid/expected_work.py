@@ -1,0 +1,82 @@
+"""How much work a simulation is, and each stage usually is in simulations of all runs by the fitted model.
+
+By recorded searches (`test/timings/improve.csv`): about the middle of what a stage took; of the rare ones some more,
+as strong effects take longer per simulation. `chance` is about how often a stage comes in use: what is recorded holds
+more of the long searches, which take three to six times as long as the others.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from hasel_common.workload import Stage
+from hasel_sim.model import Model
+from hasel_sim.run import Run
+
+START = Stage("start", 1.0, known=True)
+FIT = Stage("fit", 15.0)
+SET_UP = Stage("faults of the set-up", 28.0, chance=0.4)
+BEGINNINGS = Stage("first of the beginning of every run")
+TYPICAL = Stage("every effect at its typical size", 24.0)
+ALONE = Stage("every effect alone", 36.0, chance=0.6)
+OTHER_SIZES = Stage("every effect alone, from all other sizes", 110.0, chance=0.15)
+NUMBERS = Stage("every number of the model file", 8.0, chance=0.13)
+NUMBERS_ALONE = Stage("every number of the model file alone", 20.0, chance=0.13)
+NUMBERS_OTHER_SIZES = Stage("every number of the model file alone, from all other sizes", 130.0, chance=0.13)
+ROUND = Stage("effects beside each other", 80.0, chance=0.13)
+SET_UP_BESIDE = Stage("faults of the set-up beside them", 18.0, chance=0.02)
+ENDING = Stage("the answer by finer numerics", 8.0, chance=0.4)
+COMPARISON = Stage("comparison", 1.0, known=True)
+NEXT_RUNS = Stage("the next runs", 10.0, chance=0.02)
+
+_DERIVATIVE = 0.5
+"""Time that a derivative takes, of that of a simulation without any."""
+USUAL_SPEED = 20_000.0
+"""Work per second (`work_of`) that is expected before any is measured: of two processes with a core each."""
+
+_CANDIDATES = 31
+"""Effects of the catalogue beside the swimmer, by which the stages of a search were measured."""
+_SEARCH = (TYPICAL, ALONE, OTHER_SIZES)
+_NUMBERS = (NUMBERS, NUMBERS_ALONE, NUMBERS_OTHER_SIZES)
+
+
+def work_of(model: Model, runs: Sequence[Run], derivatives: int = 0) -> float:
+    """Of simulating runs with so many derivatives, in proportion to the time that it takes: elements times steps."""
+    numerics = model.description.numerics
+    duration_s = sum(float(run.time[-1] - run.start) for run in runs)
+    return numerics.mesh_density * numerics.steps_per_second * duration_s * (1.0 + _DERIVATIVE * derivatives)
+
+
+def plan_of_fit(size: float) -> list[Stage]:
+    """The stages of a fit. size: work of one simulation of all runs (`work_of`)."""
+    return _times(size, [FIT, COMPARISON])
+
+
+def plan_of_search(size: float, candidates: int) -> list[Stage]:
+    """The stages of a search among so many effects for what a fitted model lacks; size: as of a fit."""
+    return _times(size * candidates / _CANDIDATES, [*_SEARCH, ROUND])
+
+
+def plan_of_diagnosis(size: float, candidates: int) -> list[Stage]:
+    """The stages of a fit and a diagnosis among so many effects; size: as of a fit."""
+    first, last = plan_of_fit(size)
+    return [first, *plan_of_search(size, candidates), last]
+
+
+def plan_of_improve(size: float, candidates: int) -> list[Stage]:
+    """The stages of `improve` among so many effects; size: as of a fit."""
+    search = _times(size * candidates / _CANDIDATES, [*_SEARCH, *_NUMBERS, ROUND])
+    return [*_times(size, [START, FIT, SET_UP]), *search, *_times(size, [SET_UP_BESIDE, ENDING, NEXT_RUNS])]
+
+
+def plan_of_next_runs(size: float) -> list[Stage]:
+    """The stage that looks for the runs that tell apart what a diagnosis left in doubt; size: as of a fit."""
+    return _times(size, [replace(NEXT_RUNS, chance=1.0)])
+
+
+def plan_of_suggest(size: float, candidates: int) -> list[Stage]:
+    """The stages of a diagnosis, and of the runs that tell apart what it leaves in doubt; size: as of a fit."""
+    return [*plan_of_diagnosis(size, candidates)[:-1], *plan_of_next_runs(size)]
+
+
+def _times(size: float, stages: Sequence[Stage]) -> list[Stage]:
+    return [replace(stage, work=stage.work * size) for stage in stages]
