@@ -3,7 +3,7 @@
 
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help build test test-computing test-timed test-slow fuzz lint format docs demo bench bench-cluster bench-far bench-hidden soak clean
+.PHONY: help build test test-computing test-timed test-slow fuzz lint format docs demo bench bench-cluster bench-far bench-hidden bench-recordings soak clean
 
 ENVIRONMENT := . setup/environment.bash
 PACKAGES := hasel_common hasel_recording hasel_driver hasel_tracker hasel_sim hasel_tracker_lab hasel_sysid hasel_muscle hasel_workbench hasel_bringup hasel_benchmark
@@ -68,6 +68,9 @@ bench-fits: build ## measure how often a fit ends as likely as the truth
 
 bench-cluster: build ## measure how much sooner two workers of a Dask cluster answer than one
 	@bin/ros2-run hasel_benchmark bench_cluster
+
+bench-recordings: build ## measure what `improve` costs for 10, 30 and 100 recordings
+	@bin/ros2-run hasel_benchmark bench_recordings
 
 bench-far: build ## measure how often a constant that is far off is named
 	@bin/ros2-run hasel_benchmark bench_far

@@ -11,7 +11,7 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml", "CHANGELOG.rst"]),
     ],
-    install_requires=["setuptools", "distributed", "numpy>=1.26", "scipy>=1.11"],
+    install_requires=["setuptools", "distributed", "numpy>=1.26", "psutil", "scipy>=1.11"],
     extras_require={"test": ["pytest", "pytest-timeout", "statsmodels"]},
     zip_safe=False,
     maintainer="HASEL swimmer maintainers",
@@ -24,6 +24,7 @@ setup(
             "bench_far = hasel_benchmark.entry:bench_far",
             "bench_fits = hasel_benchmark.entry:bench_fits",
             "bench_hidden = hasel_benchmark.entry:bench_hidden",
+            "bench_recordings = hasel_benchmark.entry:bench_recordings",
         ]
     },
 )

@@ -31,6 +31,12 @@ def bench_hidden() -> int:
     return _run("bench_hidden")
 
 
+@command
+def bench_recordings() -> int:
+    """`bench_recordings`: what do more recordings cost?"""
+    return _run("bench_recordings")
+
+
 def _run(command: str) -> int:
     options = (
         import_module(f"hasel_benchmark.{command}.options").parser().parse_args(user_arguments(sys.argv[1:]))

@@ -47,7 +47,7 @@ def add_further_forces(place, stress, factors, solid, out, lane):
         add_to_nodes(local, elements, e, 0, out, lane)
 
 
-@njit(cache=True, fastmath=True, error_model="numpy")
+@njit(inline="always")
 def _differentiated_laws(columns, motion, solid, signals, loads, out, lane):
     tables, (laws, factors), _, (place, stress, _), _, _ = columns
     lanes = len(lane)
@@ -63,7 +63,7 @@ def _differentiated_laws(columns, motion, solid, signals, loads, out, lane):
             add_further_forces(place, stress, factors[n], solid, out[column], lane)
 
 
-@njit(cache=True, fastmath=True, error_model="numpy")
+@njit(inline="always")
 def _differences(columns, kind, motion, solid, signals, memory, loads, out, lane):
     tables, _, _, further, bodies, (vector, found, history, band) = columns
     which, programs, factors, (gradients, areas, stretch), coefficients, masses, weight, branches = bodies
@@ -93,7 +93,7 @@ def _differences(columns, kind, motion, solid, signals, memory, loads, out, lane
             masses[b],
             factors[b],  # weights of the matrix, which is not wanted
             found,
-            (False, False),
+            (np.bool_(False), np.bool_(False)),
             (vector, found, band, 0),
             lane,
         )
@@ -102,17 +102,17 @@ def _differences(columns, kind, motion, solid, signals, memory, loads, out, lane
             add(nodes, at, factor * load(vector, at, lane))
 
 
-@njit(cache=True, fastmath=True, error_model="numpy")
+@njit(inline="always")
 def _stress_differences(columns, kind, motion, solid, signals, memory, out, lane):
     _, _, _, _, (which, _, factors, _, coefficients, _, _, branches), (_, _, history, _) = columns
     elements, gradients, areas, stretch, muscle, plane_stress = solid
-    if not which[:, 3].any():
-        return
-    lanes, shape = len(lane), (*areas.shape, 4, len(lane))
+    count = which.shape[0] if which[:, 3].any() else 0
+    lanes, shape = len(lane), (areas.shape[0] if count else 0, areas.shape[1], 4, len(lane))
     F, rate, P, total = np.empty(shape), np.empty(shape), np.empty(shape), np.zeros(shape)
-    deformation(motion[0], elements, gradients, stretch, F, lane)
-    deformation(motion[1], elements, gradients, stretch, rate, lane)
-    for b in range(which.shape[0]):
+    if count:
+        deformation(motion[0], elements, gradients, stretch, F, lane)
+        deformation(motion[1], elements, gradients, stretch, rate, lane)
+    for b in range(count):
         if not which[b, 3]:
             continue
         carried(branches[0][b, kind], branches[1][b, kind], memory[0], memory[1], history, lane)
@@ -125,7 +125,7 @@ def _stress_differences(columns, kind, motion, solid, signals, memory, out, lane
             total[:] = 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, fastmath=True, error_model="numpy")
 def add_residual_columns(columns, kind, motion, solid, signals, memory, loads, out, lane):
     """Add what every parameter changes in the residual to its column of out [columns, nodes or more, 2, lanes].
 

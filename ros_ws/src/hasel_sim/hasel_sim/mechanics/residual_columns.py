@@ -203,7 +203,7 @@ class ResidualColumns:
         """
         solid, lanes = self._system.solid, self._system.lanes
         out = np.zeros((len(self), *motion.position.shape))
-        if not len(self):
+        if not self._wanted and not self._bodies and not self.contraction.any():
             return out
         self.call(motion, drive)
         none = np.zeros((0, 1, 1, 3, lanes)), np.zeros((1, 1, 3, lanes))

@@ -22,7 +22,7 @@ from hasel_sim.mechanics.tape_loops import add_slopes, respond, subtract_directi
 from hasel_sim.simd import load, store
 
 
-@njit(cache=True, fastmath=True, error_model="numpy")
+@njit(inline="always")
 def _motion(before, new, to_balance, chosen, room, lane):
     """The motion at the balance of a step that ends with an acceleration; in lanes not chosen one that is known."""
     x, v, a, end, _, _ = room
@@ -31,21 +31,21 @@ def _motion(before, new, to_balance, chosen, room, lane):
     combine(before[0], before[1], before[2], end, to_balance, x, v, a, lane)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(inline="always")
 def _laws(laws, motion, solid, signals, weights, only_rate, by_rate, lane):
     """Differentiate all laws; further stress by the rate alone into `by_rate`."""
     terms, tapes, programs = laws
-    if programs.shape[0] == 0:
-        return
-    respond(tapes, programs, True, motion, solid[:4], signals, weights, terms, lane)
     _, (_, by_value, by_tangent), (place, _, _) = terms
-    by_rate[:] = 0.0
+    if programs.shape[0] > 0:
+        respond(tapes, programs, np.bool_(True), motion, solid[:4], signals, weights, terms, lane)
+        by_rate[:] = 0.0
     for n in range(programs.shape[0]):
-        if programs[n, 2] < 0:
-            add_slopes(tapes, programs[n, 1], -1, place, only_rate, (by_value, by_tangent), by_rate, lane)
+        first = programs[n, 2]
+        if first < 0:
+            add_slopes(tapes, programs[n, 1], first, place, only_rate, (by_value, by_tangent), by_rate, lane)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(inline="always")
 def _matrix(motion, weights, body, drive, terms, found, residual, matrix, bad, lane):
     """Factorise the exact matrix of a step at the motion that it found; its stress comes along."""
     forces, sites, further = terms
@@ -56,12 +56,14 @@ def _matrix(motion, weights, body, drive, terms, found, residual, matrix, bad, l
     else:
         clear_band(band, reach, diagonal, lane)
     out = residual, found, band, diagonal
-    balance(motion, body[0], drive, further, body[1], weights, found, (True, False), out, lane)
+    balance(
+        motion, body[0], drive, further, body[1], weights, found, (np.bool_(True), np.bool_(False)), out, lane
+    )
     add_site_matrix(sites, band, diagonal, lane)
     factorise(matrix, bad, lane)
 
 
-@njit(cache=True, fastmath=True, error_model="numpy")
+@njit(inline="always")
 def _advance_branches(before, memory, kind, scheme, solid, columns, slopes, room, chosen, lane):
     """Bring the derivatives of the branches' stresses to the end of a step, those of the positions being there."""
     x, v, a, end, branch, green = room
@@ -77,7 +79,7 @@ def _advance_branches(before, memory, kind, scheme, solid, columns, slopes, room
     copy_lanes(branch, slopes[3], chosen, lane)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(inline="always")
 def differentiate(
     before,
     new,

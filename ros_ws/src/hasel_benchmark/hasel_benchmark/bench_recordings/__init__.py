@@ -1,0 +1,1 @@
+"""What `improve` costs for more and more recordings."""
