@@ -18,7 +18,8 @@ class Watched:
 
     def __init__(self) -> None:
         self.peak_bytes = 0
-        self._seconds: dict[tuple[int, float], float] = {}
+        self._seconds: dict[psutil.Process, float] = {}
+        self._before: set[psutil.Process] = set()
         self._ends = threading.Event()
         self._thread = threading.Thread(target=self._watch, daemon=True)
 
@@ -28,6 +29,7 @@ class Watched:
         return sum(self._seconds.values())
 
     def __enter__(self) -> "Watched":
+        self._before = set(psutil.Process().children(recursive=True))
         self._thread.start()
         return self
 
@@ -37,14 +39,13 @@ class Watched:
 
     def _watch(self) -> None:
         while not self._ends.wait(LOOK_EVERY_S):
-            self.peak_bytes = max(
-                self.peak_bytes, sum(map(self._look, psutil.Process().children(recursive=True)))
-            )
+            started = set(psutil.Process().children(recursive=True)) - self._before
+            self.peak_bytes = max(self.peak_bytes, sum(map(self._look, started)))
 
     def _look(self, process: psutil.Process) -> int:
         """Bytes that it takes now."""
         with suppress(psutil.Error):  # it has just ended
             times = process.cpu_times()
-            self._seconds[process.pid, process.create_time()] = times.user + times.system
+            self._seconds[process] = times.user + times.system
             return process.memory_full_info().pss
         return 0
