@@ -161,9 +161,10 @@ class Builder:
             laws, more_laws, less_laws = (
                 self._force_laws(effect, p) for p in (self._values[identity], above, below)
             )
+            by_difference = ForceSlope(more_laws, less_laws, width)
             if all(a.sites.same_as(b.sites) for a, b in zip(more_laws, less_laws, strict=True)):
-                return LawSlope(laws, own)
-            return ForceSlope(more_laws, less_laws, width)
+                return LawSlope(laws, own, by_difference)
+            return by_difference
         if effect.regions:
             return LawSlope([self._stress_law(effect, self._values[identity])], own)
         more_solid, less_solid = (

@@ -8,7 +8,7 @@ from hasel_sim.errors import SimulationError
 from hasel_sim.mechanics.generalised_alpha import StepCoefficients
 from hasel_sim.mechanics.marcher import Drives, Marcher
 from hasel_sim.mechanics.motion import DriveState, Motion
-from hasel_sim.mechanics.residual_slopes import NoSlope
+from hasel_sim.mechanics.residual_slopes import NoSlope, beside
 from hasel_sim.mechanics.seen import Seen
 from hasel_sim.mechanics.state import State, StateSlopes
 from hasel_sim.mechanics.stepper import Stepper
@@ -77,7 +77,7 @@ def step_together(
     filled = [*lanes, *[lanes[0]] * (count - len(lanes))]
     system, tolerance = System.beside([lane.system for lane in filled]), lanes[0].prepared.stepper.tolerance
     state, slopes = State.beside([x.state for x in filled]), StateSlopes.beside([x.slopes for x in filled])
-    columns = [type(each[0]).beside(each) for each in zip(*(lane.parameters for lane in filled), strict=True)]
+    columns = [beside(each) for each in zip(*(lane.parameters for lane in filled), strict=True)]
     errors: list[SimulationError | None] = [None] * len(lanes)
     steps = max(map(len, lanes))
     seen = Seen.of(lanes[0].prepared.rows.nodes, steps + 1, state, len(columns), keep_shapes)
@@ -130,10 +130,10 @@ def _coefficients(lanes: Sequence[Lane], steps: int) -> tuple[np.ndarray, list[S
     kinds: list[int] = []
     known: dict[tuple[int, ...], int] = {}
     out: list[StepCoefficients] = []
-    for beside in zip(*each, strict=True):
-        key = tuple(map(id, beside))
+    for here in zip(*each, strict=True):
+        key = tuple(map(id, here))
         if key not in known:
             known[key] = len(out)
-            out.append(StepCoefficients.beside(beside))
+            out.append(StepCoefficients.beside(here))
         kinds.append(known[key])
     return np.array(kinds), out

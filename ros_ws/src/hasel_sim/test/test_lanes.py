@@ -49,3 +49,18 @@ def test_runs_of_several_voltages_give_what_they_give_alone(swimmer, boxes):
         assert beside.slopes == pytest.approx(alone, abs=1e-6 * np.abs(alone).max())
         moved = {name for name, column in zip(NAMES, beside.slopes.T, strict=True) if column.any()}
         assert moved == set(NAMES) - {silent}
+
+
+def test_a_place_at_its_end_goes_beside_one_that_moves(boxes):
+    """A tether beyond the tail marker holds that marker, wherever it is said to be; one before it moves."""
+    names, run = ["tether.position", "tether.stiffness"], boxes(duration=0.2, voltage=3500.0)
+    held = load_model("swimmer").with_levels(np.array([3500.0])).with_effects("tether")
+    held = held.with_values({"amplitude_3500": 0.03, "tether.stiffness": 20.0})
+    tail = held.description.markers["tail"].x_m
+    models = [held.with_values({"tether.position": place}) for place in (0.5 * tail, 1.2 * tail)]
+    for order in (models, models[::-1]):
+        for model, found in zip(order, simulate_many([(each, run) for each in order], names), strict=True):
+            alone = simulate(model, run, names).slopes
+            assert found.slopes == pytest.approx(alone, rel=1e-5, abs=1e-7 * np.abs(alone).max())
+    assert not simulate(models[1], run, names).slopes[:, 0].any()
+    assert simulate(models[0], run, names).slopes[:, 0].any()

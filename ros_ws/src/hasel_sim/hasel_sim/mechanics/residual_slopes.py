@@ -44,10 +44,18 @@ class ContractionSlope:
 
 
 class LawSlope:
-    """A parameter of one force or stress effect that changes its laws and not where they act."""
+    """A parameter of one force or stress effect that changes its laws and not where they act.
 
-    def __init__(self, laws: Sequence[ForceLaw | StressLaw], name: str) -> None:
-        self.laws, self.name = laws, name
+    by_difference: the same of a force, should its sites move in another lane.
+    """
+
+    def __init__(
+        self,
+        laws: Sequence[ForceLaw | StressLaw],
+        name: str,
+        by_difference: "ForceSlope | None" = None,
+    ) -> None:
+        self.laws, self.name, self.by_difference = laws, name, by_difference
 
     @staticmethod
     def beside(each: Sequence["LawSlope"]) -> "LawSlope":
@@ -112,3 +120,10 @@ class SystemSlope(_Difference):
 def solids_of(parameter: ResidualSlope) -> tuple[tuple[Solid, np.ndarray], ...]:
     """The solids that a parameter changes, with their factors [lanes] in its difference; none of another kind."""
     return parameter.solids if isinstance(parameter, SolidSlope | SystemSlope) else ()
+
+
+def beside(each: Sequence[Any]) -> Any:
+    """The same parameter of several bodies, one lane after the other, some of which it may not move the sites of."""
+    if any(isinstance(slope, ForceSlope) for slope in each):
+        each = [slope.by_difference if isinstance(slope, LawSlope) else slope for slope in each]
+    return type(each[0]).beside(each)
