@@ -26,18 +26,8 @@ def carried(left, gain, stresses, green, out, lane):
 @njit(cache=True, fastmath=True, error_model="numpy")
 def history(left, gain, stresses, green, out, lane):
     """Derivatives of what the branches carry over a step, [columns, elements, points, 3, lanes]."""
-    lanes, branches = len(lane), stresses.shape[1]
-    size = green.shape[1] * green.shape[2] * green.shape[3] * lanes
-    total = zero(lane)
-    for b in range(branches):
-        total = total + load(gain, b * lanes, lane)
     for c in range(green.shape[0]):
-        for at in range(0, size, lanes):
-            kept = zero(lane) - total * load(green, c * size + at, lane)
-            for b in range(branches):
-                old = load(stresses, (c * branches + b) * size + at, lane)
-                kept = kept + load(left, b * lanes, lane) * old
-            store(out, c * size + at, kept)
+        carried(left, gain, stresses[c], green[c], out[c], lane)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")

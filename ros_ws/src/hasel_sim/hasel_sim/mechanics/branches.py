@@ -59,9 +59,9 @@ class Branches:
         """
         if not np.any(step):
             return stresses.sum(axis=0)
-        out = np.empty((1, *green.shape))
-        loops.history(*self.factors(step), stresses[None], green[None], out, lane_tuple(green.shape[-1]))
-        return out[0]
+        out = np.empty_like(green)
+        loops.carried(*self.factors(step), stresses, green, out, lane_tuple(green.shape[-1]))
+        return out
 
     def advance(
         self, stresses: np.ndarray, green: np.ndarray, new_green: np.ndarray, step: float | np.ndarray
