@@ -10,6 +10,7 @@ from hasel_sysid.dataset import load_experiments
 
 FOLDER = Path(__file__).resolve().parents[3] / "shared" / "data" / "real_beam"
 INTERNAL_LOSSES = {"material_damping", "structural_damping", "viscoelastic_creep"}
+STIFFER = {"soft_modulus", "viscoelastic_creep", "slow_creep"}
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.timeout(1200),
@@ -62,13 +63,6 @@ def test_a_loss_inside_the_material_is_missing(found, runs):
     assert damping_ratio == pytest.approx(0.05, abs=0.015)
 
 
-def test_one_swing_cannot_tell_the_damping_laws_apart(found):
-    """The loss that is named stands in a group with at least one other law of damping."""
-    named = set(found["verdict"]["missing"]) & INTERNAL_LOSSES
-    laws = INTERNAL_LOSSES | {"linear_drag"}
-    assert any(set(group) & named and len(set(group) & laws) >= 2 for group in found["indistinguishable"])
-
-
 def swinging_stiffness(stage):
     """Over that of the static test, at the rate of the swing: its own constant and what creeps in the course of it."""
     value = {name: entry["value"] for name, entry in stage["parameters"].items()}
@@ -76,20 +70,26 @@ def swinging_stiffness(stage):
     return value.get("soft_modulus.scale", 1.0) * (1 + sum(ratios))
 
 
-def test_stiffness_is_a_wrong_constant_or_creep(found):
-    """The beam swings as if it were about 17 % stiffer than the 264 kPa of its static test, which took its time."""
-    named = set(found["verdict"]["missing"]) & {"soft_modulus", "viscoelastic_creep", "slow_creep"}
-    assert named
-    assert swinging_stiffness(found["stages"][-1]) == pytest.approx(1.17, abs=0.05)
-    groups = [set(group) for group in found["indistinguishable"] if set(group) & named]
-    assert "soft_modulus" in named.union(*groups)
+def test_the_beam_swings_stiffer_than_its_static_test(found):
+    """As if by about 17 % over the 264 kPa of that test, which took its time: a wrong constant, or creep."""
+    assert set(found["verdict"]["missing"]) & STIFFER
+    assert swinging_stiffness(found["stages"][-1]) == pytest.approx(1.17, abs=0.02)
+
+
+def test_a_wrong_modulus_stands_beside_creep_as_a_model_of_the_swing(found):
+    """Both are fitted beside the same loss, and predict to within a few hundredths of each other's error."""
+    internal = {"initial_relaxation", "material_damping"}
+    fitted = [set(model["effects"]) for model in found["models"]]
+    assert {*internal, "soft_modulus"} in fitted
+    assert any({*internal, creep} in fitted for creep in ("slow_creep", "viscoelastic_creep"))
 
 
 def test_error_falls_on_the_run_that_was_not_fitted(found):
-    """Forty-nine fiftieths of the elastic model's error are gone on run b too."""
+    """A hundredth of the elastic model's error is left, on run b too, and it counts as described."""
     first, last = found["stages"][0], found["stages"][-1]
-    assert last["mae_fit"] < 0.02 * first["mae_fit"]
-    assert last["mae_validation"] < 0.02 * first["mae_validation"]
+    assert last["mae_fit"] < 0.0105 * first["mae_fit"]
+    assert last["mae_validation"] < 0.0105 * first["mae_validation"]
+    assert found["verdict"]["adequate"]
 
 
 @pytest.mark.parametrize("body", ["found", "loaded"])
@@ -108,12 +108,10 @@ def loaded(pool):
     return answer(load_model("beam"), *runs, pool)
 
 
-def test_a_load_at_the_tip_is_named_or_stands_for_what_is(loaded):
-    """One swing tells stiffness and mass by their ratio only; with the damping, the unseen run is met to 0.003."""
-    named = set(loaded["verdict"]["missing"])
-    groups = [set(group) for group in loaded["indistinguishable"] if set(group) & named]
-    assert "payload" in set().union(named, *groups)
-    assert loaded["stages"][-1]["mae_validation"] < 0.003
+def test_a_load_at_the_tip_is_a_load_or_a_softer_body(loaded):
+    """One swing tells stiffness and mass by their ratio only; with the damping, the unseen run is met to 0.002."""
+    assert set(loaded["verdict"]["missing"]) & {"payload", "soft_modulus"}
+    assert loaded["stages"][-1]["mae_validation"] < 0.002
 
 
 def test_the_loaded_beam_is_not_called_explained(loaded):

@@ -44,6 +44,11 @@ class Candidate:
         return {self.path(p): p for p in self.parameters if p.scan}
 
     @property
+    def is_signed(self) -> bool:
+        """Whether its sizes may lie on either side of their nulls."""
+        return all(p.lower < p.null < p.upper for p in self.sizes.values())
+
+    @property
     def acts_at_a_place(self) -> bool:
         """Whether a coordinate is a place, or a strain from which on it acts, and no time: what acts where the body
         hardly moves does nothing there, and much on either side, so that no derivative leads from one to another.

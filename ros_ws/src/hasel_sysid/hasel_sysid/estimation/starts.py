@@ -1,7 +1,7 @@
 """Where a fit begins: a typical size and the decades of the plausible range, at every time and place (multi-start)."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from hasel_sim.effects.base import EffectParameter
@@ -14,8 +14,8 @@ from hasel_sysid.projection import orthonormal
 
 MOST_FOLLOWED = 12
 """Starts that are gone on from at most, the most promising of all that were screened."""
-_MOST = 2.0
-"""Multiples of a start up to which its change is taken to be in proportion."""
+_LEAST, _MOST = 0.1, 2.0
+"""Multiples of a start between which its change is taken to be in proportion, and not lost beside what is not."""
 _FACTOR = np.sqrt(10.0)
 
 
@@ -38,6 +38,20 @@ class Start:
     def model(self, beside: Model) -> Model:
         """The model with the candidate at this start. Raises ModelError where it does not fit in."""
         return self.candidate.added_to(beside).with_values(dict(self.values))
+
+    def times(self, amount: float) -> "Start":
+        """The same with its sizes so many times as far from their nulls, as far as their ranges allow."""
+        sizes = {
+            name: float(np.clip(p.null + amount * (self.values[name] - p.null), p.lower, p.upper))
+            for name, p in self.candidate.sizes.items()
+            if name in self.values
+        }
+        return replace(self, values={**self.values, **sizes}, factor=amount * self.factor)
+
+    def where_it_explains(self, amount: float) -> "Start":
+        """The same where that many times of it would be wanted in proportion, as far as that can be said of it."""
+        size = float(np.clip(abs(amount), _LEAST, _MOST))
+        return self.times(-size if amount < 0 and self.candidate.is_signed else size)
 
 
 def starts(candidate: Candidate) -> list[Start]:
@@ -105,13 +119,7 @@ class Screened:
         as its range allows, or as it is where that is nothing; another size as it is.
         """
         amount = self.amount if self.start.typical and self.amount else 1.0
-        sizes = self.start.candidate.sizes
-        return {
-            name: float(np.clip(p.null + amount * (value - p.null), p.lower, p.upper))
-            if (p := sizes.get(name))
-            else value
-            for name, value in self.start.values.items()
-        }
+        return dict(self.start.times(amount).values)
 
 
 def screen(problem: Problem, about: Evaluation, every: Sequence[Start]) -> list[Screened]:
@@ -136,10 +144,9 @@ def _screened(start: Start, residual: np.ndarray, basis: np.ndarray, change: np.
     left = residual - basis @ (basis.T @ residual)
     own = change - basis @ (basis.T @ change)
     power = float(own @ own)
-    signed = all(p.lower < p.null < p.upper for p in start.candidate.sizes.values())
     amount = 0.0
     if power > 0:
-        amount = float(np.clip(own @ left / power, -_MOST if signed else 0.0, _MOST))
+        amount = float(np.clip(own @ left / power, -_MOST if start.candidate.is_signed else 0.0, _MOST))
     beyond = left - amount * own
     strength = float(change @ change) / max(float(residual @ residual), 1e-300)
     return Screened(start, change, amount, float(beyond @ beyond), strength)

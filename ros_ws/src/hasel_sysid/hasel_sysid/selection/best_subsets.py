@@ -12,7 +12,7 @@ import numpy as np
 
 from hasel_sysid.candidates import compatible
 from hasel_sysid.estimation.least_squares import bounded_change
-from hasel_sysid.selection.likelihood import FittedSet, Likelihood, Names
+from hasel_sysid.selection.likelihood import NOTHING, FittedSet, Likelihood, Names
 from hasel_sysid.selection.linearise import CandidateColumns, own_columns, room
 
 _SHORTLIST = 40
@@ -34,10 +34,11 @@ def best_subsets(
     likelihood: Likelihood,
     most: int,
     penalty: float,
+    holding: Names = NOTHING,
 ) -> list[Row]:
     """The most promising sets of up to `most` candidates, by log-likelihood less a penalty for each of them.
 
-    columns: of every candidate that `about` has not, beside it.
+    columns: of every candidate that `about` has not, beside it; holding: what every set has to have.
     """
     parts = {**columns, **{name: own_columns(about, name) for name in about.names}}
     names = sorted(parts)
@@ -63,7 +64,7 @@ def best_subsets(
         group
         for size in range(most + 1)
         for group in combinations(names, size)
-        if compatible([parts[name].candidate for name in group])
+        if holding <= set(group) and compatible([parts[name].candidate for name in group])
     ]
     shortlist = sorted(every, key=lambda group: -unbounded(group))[:_SHORTLIST]
     rows = [_row(about, parts, base, frozenset(group), likelihood) for group in shortlist]

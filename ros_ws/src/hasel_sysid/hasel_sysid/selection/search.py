@@ -23,6 +23,7 @@ from hasel_sysid.candidates import Candidate, compatible, constants_of
 from hasel_sysid.estimation.covariance import changes_by_refinement
 from hasel_sysid.estimation.fit import FittedModel, fit, fitted_model, mapped
 from hasel_sysid.estimation.growing_horizon import in_phase
+from hasel_sysid.estimation.least_squares import OPTIMISM
 from hasel_sysid.estimation.starts import Screened, starts
 from hasel_sysid.expected_work import (
     ALONE,
@@ -285,22 +286,42 @@ class Search:
                 self._keep({row.names: partial(self._fitted, row) for row in rows})
 
     def _proposals(self, choice: Choice) -> list[Row]:
-        """What to fit next: better than any model, else parts of the answer, else its rivals."""
+        """What to fit next: better than any model, else parts of the answer, else its rivals.
+
+        First order is believed for one candidate more than a fitted set has at a time, and for two beside the baseline,
+        which may hide each other.
+        """
         about = self._likeliest()
         answer = choice.chosen
-        parts = [answer - {gone} for gone in answer if answer - {gone} not in self._tried]
-        table = [row for row in self._table(about) if row.names not in self._tried]
+        most = min(self.policy.most_effects, max(2, len(about) + 1))
         better = [
-            row for row in table if row.logarithm - self.threshold * len(row.names) > self._value(about)
+            row
+            for row in self._table(about, most)
+            if row.names not in self._tried
+            and row.logarithm - self.threshold * len(row.names) > self._value(about)
         ]
-        within = self.models[answer].whitened.logarithm - self.policy.reach
-        rivals = [row for row in table if answer and len(row.names) == len(answer) and row.logarithm > within]
+        parts = [answer - {gone} for gone in sorted(answer)]
         values = self.fits[answer].fit.model.values
         return (
             self._first("better", about, better)
-            or [Row(part, 0.0, values) for part in parts]
-            or self._first("rival", answer, rivals)
+            or [Row(part, 0.0, values) for part in parts if part not in self._tried]
+            or [row for part in parts for row in self._first("rival", part, self._rivals(answer, part))]
         )
+
+    def _rivals(self, answer: Names, part: Names) -> list[Row]:
+        """Sets with another candidate beside a part of the answer, if twice what first order about that part promises
+        brings them within reach of the answer. Beside nothing the race has answered.
+        """
+        if not part or part not in self.models:
+            return []
+        without, whole = (self.models[names].whitened.logarithm for names in (part, answer))
+        return [
+            row
+            for row in self._table(part, len(answer), part)
+            if len(row.names) == len(answer)
+            and row.names not in self._tried
+            and OPTIMISM * (row.logarithm - without) >= whole - without - self.policy.reach
+        ]
 
     def _first(self, kind: str, of: Names, rows: Sequence[Row]) -> list[Row]:
         """Of one table no more than the first few are followed: where they were no better, first order is not true."""
@@ -309,31 +330,32 @@ class Search:
         self._proposed[(kind, of)] = done + len(found)
         return found
 
-    def _table(self, about: Names) -> list[Row]:
-        """Every set, to first order about a fitted one; believed for one candidate more than that at a time, and for
-        two beside the baseline, which may hide each other.
-        """
+    def _table(self, about: Names, most: int, holding: Names = NOTHING) -> list[Row]:
+        """Every set of so many candidates that has these, to first order about a fitted one."""
         if about not in self._columns:
             self._columns[about] = self._linearised(about)
-        most = min(self.policy.most_effects, max(2, len(about) + 1))
-        return best_subsets(self.fits[about], self._columns[about], self.likelihood, most, self.threshold)
+        columns = self._columns[about]
+        return best_subsets(self.fits[about], columns, self.likelihood, most, self.threshold, holding)
 
     def _linearised(self, about: Names) -> dict[str, CandidateColumns]:
         """Columns of every candidate that fits beside a set: by its own derivatives there where its score is more than
-        noise makes of it, else by the secant that is known from beside the baseline.
+        noise makes of it, at the size that explains most in proportion; else by the secant that is known from beside
+        the baseline.
         """
         of, white = self.fits[about], self.models[about].whitened
-        best: dict[str, tuple[float, Screened]] = {}
+        best: dict[str, tuple[float, float, Screened]] = {}
         for one in self.screened:
             candidate = one.start.candidate
             if self._fits_beside(candidate, of.candidates):
-                gain = _gain(white, self.likelihood.whiten(one.change))
+                gain, amount = _gain(white, self.likelihood.whiten(one.change))
                 best[candidate.name] = max(
-                    best.get(candidate.name, (-1.0, one)), (gain, one), key=lambda g: g[0]
+                    best.get(candidate.name, (-1.0, 0.0, one)), (gain, amount, one), key=lambda g: g[0]
                 )
         ranked = sorted(best.values(), key=lambda gained: -gained[0])
-        columns = {one.start.candidate.name: secant(one) for _, one in ranked}
-        promising = [one.start for gain, one in ranked if gain > self.threshold][:_LINEARISED]
+        columns = {one.start.candidate.name: secant(one) for *_, one in ranked}
+        promising = [
+            one.start.where_it_explains(amount) for gain, amount, one in ranked if gain > self.threshold
+        ][:_LINEARISED]
         if about != NOTHING and promising:
             problem = LowFidelityProblem(self.problem, of.fit.evaluation)
             columns |= {one.candidate.name: one for one in linearise(problem, of, promising)}
@@ -374,11 +396,12 @@ def _if_possible(call: Callable[[], FittedSet]) -> FittedSet | None:
         return None
 
 
-def _gain(fitted: Whitened, column: np.ndarray) -> float:
-    """Of the log-likelihood, by a whitened column [frames] beside a fitted model."""
+def _gain(fitted: Whitened, column: np.ndarray) -> tuple[float, float]:
+    """Of the log-likelihood, by a whitened column [frames] beside a fitted model, and by how many times of it."""
     look = fitted.beyond(column)
     power = float(look @ look)
-    return 0.5 * float(look @ fitted.residual) ** 2 / power if power > 0 else 0.0
+    score = float(look @ fitted.residual)
+    return (0.5 * score**2 / power, score / power) if power > 0 else (0.0, 0.0)
 
 
 def _at(model: Model, values: dict[str, float]) -> Model:
