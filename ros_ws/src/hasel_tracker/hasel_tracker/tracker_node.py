@@ -22,10 +22,11 @@ from rcl_interfaces.msg import SetParametersResult
 from rclpy.executors import ExternalShutdownException
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
-from sensor_msgs.msg import CompressedImage
+from sensor_msgs.msg import CameraInfo, CompressedImage
 from std_srvs.srv import SetBool, Trigger
 
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
+from hasel_tracker.calibration.camera_info import camera_info
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.image_topic import ImageTopic
 from hasel_tracker.live_tracker import LiveTracker, health_values, judge
@@ -55,6 +56,7 @@ class TrackerNode(ManagedNode):
         declare(self, PARAMETERS)
         self._angles = publisher(self, BendingAngle, MEASURED, Role.SAMPLES)
         self._previews = publisher(self, CompressedImage, "~/preview/compressed", Role.PICTURES)
+        self._lenses = publisher(self, CameraInfo, "~/camera_info", Role.PICTURES)
         self._diagnostics = Diagnostics(self, Part.TRACKING)
         self._next_preview_s = 0.0
         self._reported_drops = 0
@@ -154,7 +156,10 @@ class TrackerNode(ManagedNode):
             self._next_preview_s = time.monotonic() + 1.0 / rate
             picture = preview(frame.image, tracked, self._value("preview_width"))
             _, jpeg = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, PREVIEW_JPEG_QUALITY])
-            self._previews.publish(compressed_image(jpeg.tobytes(), frame.stamp_ns, frame_id))
+            message = compressed_image(jpeg.tobytes(), frame.stamp_ns, frame_id)
+            self._previews.publish(message)
+            lens = None if live is None else live.tracker.calibration
+            self._lenses.publish(camera_info(lens, picture.shape[1::-1], message.header))
 
     def _report(self) -> None:
         if self.active and self._live is not None:

@@ -26,7 +26,7 @@ from rcl_interfaces.srv import DescribeParameters, SetParameters
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_sensor_data
-from sensor_msgs.msg import CompressedImage, Image
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image
 from std_srvs.srv import SetBool, Trigger
 
 PATIENCE_S = 100.0  # a busy machine takes half a minute to start a node
@@ -40,6 +40,7 @@ class Observer(Node):
         super().__init__("observer")
         self.angles: list[BendingAngle] = []
         self.previews: list[CompressedImage] = []
+        self.lenses: list[CameraInfo] = []
         self.reports: list[DiagnosticArray] = []
         self.create_subscription(BendingAngle, "/hasel/bending/measured", self.angles.append, 1000)
         self.create_subscription(
@@ -47,6 +48,9 @@ class Observer(Node):
             "/hasel/hasel_tracker/preview/compressed",
             self.previews.append,
             qos_profile_sensor_data,
+        )
+        self.create_subscription(
+            CameraInfo, "/hasel/hasel_tracker/camera_info", self.lenses.append, qos_profile_sensor_data
         )
         self.create_subscription(DiagnosticArray, "/diagnostics", self._note_report, 10)
 
@@ -148,6 +152,8 @@ def test_video_becomes_angles_preview_and_diagnostics(observer, start, long_vide
     assert abs(stamps[-1] - time.time()) < 60.0
     picture = cv2.imdecode(np.frombuffer(observer.previews[0].data, np.uint8), cv2.IMREAD_COLOR)
     assert picture.shape == (180, 320, 3)
+    assert (observer.lenses[0].height, observer.lenses[0].width) == (180, 320)
+    assert observer.lenses[0].header.frame_id == observer.previews[0].header.frame_id
     keys = {value.key for value in observer.reports[0].status[0].values}
     assert {"frame rate [1/s]", "mean latency [ms]", "dropped frames", "quality of head"} <= keys
 

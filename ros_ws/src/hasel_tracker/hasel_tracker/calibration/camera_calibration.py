@@ -28,6 +28,11 @@ class CameraCalibration:
     pixel_to_plane: np.ndarray
     error_px: float
 
+    @property
+    def has_lens(self) -> bool:
+        """Whether the lens was calibrated, and not the perspective or a scale only."""
+        return not np.array_equal(self.camera_matrix, np.eye(3))
+
     def to_plane(self, points_px: np.ndarray, image_size_px: tuple[int, int]) -> np.ndarray:
         """Plane positions [m] of image points [px], both (n, 2); NaN stays NaN."""
         if tuple(image_size_px) != tuple(self.image_size_px):
