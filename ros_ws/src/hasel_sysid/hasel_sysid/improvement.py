@@ -7,21 +7,20 @@ from functools import partial
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
+from hasel_sysid.answer.diagnosis import Diagnosis, Verdict
+from hasel_sysid.answer.result import Improvement, Stage, Status, WrongConstant
+from hasel_sysid.answer.set_up_verdict import recorded_or_read
+from hasel_sysid.answer.verdict import diagnosis, share_left, status_with
 from hasel_sysid.candidates import Candidate, effects_of
-from hasel_sysid.diagnosis import Diagnosis, Verdict
 from hasel_sysid.estimation.fit import FittedModel, exact, fit_baseline, fitted_model, refined
 from hasel_sysid.estimation.growing_horizon import horizons, in_phase
 from hasel_sysid.expected_work import BEGINNINGS, ENDING
-from hasel_sysid.model_checking.constancy import against_law
-from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
+from hasel_sysid.model_checking import against_law, goodness_of_fit
 from hasel_sysid.policy import POLICY, Policy
 from hasel_sysid.problem import Problem
-from hasel_sysid.reading import recorded_or_read
-from hasel_sysid.result import Improvement, Stage, Status, WrongConstant
 from hasel_sysid.selection.choose import best_of, is_better
 from hasel_sysid.selection.likelihood import NOTHING, FittedSet, Likelihood
 from hasel_sysid.selection.search import IsLaw, Search, Searched
-from hasel_sysid.verdict import diagnosis, share_left, status_with
 
 OnStage = Callable[[Stage], None]
 

@@ -17,12 +17,10 @@ from hasel_sim.parallel import submit_each
 from hasel_sim.run import Simulation
 
 from hasel_sysid.errors import SysidError
-from hasel_sysid.expected_work import work_of
+from hasel_sysid.expected_work import TimeLimit, work_of
 from hasel_sysid.experiment import Experiment
-from hasel_sysid.noise.model import NoiseModel
-from hasel_sysid.noise.sources import measured_noise
+from hasel_sysid.noise import NoiseModel, measured_noise
 from hasel_sysid.policy import POLICY
-from hasel_sysid.time_limit import TimeLimit
 
 
 @dataclass(frozen=True)

@@ -5,19 +5,17 @@ import sys
 from collections.abc import Sequence
 from dataclasses import replace
 
+from hasel_common.command_entry import BAD_INPUT
 from hasel_recording import Recording, RecordingError
 from hasel_recording.reading import distinct_names, drive_of_each, read_recording
 from hasel_sim.model import Model, load_model
 
-from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.parsers import check_parser
-from hasel_sysid.command_line.running import BAD_INPUT, run_command
-from hasel_sysid.data_gate.check import refusal
-from hasel_sysid.data_gate.understood import Summary, summary
+from hasel_sysid.command_line.options import check_parser
+from hasel_sysid.command_line.running import run_command, write_json
+from hasel_sysid.data_quality.recording_check import Summary, refusal, summary
 from hasel_sysid.dataset import for_model
 from hasel_sysid.errors import SysidError
-from hasel_sysid.experiment import experiment_of
-from hasel_sysid.repeated_runs import is_repeat
+from hasel_sysid.experiment import experiment_of, is_repeat
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

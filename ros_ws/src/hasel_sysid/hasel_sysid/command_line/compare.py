@@ -9,14 +9,11 @@ from hasel_common.workload import Stage
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
-from hasel_sysid.command_line.chosen_model import chosen_model
-from hasel_sysid.command_line.inputs import load_all
-from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.parsers import compare_parser
-from hasel_sysid.command_line.running import run_command
+from hasel_sysid.command_line.inputs import chosen_model, load_all
+from hasel_sysid.command_line.options import compare_parser
+from hasel_sysid.command_line.running import run_command, workers, write_json
 from hasel_sysid.command_line.shown import code_after, show
-from hasel_sysid.command_line.workers import workers
-from hasel_sysid.compare import Comparison, compare
+from hasel_sysid.comparison import Comparison, compare
 from hasel_sysid.dataset import for_model, simulable
 from hasel_sysid.expected_work import USUAL_SPEED, work_of
 from hasel_sysid.experiment import Experiment

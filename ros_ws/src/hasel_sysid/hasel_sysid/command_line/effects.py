@@ -8,7 +8,7 @@ from pathlib import Path
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import Model, load_model, save_model
 
-from hasel_sysid.command_line.parsers import add_parser, remove_parser
+from hasel_sysid.command_line.options import add_parser, remove_parser
 from hasel_sysid.command_line.running import run_command
 from hasel_sysid.errors import SysidError
 

@@ -1,12 +1,18 @@
-"""The options that commands share."""
+"""The options of every command, each declared once, and the executables, without anything that takes time to import."""
 
 import argparse
+import gc
 import math
+import sys
+from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 
+from hasel_common.command_entry import command
 from hasel_recording.reading_options import RecordingsParser, add_reading_options
 
 DEFAULT_MODEL = "swimmer"
+FIT_METHODS = ("adam", "least_squares")
 
 
 def recording_options(
@@ -83,7 +89,7 @@ def _add_effects(parser: argparse.ArgumentParser) -> None:
         "--effects",
         metavar="A,B",
         action="extend",
-        type=_names,
+        type=names,
         help="consider only these effects (ids, or path/to/file.py:ClassName); with a + before each, all known ones "
         "and these",
     )
@@ -92,12 +98,13 @@ def _add_effects(parser: argparse.ArgumentParser) -> None:
         metavar="A,B",
         dest="effects",
         action="extend",
-        type=lambda text: tuple(f"+{name.lstrip('+')}" for name in _names(text)),
+        type=lambda text: tuple(f"+{name.lstrip('+')}" for name in names(text)),
         help="the same as --effects +A,+B: consider all known effects and these",
     )
 
 
-def _names(text: str) -> tuple[str, ...]:
+def names(text: str) -> tuple[str, ...]:
+    """Words with commas between them."""
     return tuple(name.strip() for name in text.split(",") if name.strip())
 
 
@@ -146,3 +153,162 @@ def _at_least_one(text: str) -> int:
     if not text.isdecimal() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"{text} is no whole number from 1 on")
     return int(text)
+
+
+def measured_fish_parser() -> argparse.ArgumentParser:
+    """Options of `measured_fish`."""
+    options = argparse.ArgumentParser(
+        prog="measured_fish",
+        description="Compare the speeds of a filmed robot fish, of the public repository srl-ethz/fishsim, with those "
+        "that the forces of the fluid give it for how its tail beats, and check its drive.",
+    )
+    add = options.add_argument
+    add("folder", metavar="DIR", type=Path, help="a clone of the repository, or its folder of markers")
+    add(
+        "--fitted",
+        metavar="HZ,HZ",
+        type=numbers,
+        default=(1.0, 1.75),
+        help="films, by the frequency in their name, that the drag of the head is fitted to (default: 1,1.75)",
+    )
+    add(
+        "--output",
+        metavar="DIR",
+        type=Path,
+        default=Path("measured_fish"),
+        help="folder for what is written (default: measured_fish)",
+    )
+    add("--json", metavar="FILE", type=Path, help="write the results for other programs")
+    return options
+
+
+def numbers(text: str) -> tuple[float, ...]:
+    """Numbers with commas between them. Raises ArgumentTypeError for another text."""
+    try:
+        return tuple(float(number) for number in names(text))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no list of voltages, such as 2000,4000") from None
+
+
+def compare_parser() -> argparse.ArgumentParser:
+    """Options of `compare`."""
+    return recording_options("compare", "Compare a model with recordings.", several_models=True)
+
+
+def fit_parser() -> argparse.ArgumentParser:
+    """Options of `fit`."""
+    options = recording_options("fit", "Identify a model's parameters from recordings.")
+    options.add_argument(
+        "--method",
+        choices=FIT_METHODS,
+        default="least_squares",
+        help="least_squares, or the seed paper's Adam (default: %(default)s)",
+    )
+    return options
+
+
+def diagnose_parser() -> argparse.ArgumentParser:
+    """Options of `diagnose`."""
+    what = "Rank the effects that a model may lack."
+    options = recording_options("diagnose", what, effects=True, noise=True, everything=True)
+    add_time_limit(options)
+    return options
+
+
+def improve_parser() -> argparse.ArgumentParser:
+    """Options of `improve`."""
+    what = "Add missing effects until what is left is noise or nothing known explains it."
+    options = recording_options("improve", what, effects=True, noise=True, everything=True)
+    add_time_limit(options)
+    return options
+
+
+def suggest_parser() -> argparse.ArgumentParser:
+    """Options of `suggest`."""
+    what = "Propose the next run: the one in which the remaining explanations differ most."
+    options = recording_options("suggest", what, effects=True, noise=True)
+    options.add_argument(
+        "--max-voltage",
+        "--max-level",
+        metavar="LEVEL",
+        dest="max_level",
+        type=float,
+        help="highest safe level of the drive, in its SI unit (default: 5500 V; of other quantities the highest one "
+        "that was recorded)",
+    )
+    return options
+
+
+def check_parser() -> argparse.ArgumentParser:
+    """Options of `check`."""
+    options = RecordingsParser(
+        prog="check",
+        description="Say what was understood of recordings (rate, angle, drive, markers, start) and what looks wrong, "
+        "before anything is fitted. Exit code 0: nothing with which results would mislead.",
+    )
+    options.add_argument("recordings", metavar="RECORDING", nargs="+", type=Path, help=".mcap or .csv file")
+    add_reading_options(options)
+    options.add_argument(
+        "--model", metavar="NAME|FILE", help="say too whether the drive's channels fit this model"
+    )
+    options.add_argument("--json", metavar="FILE", type=Path, help="write the same for other programs")
+    return options
+
+
+def _effects_parser(name: str, description: str, joint: str) -> argparse.ArgumentParser:
+    options = argparse.ArgumentParser(prog=name, description=description)
+    options.add_argument(
+        "effects", metavar="EFFECT", nargs="*", help="id of an effect, or path/to/file.py:ClassName"
+    )
+    options.add_argument(
+        "--model",
+        metavar="NAME|FILE",
+        default=DEFAULT_MODEL,
+        help="model to start from (default: %(default)s)",
+    )
+    options.add_argument(
+        "--output",
+        metavar="DIR|FILE",
+        type=Path,
+        default=Path(),
+        help=f"folder, or .yaml file to write (default: MODEL{joint}EFFECT.yaml here)",
+    )
+    options.add_argument("--list", action="store_true", help="list the effects there are")
+    return options
+
+
+def add_parser() -> argparse.ArgumentParser:
+    """Options of `add`."""
+    return _effects_parser(
+        "add", "Write a model with further effects, at values at which they do nothing.", "+"
+    )
+
+
+def remove_parser() -> argparse.ArgumentParser:
+    """Options of `remove`."""
+    return _effects_parser("remove", "Write a model without some of its effects.", "-")
+
+
+def run_module(parser: Callable[[], argparse.ArgumentParser], module: str, function: str = "run") -> int:
+    """Read the options, then import the command's module and run it."""
+    options = parser().parse_args(sys.argv[1:])
+    code = getattr(import_module(module), function)(options)
+    gc.freeze()  # the process ends: looking once more for what could be collected takes 0.3 s
+    return code
+
+
+def _executable(
+    parser: Callable[[], argparse.ArgumentParser], module: str, function: str = "run"
+) -> Callable[..., int]:
+    return command(lambda: run_module(parser, f"hasel_sysid.command_line.{module}", function))
+
+
+check = _executable(check_parser, "check")
+compare = _executable(compare_parser, "compare")
+fit = _executable(fit_parser, "fit")
+diagnose = _executable(diagnose_parser, "diagnose")
+improve = _executable(improve_parser, "improve")
+suggest = _executable(suggest_parser, "suggest")
+measured_fish = _executable(measured_fish_parser, "measured_fish")
+add = _executable(add_parser, "effects", "run_add")
+remove = _executable(remove_parser, "effects", "run_remove")

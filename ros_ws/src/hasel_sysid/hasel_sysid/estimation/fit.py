@@ -35,7 +35,7 @@ from hasel_sysid.estimation.least_squares import (
 from hasel_sysid.estimation.starts import MOST_FOLLOWED, screen, starts
 from hasel_sysid.expected_work import FIT
 from hasel_sysid.experiment import GENTLEST
-from hasel_sysid.noise.model import estimate_noise
+from hasel_sysid.noise import estimate_noise
 from hasel_sysid.problem import Evaluation, LowFidelityProblem, Problem
 
 TOLERANCE = 1e-3

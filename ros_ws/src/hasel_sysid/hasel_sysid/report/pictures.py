@@ -12,8 +12,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from hasel_sysid.report.content import ReportContent, RunOverlay, StageRow
-from hasel_sysid.report.figures.style import DROP, FITTED, MEASURED, MODELS, NOISE, RISE, UNSEEN
-from hasel_sysid.report.numbers import change_text, error_text
+from hasel_sysid.report.style import DROP, FITTED, MEASURED, MODELS, NOISE, RISE, UNSEEN
+from hasel_sysid.report.wording import change_text, error_text
 
 _DOTS_PER_INCH = 150
 _BESIDE = 4

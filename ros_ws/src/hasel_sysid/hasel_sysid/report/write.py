@@ -1,6 +1,8 @@
 """Write the report: one HTML file that needs no network."""
 
 import json
+import string
+import zlib
 from collections.abc import Sequence
 from dataclasses import replace
 from importlib import resources
@@ -13,22 +15,36 @@ from hasel_sim.model.value_text import value_with_error
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from plotly.offline import get_plotlyjs, get_plotlyjs_version
 
-from hasel_sysid.compare.comparison import Comparison
-from hasel_sysid.report.content import ReportContent
-from hasel_sysid.report.figures.component_map import component_map_figure
-from hasel_sysid.report.figures.conditions import conditions_figures
-from hasel_sysid.report.figures.overlay import model_colours, overlay_figure
-from hasel_sysid.report.figures.phase_map import phase_map_figure
-from hasel_sysid.report.figures.ranking import ranking_figure
-from hasel_sysid.report.figures.residual_tests import residual_tests_figures
-from hasel_sysid.report.figures.shapes import shapes_figure
-from hasel_sysid.report.figures.style import model_colour
-from hasel_sysid.report.figures.waterfall import waterfall_figures
-from hasel_sysid.report.numbers import percent
-from hasel_sysid.report.packed import packed
-from hasel_sysid.report.provenance import provenance
+from hasel_sysid.comparison import Comparison
+from hasel_sysid.report.content import ReportContent, provenance
+from hasel_sysid.report.figures import (
+    component_map_figure,
+    conditions_figures,
+    phase_map_figure,
+    ranking_figure,
+    residual_tests_figures,
+    shapes_figure,
+    waterfall_figures,
+)
+from hasel_sysid.report.overlay import model_colours, overlay_figure
+from hasel_sysid.report.style import model_colour
+from hasel_sysid.report.wording import percent
 
+ALPHABET = f"{string.digits}{string.ascii_uppercase}{string.ascii_lowercase}!#$%/()*+-;,=.?@^_`{{|}}~"
+"""That of RFC 1924 with / , . in the place of & < >."""
 REPORT_FILE = "report.html"
+
+
+def packed(text: str) -> str:
+    """A third of the text's size or less, without any of < > & and quotes."""
+    raw = zlib.compress(text.encode(), 6)
+    counted = len(raw).to_bytes(4, "big") + raw
+    words = np.frombuffer(counted + bytes(-len(counted) % 4), dtype=">u4").astype(np.uint32)
+    places = np.array([85**4, 85**3, 85**2, 85, 1], dtype=np.uint32)
+    digits = words[:, None] // places % 85
+    return np.frombuffer(ALPHABET.encode(), dtype=np.uint8)[digits].tobytes().decode("ascii")
+
+
 Figure: TypeAlias = go.Figure | dict[str, Any]
 """Plotly's, or what plotly.js takes."""
 
