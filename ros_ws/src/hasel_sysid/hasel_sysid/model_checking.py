@@ -11,11 +11,7 @@ import numpy as np
 from hasel_sim.run import Simulation
 from scipy.special import gammaincc
 
-from hasel_sysid.estimation.covariance import (
-    parameter_covariance,
-    seen_directions,
-    wider_where_runs_disagree,
-)
+from hasel_sysid.estimation.covariance import parameter_covariance, seen_directions, wider_where_runs_disagree
 from hasel_sysid.estimation.fit import FittedModel
 from hasel_sysid.noise import NoiseModel
 from hasel_sysid.policy import POLICY

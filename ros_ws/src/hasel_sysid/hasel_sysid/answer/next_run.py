@@ -82,7 +82,8 @@ class Manoeuvre:
         else:
             time = np.arange(0.0, duration, 1 / _FRAME_RATE)
             turn = count * ((time * self.frequency) % 1.0)
-            wave = np.sin(np.pi * (turn % 1.0)) if self.waveform == "sine" else _triangle(turn % 1.0)
+            share = turn % 1.0
+            wave = np.sin(np.pi * share) if self.waveform == "sine" else 1 - np.abs(2 * share - 1)
             turns = wave[:, None] * (np.floor(turn)[:, None] == np.arange(count))
         shape = np.zeros((len(time), len(names)))
         if alone is None:
@@ -104,11 +105,6 @@ class Manoeuvre:
         if self.muscles == "both" and len(names) > 1:
             return f"{', '.join(names)} in turn"
         return f"{names[0] if self.muscles == 'both' else self.muscles} only"
-
-
-def _triangle(share: np.ndarray) -> np.ndarray:
-    """From 0 to 1 and back over a turn, by the share of it that has passed."""
-    return 1 - np.abs(2 * share - 1)
 
 
 def manoeuvres(
@@ -140,8 +136,14 @@ def rivals(diagnosis: Diagnosis, fit: Callable[[Model], Model] | None = None) ->
     be compared with it all the same. Raises SysidError when there are not two to tell apart.
     """
     fitted = _refitted(diagnosis)
-    if fit is not None:
-        fitted = _at_least_two(fit, diagnosis, fitted)
+    rest = [finding.effect for finding in diagnosis.findings if finding.effect not in fitted]
+    for effect in rest if fit is not None else ():
+        if len(fitted) >= 2:
+            break
+        try:
+            fitted[effect] = fit(with_effect(diagnosis.fit.model, diagnosis, effect))
+        except HaselSimError:
+            continue
     if len(fitted) < 2:
         raise SysidError(
             "fewer than two explanations are left, so there is nothing to tell apart; "
@@ -169,21 +171,6 @@ def _refitted(diagnosis: Diagnosis) -> dict[str, Model]:
 def fitted_briefly(problem: Problem, model: Model) -> Model:
     """A model fitted to the runs of a problem, as far as a few evaluations lead."""
     return minimise(problem, problem.evaluate(model, model.free), 1e-3, _BRIEF)[0].model
-
-
-def _at_least_two(
-    fit: Callable[[Model], Model], diagnosis: Diagnosis, fitted: dict[str, Model]
-) -> dict[str, Model]:
-    found = dict(fitted)
-    rest = [finding.effect for finding in diagnosis.findings if finding.effect not in fitted]
-    for effect in rest:
-        if len(found) >= 2:
-            break
-        try:
-            found[effect] = fit(with_effect(diagnosis.fit.model, diagnosis, effect))
-        except HaselSimError:
-            continue
-    return found
 
 
 def with_effect(model: Model, diagnosis: Diagnosis, effect: str) -> Model:

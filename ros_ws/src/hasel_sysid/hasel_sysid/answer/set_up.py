@@ -91,11 +91,7 @@ def _kinds(experiments: Sequence[Experiment]) -> list[tuple[str, str, Reading]]:
     if len(channels) == 2:
         kinds.append(("the two channels are exchanged", "compare the cables of the two muscles", _exchanged))
     return kinds + [
-        (
-            f"the {name} channel is dead",
-            f"check cable, fuse and muscle of the {name} channel",
-            _without(name),
-        )
+        (f"the {name} channel is dead", f"check cable, fuse and muscle of the {name} channel", _without(name))
         for name in channels
     ]
 

@@ -32,11 +32,7 @@ class _Reading:
 
 
 def recorded_or_read(
-    problem: Problem,
-    start: Model,
-    fit: FittedModel,
-    search: SearchRuns,
-    policy: Policy,
+    problem: Problem, start: Model, fit: FittedModel, search: SearchRuns, policy: Policy
 ) -> tuple[Searched, SetUpFault | None]:
     """The search of the runs as recorded, or as the likeliest fault of the set-up has them read.
 

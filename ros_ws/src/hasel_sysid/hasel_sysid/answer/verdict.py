@@ -57,7 +57,8 @@ def diagnosis(found: Searched, effects: Sequence[Candidate]) -> Diagnosis:
     noise, choice = found.likelihood.allowed, found.choice
     base = found.models[NOTHING].fitted.fit
     winner = next((next(iter(names)) for names in choice.path if len(names) == 1), None)
-    winner = winner if winner in {effect.name for effect in effects} else None
+    names = {effect.name for effect in effects}
+    winner = winner if winner in names else None
     none = _none_of_them(found, noise)
     beside = frozenset({winner}) if winner else NOTHING
     learned = unexplained_by(
@@ -67,7 +68,7 @@ def diagnosis(found: Searched, effects: Sequence[Candidate]) -> Diagnosis:
     excess = max(base.evaluation.sum_of_squares - floor, 0.05 * floor)
     return Diagnosis(
         findings(found, effects, beside),
-        [group for group in choice.groups if all(_is_effect(name, effects) for name in group)],
+        [group for group in choice.groups if names.issuperset(group)],
         noise,
         found.likelihood.noise,
         found.first.chance,
@@ -86,10 +87,6 @@ def findings(found: Searched, effects: Sequence[Candidate], beside: Names) -> li
     none = _none_of_them(found, noise)
     said = [_finding(found, effect, beside, noise, none) for effect in effects]
     return sorted(said, key=lambda one: -_order(found, one))
-
-
-def _is_effect(name: str, effects: Sequence[Candidate]) -> bool:
-    return any(effect.name == name for effect in effects)
 
 
 def _none_of_them(found: Searched, noise: NoiseModel) -> float:
@@ -112,7 +109,7 @@ def _order(found: Searched, one: Finding) -> float:
 
 
 def _finding(found: Searched, effect: Candidate, beside: Names, noise: NoiseModel, none: float) -> Finding:
-    name, first = effect.name, _size(effect)
+    name, first = effect.name, next(iter(effect.sizes.values()))
     of = partial(
         Finding,
         name,
@@ -181,11 +178,6 @@ def _values(
     covariance = with_numerical_error(fit.evaluation, fit.model.covariance(names), changes)
     model = fit.model.with_covariance(names, covariance)
     return {n: (model.values[n], model.parameters[n].standard_error or np.inf) for n in effect.names}
-
-
-def _size(effect: Candidate) -> EffectParameter:
-    """The parameter that says how large an effect is."""
-    return next(iter(effect.sizes.values()))
 
 
 def _leading(effect: Candidate, expected: Mapping[str, tuple[float, float]]) -> str | None:

@@ -14,7 +14,7 @@ from hasel_sysid.answer.result import Stage
 from hasel_sysid.comparison import Comparison
 from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment
-from hasel_sysid.report.style import DROP, FITTED, MEASURED, MODELS, NOISE, UNSEEN
+from hasel_sysid.report.style import DROP, FITTED, MEASURED, MODELS, NOISE, UNSEEN, bare
 from hasel_sysid.report.wording import count_text
 
 _DOTS_PER_INCH = 110
@@ -115,7 +115,7 @@ def draw_ranking(diagnosis: Diagnosis) -> Picture:
     axis.invert_yaxis()
     axis.set_xlim(0, 100)
     axis.legend(frameon=False, fontsize=8)
-    _bare(axis)
+    bare(axis)
     return Picture(figure)
 
 
@@ -133,7 +133,7 @@ def draw_stages(stages: Sequence[Stage], noise_floor: float) -> Picture:
     axis.set_xticks(place, ["fitted", *("+ " + stage.added[-1] for stage in stages[1:])])
     axis.set_ylabel("mean |Δ sin θ|")
     axis.legend(frameon=False, fontsize=8)
-    _bare(axis)
+    bare(axis)
     return Picture(figure)
 
 
@@ -145,13 +145,8 @@ def _grid(count: int) -> tuple[Figure, list[Axes]]:
     for axis in axes[count:]:
         axis.set_visible(False)
     for axis in axes[:count]:
-        _bare(axis)
+        bare(axis)
         axis.set_xlabel("time [s]", fontsize=8)
     for axis in axes[:count:columns]:
         axis.set_ylabel("sin θ")
     return figure, axes[:count]
-
-
-def _bare(axis: Axes) -> None:
-    axis.spines[["top", "right"]].set_visible(False)
-    axis.tick_params(labelsize=8)

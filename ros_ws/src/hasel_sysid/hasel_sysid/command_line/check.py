@@ -11,7 +11,7 @@ from hasel_recording.reading import distinct_names, drive_of_each, read_recordin
 from hasel_sim.model import Model, load_model
 
 from hasel_sysid.command_line.options import check_parser
-from hasel_sysid.command_line.running import run_command, write_json
+from hasel_sysid.command_line.running import told, write_json
 from hasel_sysid.data_quality.recording_check import Summary, refusal, summary
 from hasel_sysid.dataset import for_model
 from hasel_sysid.errors import SysidError
@@ -23,15 +23,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return run(check_parser().parse_args(arguments))
 
 
+@told
 def run(options: argparse.Namespace) -> int:
-    """Run the command with these options."""
+    """Print a summary of each recording; returns the exit code."""
     refused: list[str] = []
-    code = run_command(lambda: _check(options, refused))
-    return code or (BAD_INPUT if refused else 0)
-
-
-def _check(options: argparse.Namespace, refused: list[str]) -> None:
-    """Print a summary of each recording; what cannot be used is added to `refused`."""
     drives = drive_of_each(options.recordings, options.drive)
     model = load_model(options.model) if options.model else None
     shown: list[Summary] = []
@@ -63,6 +58,7 @@ def _check(options: argparse.Namespace, refused: list[str]) -> None:
         print(
             f"Not to be used as they are: {names}." if refused else "All recordings can be used as they are."
         )
+    return BAD_INPUT if refused else 0
 
 
 def _for(model: Model | None, recording: Recording) -> tuple[Recording, tuple[str, ...]]:

@@ -10,7 +10,7 @@ from hasel_sysid.answer.diagnosis import diagnosis_json
 from hasel_sysid.candidates import effects_of
 from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
 from hasel_sysid.command_line.options import diagnose_parser
-from hasel_sysid.command_line.running import run_command, workers, write_json
+from hasel_sysid.command_line.running import told, workers, write_json
 from hasel_sysid.command_line.shown import code_after, show, summarise, tell
 from hasel_sysid.command_line.summary import diagnosis_lines
 from hasel_sysid.comparison import compare
@@ -28,12 +28,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return run(diagnose_parser().parse_args(arguments))
 
 
+@told
 def run(options: argparse.Namespace) -> int:
     """Run the command with these options; returns its exit code."""
-    return run_command(lambda: _diagnose(options))
-
-
-def _diagnose(options: argparse.Namespace) -> int:
     given, limit = load_inputs(options), TimeLimit(options.seconds)
     size = work_of(given.model, [each.run for each in given.experiments])
     plan = plan_of_diagnosis(size, len(effects_of(given.model, options.effects)))

@@ -11,7 +11,7 @@ from hasel_sim.model import Model, save_model
 
 from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
 from hasel_sysid.command_line.options import fit_parser
-from hasel_sysid.command_line.running import run_command, workers, write_json
+from hasel_sysid.command_line.running import told, workers, write_json
 from hasel_sysid.command_line.shown import code_after, show
 from hasel_sysid.comparison import Comparison, compare
 from hasel_sysid.data_quality import DataFinding
@@ -49,12 +49,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return run(fit_parser().parse_args(arguments))
 
 
+@told
 def run(options: argparse.Namespace) -> int:
     """Run the command with these options; returns its exit code."""
-    return run_command(lambda: _fit(options))
-
-
-def _fit(options: argparse.Namespace) -> int:
     given = load_inputs(options)
     if not given.model.free:
         raise SysidError(

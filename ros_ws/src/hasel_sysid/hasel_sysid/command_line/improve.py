@@ -18,7 +18,7 @@ from hasel_sysid.answer.set_up import DECIDED
 from hasel_sysid.candidates import effects_of
 from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
 from hasel_sysid.command_line.options import improve_parser
-from hasel_sysid.command_line.running import MISLEADING, run_command, workers, write_json
+from hasel_sysid.command_line.running import MISLEADING, told, workers, write_json
 from hasel_sysid.command_line.shown import code_after, show, summarise, tell
 from hasel_sysid.command_line.summary import improvement_lines
 from hasel_sysid.comparison import Comparison, compare, comparison_of
@@ -65,12 +65,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return run(improve_parser().parse_args(arguments))
 
 
+@told
 def run(options: argparse.Namespace) -> int:
     """Run the command with these options; returns its exit code."""
-    return run_command(lambda: _improve(options))
-
-
-def _improve(options: argparse.Namespace) -> int:
     given = load_inputs(options, DECIDED)
     label, model = given.label, given.model
     options.output.mkdir(parents=True, exist_ok=True)

@@ -82,9 +82,7 @@ def _noise(given: float | None) -> "NoiseModel | None":
     return given_noise(given)
 
 
-def load_all(
-    options: argparse.Namespace,
-) -> tuple[list[Experiment], list[Experiment]]:
+def load_all(options: argparse.Namespace) -> tuple[list[Experiment], list[Experiment]]:
     """The experiments to fit and the unseen ones.
 
     Raises RecordingError when there are none to read, SysidError where one is both.

@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from hasel_sysid.command_line.options import measured_fish_parser
-from hasel_sysid.command_line.running import run_command, write_json
+from hasel_sysid.command_line.running import told, write_json
 from hasel_sysid.data_quality.finding import DataFinding
 from hasel_sysid.data_quality.response import check_drive_frequency
 from hasel_sysid.errors import SysidError
@@ -153,12 +153,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return run(measured_fish_parser().parse_args(arguments))
 
 
-def run(options: argparse.Namespace) -> int:
-    """Run the command with these options."""
-    return run_command(lambda: _compare(options))
-
-
-def _compare(options: argparse.Namespace) -> None:
+@told
+def run(options: argparse.Namespace) -> None:
+    """Run the command with these options; returns its exit code."""
     runs = filmed_runs(options.folder)
     found = compare_films(runs, options.fitted)
     options.output.mkdir(parents=True, exist_ok=True)

@@ -9,6 +9,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
+from functools import wraps
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,16 @@ def run_command(work: Callable[[], int | None]) -> int:
         warnings.simplefilter("always", RecordingWarning)
         warnings.showwarning = _show_warning
         return in_a_sentence(work, (HaselSimError, SysidError, RecordingError))
+
+
+def told(work: Callable[[argparse.Namespace], int | None]) -> Callable[[argparse.Namespace], int]:
+    """What a command does with its options, run by `run_command`."""
+
+    @wraps(work)
+    def run(options: argparse.Namespace) -> int:
+        return run_command(lambda: work(options))
+
+    return run
 
 
 def _show_warning(message, category, filename, lineno, file=None, line=None) -> None:

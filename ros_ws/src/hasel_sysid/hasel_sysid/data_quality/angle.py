@@ -5,7 +5,7 @@ from hasel_recording import Recording, sin_theta_from_markers
 from scipy.ndimage import median_filter
 
 from hasel_sysid.data_quality.finding import DataFinding, error, warning
-from hasel_sysid.residual_analysis.drive_cycle import comparable, drive_cycle
+from hasel_sysid.residual_analysis.drive_cycle import cycle_of
 from hasel_sysid.residual_analysis.robust_statistics import high_frequency_noise
 
 _MANY_LOST = 0.2
@@ -95,8 +95,7 @@ def _too_fast_to_tell(recording: Recording) -> bool:
     """Whether the drive repeats within so few frames that the motion cannot be told from the noise of single frames."""
     if not recording.driven:
         return False
-    time, values = recording.drive()
-    cycle = drive_cycle(time, comparable(values, recording.channels))
+    cycle = cycle_of(recording)
     frame = float(np.median(np.diff(recording.time_s)))
     return cycle is not None and cycle.period < _FRAMES_PER_CYCLE * frame
 

@@ -4,7 +4,7 @@ import numpy as np
 from hasel_recording import HASEL_PAIR, Recording
 
 from hasel_sysid.data_quality.finding import DataFinding, error, warning
-from hasel_sysid.residual_analysis.drive_cycle import comparable, drive_cycle, net_drive
+from hasel_sysid.residual_analysis.drive_cycle import comparable, cycle_of, net_drive
 from hasel_sysid.residual_analysis.robust_statistics import high_frequency_noise
 
 _LIKELY = {
@@ -113,7 +113,7 @@ def _clipping(recording: Recording, voltage: np.ndarray) -> list[DataFinding]:
 
 
 def _switching(recording: Recording, time: np.ndarray, values: np.ndarray) -> list[DataFinding]:
-    cycle = drive_cycle(time, comparable(values, recording.channels))
+    cycle = cycle_of(recording)
     if cycle is None:
         if recording.channels != HASEL_PAIR:
             return []  # one step up and down is how pressures and tendons are tried

@@ -12,7 +12,7 @@ from hasel_sysid.data_quality.command import check_command
 from hasel_sysid.data_quality.finding import DataFinding, Severity
 from hasel_sysid.data_quality.frames import check_frames, check_header
 from hasel_sysid.data_quality.response import check_drive_frequency, check_response
-from hasel_sysid.residual_analysis.drive_cycle import comparable, drive_cycle
+from hasel_sysid.residual_analysis.drive_cycle import cycle_of
 from hasel_sysid.residual_analysis.robust_statistics import high_frequency_noise
 
 _STOP = {"too few frames", "time order", "unit of time", "run of hours"}
@@ -135,7 +135,7 @@ def _switching(recording: Recording, time: np.ndarray, values: np.ndarray) -> st
     changes = time[1 + np.flatnonzero(np.any(np.diff(values, axis=0) != 0, axis=1))]
     if len(changes) == 0:
         return "never changes"
-    cycle = drive_cycle(time, comparable(values, recording.channels))
+    cycle = cycle_of(recording)
     if cycle is not None:
         cycles = cycle.count(recording.time_s)
         return f"repeats at {1 / cycle.period:.4g} Hz, {cycles:.3g} cycles from {cycle.start:.5g} s on"

@@ -4,7 +4,7 @@ import numpy as np
 from hasel_recording import HASEL_PAIR, Recording
 
 from hasel_sysid.data_quality.finding import DataFinding, error, warning
-from hasel_sysid.residual_analysis.drive_cycle import DriveCycle, comparable, drive_cycle
+from hasel_sysid.residual_analysis.drive_cycle import DriveCycle, cycle_of
 from hasel_sysid.residual_analysis.robust_statistics import high_frequency_noise
 
 _REST_S = 0.025
@@ -26,8 +26,7 @@ def check_response(recording: Recording) -> list[DataFinding]:
         return []
     if not recording.driven:
         return []
-    time, values = recording.drive()
-    cycle = drive_cycle(time, comparable(values, recording.channels))
+    cycle = cycle_of(recording)
     valid = recording.valid
     time, sin_theta = recording.time_s[valid], recording.sin_theta[valid]
     if cycle is None or len(time) < 16 or time[0] > cycle.start + _REST_S:
@@ -103,11 +102,10 @@ def check_drive_frequency(recording: Recording) -> list[DataFinding]:
     """
     if not recording.driven:
         return []
-    drive_time, values = recording.drive()
-    cycle = drive_cycle(drive_time, comparable(values, recording.channels))
+    cycle = cycle_of(recording)
     if cycle is None or not _repeats(cycle):
         return []
-    driven = recording.valid & (recording.time_s <= _end(drive_time, values))
+    driven = recording.valid & (recording.time_s <= _end(*recording.drive()))
     time, sin_theta = recording.time_s[driven], recording.sin_theta[driven]
     if len(time) < 32:
         return []

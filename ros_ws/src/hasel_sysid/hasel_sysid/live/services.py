@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from concurrent.futures import Executor
 from pathlib import Path
 
 from hasel_common.workload import Workload
@@ -40,32 +41,32 @@ def fit_recordings(
 
     workload: counts the simulations. Raises RecordingError, SysidError, SimulationError or ModelError.
     """
-    experiments = for_model(model.with_levels([]), usable(recordings))
     with executor(jobs or None) as pool:
-        start = prepared(model, experiments)
-        problem = Problem(simulable(start, experiments, pool, GENTLEST), pool, workload=workload)
+        problem, start = _prepared(model, recordings, pool, workload)
         workload.expect(plan_of_fit(problem.work(start)))
         return identify(problem, start, method or DEFAULT_METHOD)
 
 
 def diagnose_recordings(
-    model: Model,
-    recordings: Sequence[Recording],
-    effects: Sequence[str],
-    jobs: int,
-    workload: Workload,
+    model: Model, recordings: Sequence[Recording], effects: Sequence[str], jobs: int, workload: Workload
 ) -> Diagnosis:
     """Fit and rank the effects (all known ones when none is named) that could be missing.
 
     workload: counts the simulations. Raises RecordingError, SysidError, SimulationError or ModelError.
     """
-    experiments = for_model(model.with_levels([]), usable(recordings))
     with executor(jobs or None) as pool:
-        start = prepared(model, experiments)
-        problem = Problem(simulable(start, experiments, pool, GENTLEST), pool, workload=workload)
+        problem, start = _prepared(model, recordings, pool, workload)
         workload.expect(plan_of_diagnosis(problem.work(start), len(effects_of(start, effects or None))))
         fit = fit_baseline(problem, start)
         return diagnose(problem, fit, effects or None)
+
+
+def _prepared(
+    model: Model, recordings: Sequence[Recording], pool: Executor, workload: Workload
+) -> tuple[Problem, Model]:
+    experiments = for_model(model.with_levels([]), usable(recordings))
+    start = prepared(model, experiments)
+    return Problem(simulable(start, experiments, pool, GENTLEST), pool, workload=workload), start
 
 
 def status(diagnosis: Diagnosis) -> str:

@@ -101,6 +101,16 @@ class StageRow:
     note: str = ""
 
 
+def known_errors(stages: Sequence[StageRow]) -> dict[str, list[tuple[str, float]]]:
+    """Label and error of the stages of which it is known, on fitted and, where there are any, on unseen runs."""
+    errors = {
+        "fitted runs": [(stage.label, stage.error) for stage in stages],
+        "unseen runs": [(stage.label, stage.error_unseen) for stage in stages],
+    }
+    known = {name: [row for row in rows if row[1] is not None] for name, rows in errors.items()}
+    return {name: rows for name, rows in known.items() if rows}
+
+
 @dataclass(frozen=True)
 class ParameterRow:
     """A parameter in its SI unit; remark: an alarm such as "at its upper bound", empty when all is well.

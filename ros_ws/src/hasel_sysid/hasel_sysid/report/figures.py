@@ -1,42 +1,60 @@
 """The report's figures, each a function from content to plotly's."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import plotly.graph_objects as go
 
 from hasel_sysid.comparison import Comparison, RunComparison
-from hasel_sysid.report.content import RankedRow, StageRow
+from hasel_sysid.report.content import RankedRow, StageRow, known_errors
 from hasel_sysid.report.shape import Shapes
-from hasel_sysid.report.style import DROP, FITTED, MODELS, NOISE, RISE, UNSEEN, model_colour, styled
+from hasel_sysid.report.style import (
+    AXIS,
+    DROP,
+    FITTED,
+    MODELS,
+    NOISE,
+    OF_RUNS,
+    RISE,
+    base_layout,
+    model_colour,
+)
 from hasel_sysid.report.wording import change_text, error_text
 from hasel_sysid.residual_analysis.component import Kind, words
 
+_MOST_RANKED = 8
 _COLOURS = ("#8a949e", "#2e86ab", "#d1495b")
 
 
 def waterfall_figures(stages: Sequence[StageRow], noise_floor: float | None) -> list[go.Figure]:
     """One waterfall for the fitted runs and, where there are any, one for the unseen runs, at one scale."""
-    groups = [("fitted runs", [s.error for s in stages], FITTED)]
-    if any(stage.error_unseen is not None for stage in stages):
-        groups.append(("unseen runs", [s.error_unseen for s in stages], UNSEEN))
-    highest = max(error for _, errors, _ in groups for error in errors if error is not None)
+    groups = known_errors(stages)
+    highest = max(error for known in groups.values() for _, error in known)
     floor = "" if noise_floor is None else f"<br><sup>dashed: noise floor {error_text(noise_floor)}</sup>"
     figures = []
-    for name, errors, colour in groups:
-        known = [
-            (stage.label, error) for stage, error in zip(stages, errors, strict=True) if error is not None
-        ]
+    for name, known in groups.items():
         figure = go.Figure()
-        _add_waterfall(figure, name, known, colour)
+        _add_waterfall(figure, name, known, OF_RUNS[name])
         if noise_floor is not None:
             figure.add_hline(y=noise_floor, line={"color": NOISE, "dash": "dash", "width": 1.5})
         figure.update_yaxes(title_text="mean |Δ sin θ|", range=[0.0, 1.12 * highest])
         figure.update_xaxes(automargin=True)
-        styled(figure, 360)
-        title = {"text": name + floor, "font": {"size": 14}, "x": 0.5, "y": 0.96}
-        figures.append(figure.update_layout(showlegend=False, title=title, margin={"t": 58}))
+        figures.append(_titled(figure, 360, name + floor, margin={"t": 58}))
     return figures
+
+
+def styled(figure: go.Figure, height: int) -> go.Figure:
+    """Apply fonts, grid and margins; height in pixels."""
+    figure.update_layout(base_layout(height))
+    figure.update_xaxes(AXIS, ticks="outside", ticklen=4)
+    figure.update_yaxes(AXIS)
+    return figure
+
+
+def _titled(figure: go.Figure, height: int, title: str, **layout: Any) -> go.Figure:
+    heading = {"text": title, "font": {"size": 14}, "x": 0.5, "y": 0.96}
+    return styled(figure, height).update_layout(showlegend=False, title=heading, **layout)
 
 
 def _add_waterfall(figure: go.Figure, name: str, known: Sequence[tuple[str, float]], colour: str) -> None:
@@ -60,18 +78,14 @@ def _add_waterfall(figure: go.Figure, name: str, known: Sequence[tuple[str, floa
         figure.add_annotation(x=place, y=top, text=text, showarrow=False, yshift=10)
 
 
-def ranking_figure(ranking: Sequence[RankedRow], most: int = 8) -> go.Figure:
+def ranking_figure(ranking: Sequence[RankedRow]) -> go.Figure:
     """Horizontal bars, most probable on top."""
-    shown = list(ranking)[:most]
+    shown = list(ranking)[:_MOST_RANKED]
     names = [row.effect for row in shown]
     figure = go.Figure()
     for name, colour, values in (
         ("probability", FITTED, [row.probability for row in shown]),
-        (
-            "error removed",
-            MODELS[3],
-            [row.error_removed for row in shown],
-        ),
+        ("error removed", MODELS[3], [row.error_removed for row in shown]),
     ):
         figure.add_trace(
             go.Bar(
@@ -85,8 +99,7 @@ def ranking_figure(ranking: Sequence[RankedRow], most: int = 8) -> go.Figure:
         )
     figure.update_yaxes(autorange="reversed", automargin=True)
     figure.update_xaxes(title_text="%", range=[0, 100])
-    styled(figure, 130 + 34 * len(shown))
-    return figure.update_layout(barmode="group", bargap=0.35, margin={"t": 60})
+    return styled(figure, 130 + 34 * len(shown)).update_layout(barmode="group", bargap=0.35, margin={"t": 60})
 
 
 def conditions_figures(comparisons: Sequence[Comparison]) -> list[go.Figure]:
@@ -112,9 +125,7 @@ def conditions_figures(comparisons: Sequence[Comparison]) -> list[go.Figure]:
             )
         figure.add_hline(y=noise, line={"color": NOISE, "dash": "dash", "width": 1.5})
         figure.update_yaxes(title_text="mean |Δ sin θ|", range=[0.0, 1.08 * highest])
-        styled(figure, 280)
-        heading = {"text": title, "font": {"size": 14}, "x": 0.5, "y": 0.96}
-        figures.append(figure.update_layout(showlegend=False, title=heading, margin={"t": 40}))
+        figures.append(_titled(figure, 280, title, margin={"t": 40}))
     return figures
 
 
@@ -140,13 +151,10 @@ def phase_map_figure(runs: Sequence[RunComparison]) -> go.Figure | None:
     )
     figure.add_vline(x=50, line={"color": "#57606a", "width": 1, "dash": "dot"})
     figure.update_xaxes(
-        title_text="part of the cycle [%], beginning where the first muscle is switched on",
-        range=[0, 100],
+        title_text="part of the cycle [%], beginning where the first muscle is switched on", range=[0, 100]
     )
     figure.update_yaxes(autorange="reversed", automargin=True)
-    styled(figure, 150 + 24 * len(shown))
-    figure.update_xaxes(showgrid=False)
-    return figure
+    return styled(figure, 150 + 24 * len(shown)).update_xaxes(showgrid=False)
 
 
 def component_map_figure(runs: Sequence[RunComparison]) -> go.Figure | None:
@@ -177,8 +185,7 @@ def component_map_figure(runs: Sequence[RunComparison]) -> go.Figure | None:
     )
     figure.update_yaxes(autorange="reversed", automargin=True)
     figure.update_xaxes(automargin=True, tickangle=-25)
-    styled(figure, 190 + 24 * len(runs))
-    return figure
+    return styled(figure, 190 + 24 * len(runs))
 
 
 def residual_tests_figures(runs: Sequence[RunComparison]) -> list[go.Figure]:
@@ -205,9 +212,7 @@ def _correlations(title: str, curves: Sequence[go.Scatter], band: float) -> go.F
     figure.add_hrect(y0=-half, y1=half, fillcolor=NOISE, opacity=0.18, line_width=0)
     figure.update_xaxes(title_text="lag [ms]")
     figure.update_yaxes(title_text="correlation", range=[-1.05, 1.05])
-    styled(figure, 300)
-    heading = {"text": title, "font": {"size": 14}, "x": 0.5, "y": 0.96}
-    return figure.update_layout(showlegend=False, title=heading)
+    return _titled(figure, 300, title)
 
 
 def _correlation_line(name: str, lag: np.ndarray, value: np.ndarray) -> go.Scatter:

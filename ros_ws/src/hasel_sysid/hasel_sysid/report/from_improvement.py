@@ -147,10 +147,7 @@ def _final(row: RankedRow, model: Model) -> RankedRow:
         row,
         expected=tuple(
             replace(
-                each,
-                value=known.value,
-                standard_error=known.standard_error,
-                remark=remark(known.name, model),
+                each, value=known.value, standard_error=known.standard_error, remark=remark(known.name, model)
             )
             if known
             else each

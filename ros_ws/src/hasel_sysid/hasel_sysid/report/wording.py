@@ -1,11 +1,13 @@
 """Numbers, values and parameters in the words in which a reader wants them."""
 
 import math
+from typing import TYPE_CHECKING
 
 from hasel_sim.effects.base import Effect, EffectParameter
 from hasel_sim.model import Model, Parameter
 
-from hasel_sysid.answer.result import Improvement
+if TYPE_CHECKING:
+    from hasel_sysid.answer.result import Improvement
 
 _NORMAL_95 = 1.96
 _BASELINE = {
@@ -111,7 +113,7 @@ def _declared(name: str, model: Model) -> tuple[Effect, EffectParameter] | None:
     return None
 
 
-def found_values(found: Improvement) -> list[str]:
+def found_values(found: "Improvement") -> list[str]:
     """A line for every parameter of what is missing."""
     parameters = found.model.parameters
     names = [name for name in parameters if name.rpartition(".")[0] in found.missing]

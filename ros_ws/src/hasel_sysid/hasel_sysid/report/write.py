@@ -15,7 +15,6 @@ from hasel_sim.model.value_text import value_with_error
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from plotly.offline import get_plotlyjs, get_plotlyjs_version
 
-from hasel_sysid.comparison import Comparison
 from hasel_sysid.report.content import ReportContent, provenance
 from hasel_sysid.report.figures import (
     component_map_figure,
@@ -74,14 +73,14 @@ def render(content: ReportContent) -> str:
         "model_colours": model_colours,
         "model_colour": model_colour,
     }
-    figures = {name: figures for name, figures in _figures(content).items() if figures}
+    figures = {name: _plain(each) for name, each in _figures(content).items() if each}
     single = {f"{name}{n}": figure for name, each in figures.items() for n, figure in enumerate(each)}
     return environment.get_template("report.html").render(
         content=content,
         figures={name: _places(name, each) for name, each in figures.items()},
         plotly_code=packed(get_plotlyjs()) if figures else "",
         plotly_version=get_plotlyjs_version(),
-        packed_figures=packed(_json(single)),
+        packed_figures=packed(json.dumps(single, separators=(",", ":"))),
         unpack=_template("unpack.js"),
         style=_template("style.css"),
     )
@@ -100,35 +99,24 @@ def _figures(content: ReportContent) -> dict[str, list[Figure]]:
         figures["ranking"] = [ranking_figure(content.ranking)]
     if content.comparisons:
         detail = content.detail
-        figures["conditions"] = conditions_figures(content.comparisons) if _driven(detail) else []
+        several_driven = sum(run.series.level > 0 for run in detail.runs) > 1
+        figures["conditions"] = conditions_figures(content.comparisons) if several_driven else []
         figures["phase"] = list(filter(None, [phase_map_figure(detail.runs)]))
         figures["components"] = list(filter(None, [component_map_figure(detail.runs)]))
         figures["residual_tests"] = residual_tests_figures(detail.runs)
     return figures
 
 
-def _places(name: str, figures: Sequence[Figure]) -> str:
+def _places(name: str, figures: Sequence[dict[str, Any]]) -> str:
     each = [
-        f'<div class="figure" data-figure="{name}{n}" style="height:{_layout(figure)["height"]}px"></div>'
+        f'<div class="figure" data-figure="{name}{n}" style="height:{figure["layout"]["height"]}px"></div>'
         for n, figure in enumerate(figures)
     ]
     return each[0] if len(each) == 1 else f'<div class="pair">{"".join(each)}</div>'
 
 
-def _layout(figure: Figure) -> Any:
-    return figure["layout"] if isinstance(figure, dict) else figure.layout
-
-
-def _json(figures: dict[str, Figure]) -> str:
-    """All figures as plotly.js takes them, numbers to six digits."""
-    content = {
-        name: figure if isinstance(figure, dict) else {"data": figure.data, "layout": figure.layout}
-        for name, figure in figures.items()
-    }
-    return json.dumps(_plain(content), separators=(",", ":"))
-
-
 def _plain(value: Any) -> Any:
+    """Figures as plotly.js takes them, numbers to six digits."""
     if hasattr(value, "to_plotly_json"):
         value = value.to_plotly_json()
     if isinstance(value, dict):
@@ -138,11 +126,6 @@ def _plain(value: Any) -> Any:
     if isinstance(value, (float, np.floating)):
         return float(f"{value:.6g}") if np.isfinite(value) else None
     return value.item() if isinstance(value, np.generic) else value
-
-
-def _driven(comparison: Comparison) -> bool:
-    """Whether there are several runs with a drive, so that conditions can be compared."""
-    return sum(run.series.level > 0 for run in comparison.runs) > 1
 
 
 def _template(name: str) -> str:

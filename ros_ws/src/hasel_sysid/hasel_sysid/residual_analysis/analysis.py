@@ -14,7 +14,7 @@ from hasel_sysid.residual_analysis.residual_tests import (
     phase_profile,
     whiteness,
 )
-from hasel_sysid.residual_analysis.robust_statistics import high_frequency_noise, pool, trend
+from hasel_sysid.residual_analysis.robust_statistics import high_frequency_noise, pool, standing_out
 from hasel_sysid.residual_analysis.run_series import RunSeries
 from hasel_sysid.residual_analysis.split import split
 
@@ -104,9 +104,10 @@ def _conditions(runs: list[RunSeries], values: list[float], errors: list[float])
     frequencies = [float(f"{run.frequency:.2g}") for run in runs]
     levels = [float(f"{run.level:.4g}") for run in runs]
     labels = dict(zip(levels, (run.level_text for run in runs), strict=True))
-    frequency, level = trend(frequencies, values, errors), trend(levels, values, errors)
-    found = [] if frequency is None or frequency.condition == 0 else [f"more at {frequency.condition:g} Hz"]
-    return found + ([] if level is None or level.condition == 0 else [f"more at {labels[level.condition]}"])
+    frequency = standing_out(frequencies, values, errors)
+    level = standing_out(levels, values, errors)
+    found = [f"more at {frequency:g} Hz"] if frequency else []
+    return found + ([f"more at {labels[level]}"] if level else [])
 
 
 def _disagree(values: list[float], errors: list[float]) -> bool:

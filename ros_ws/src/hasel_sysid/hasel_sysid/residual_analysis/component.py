@@ -1,6 +1,5 @@
 """One way in which a run differs from its simulation, with its size, in the words of a researcher at the plot."""
 
-from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from enum import Enum
 
@@ -48,95 +47,59 @@ def _digits(value: float) -> str:
 
 
 def _milliseconds(value_s: float) -> str:
-    return f"{_digits(abs(value_s) * 1e3)} ms"
+    return f"{_digits(value_s * 1e3)} ms"
 
 
 def _percent(value: float) -> str:
-    return f"{_digits(abs(value) * 100)} %"
+    return f"{_digits(value * 100)} %"
 
 
-def _offset(c: Component) -> str:
-    return f"sits {abs(c.value):.2g} {'above' if c.value > 0 else 'below'} the model in sin θ"
-
-
-def _gain(c: Component) -> str:
-    if c.value < -1:
-        return "moves against the model"
-    if c.value > _OUT_OF_PROPORTION:
-        return "moves many times more than the model, which hardly moves"
-    return f"moves {_percent(c.value)} {'more' if c.value > 0 else 'less'} than the model"
-
-
-def _lag(c: Component) -> str:
-    if c.value > 0:
-        return f"lags {_milliseconds(c.value)} after every switch"
-    return f"leads the model by {_milliseconds(c.value)}"
-
-
-def _ringing(c: Component) -> str:
-    where = "" if not c.detail else f" at {c.detail['frequency_hz']:.2g} Hz"
-    return f"swings differently{where} after every switch, by {c.value:.2g} in sin θ at first"
-
-
-def _rise_against_fall(c: Component) -> str:
-    slow, fast = ("bending away", "coming back") if c.value > 0 else ("coming back", "bending away")
-    return f"lags {_milliseconds(c.value)} more when {slow} than when {fast}"
-
-
-def _upper_against_lower(c: Component) -> str:
-    if abs(c.value) > _OUT_OF_PROPORTION:
-        return f"bends many times {'more' if c.value > 0 else 'less'} to the lower than to the upper side"
-    return (
-        f"bends {_percent(c.value)} {'more' if c.value > 0 else 'less'} to the lower than to the upper side"
-    )
-
-
-def _gain_drift(c: Component) -> str:
-    if abs(c.value) > _OUT_OF_PROPORTION:
-        return f"{'grows' if c.value > 0 else 'fades'} many times over within a second against the model"
-    return f"{'grows' if c.value > 0 else 'fades'} by {_percent(c.value)} per second against the model"
-
-
-def _offset_drift(c: Component) -> str:
-    return (
-        f"wanders to the {'upper' if c.value > 0 else 'lower'} side by {abs(c.value):.2g} in sin θ per second"
-    )
-
-
-def _swing_frequency(c: Component) -> str:
-    text = f"swings {_percent(c.value)} {'faster' if c.value > 0 else 'slower'} than the model"
-    if c.detail and "measured_hz" in c.detail:
-        text += f" ({c.detail['measured_hz']:.3g} Hz against {c.detail['simulated_hz']:.3g} Hz)"
-    return text
-
-
-def _swing_decay(c: Component) -> str:
-    text = f"dies out {'faster' if c.value > 0 else 'slower'} than the model by {abs(c.value):.2g} 1/s"
-    if c.detail and "measured_damping_ratio" in c.detail:
-        text += (
-            f" (damping ratio {round(c.detail['measured_damping_ratio'], 3):g} "
-            f"against {round(max(c.detail['simulated_damping_ratio'], 0.0), 3):g})"
-        )
-    return text
-
-
-_WORDS: dict[Kind, Callable[[Component], str]] = {
-    Kind.OFFSET: _offset,
-    Kind.GAIN: _gain,
-    Kind.LAG: _lag,
-    Kind.RINGING: _ringing,
-    Kind.RISE_AGAINST_FALL: _rise_against_fall,
-    Kind.UPPER_AGAINST_LOWER: _upper_against_lower,
-    Kind.GAIN_DRIFT: _gain_drift,
-    Kind.OFFSET_DRIFT: _offset_drift,
-    Kind.SWING_FREQUENCY: _swing_frequency,
-    Kind.SWING_DECAY: _swing_decay,
-}
-
-
-def words(component: Component) -> str:
+def words(c: Component) -> str:
     """A component as a predicate, without full stop: "lags 35 ms after every switch"."""
-    return _WORDS[component.kind](component)
+    size, positive, beyond = abs(c.value), c.value > 0, abs(c.value) > _OUT_OF_PROPORTION
+    more, grows = ("more", "grows") if positive else ("less", "fades")
+    detail = c.detail or {}
+    match c.kind:
+        case Kind.OFFSET:
+            return f"sits {size:.2g} {'above' if positive else 'below'} the model in sin θ"
+        case Kind.GAIN if c.value < -1:
+            return "moves against the model"
+        case Kind.GAIN if positive and beyond:
+            return "moves many times more than the model, which hardly moves"
+        case Kind.GAIN:
+            return f"moves {_percent(size)} {more} than the model"
+        case Kind.LAG if positive:
+            return f"lags {_milliseconds(size)} after every switch"
+        case Kind.LAG:
+            return f"leads the model by {_milliseconds(size)}"
+        case Kind.RINGING:
+            where = f" at {detail['frequency_hz']:.2g} Hz" if detail else ""
+            return f"swings differently{where} after every switch, by {c.value:.2g} in sin θ at first"
+        case Kind.RISE_AGAINST_FALL:
+            slow, fast = ("bending away", "coming back") if positive else ("coming back", "bending away")
+            return f"lags {_milliseconds(size)} more when {slow} than when {fast}"
+        case Kind.UPPER_AGAINST_LOWER:
+            times = "many times" if beyond else _percent(size)
+            return f"bends {times} {more} to the lower than to the upper side"
+        case Kind.GAIN_DRIFT if beyond:
+            return f"{grows} many times over within a second against the model"
+        case Kind.GAIN_DRIFT:
+            return f"{grows} by {_percent(size)} per second against the model"
+        case Kind.OFFSET_DRIFT:
+            return f"wanders to the {'upper' if positive else 'lower'} side by {size:.2g} in sin θ per second"
+        case Kind.SWING_FREQUENCY:
+            text = f"swings {_percent(size)} {'faster' if positive else 'slower'} than the model"
+            if "measured_hz" in detail:
+                text += f" ({detail['measured_hz']:.3g} Hz against {detail['simulated_hz']:.3g} Hz)"
+            return text
+        case Kind.SWING_DECAY:
+            text = f"dies out {'faster' if positive else 'slower'} than the model by {size:.2g} 1/s"
+            if "measured_damping_ratio" in detail:
+                text += (
+                    f" (damping ratio {round(detail['measured_damping_ratio'], 3):g} "
+                    f"against {round(max(detail['simulated_damping_ratio'], 0.0), 3):g})"
+                )
+            return text
 
 
 @dataclass(frozen=True)

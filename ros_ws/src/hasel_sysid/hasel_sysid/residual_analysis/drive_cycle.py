@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_recording import DriveChannel
+from hasel_recording import DriveChannel, Recording
 from hasel_recording.zero_order_hold import row_in_force
 
 from hasel_sysid.residual_analysis.robust_statistics import high_frequency_noise
@@ -90,6 +90,12 @@ def drive_cycle(time: np.ndarray, values: np.ndarray) -> DriveCycle | None:
     else:
         period = _usual_distance(switches)
     return DriveCycle(float(switches[0]), period, switches, sides)
+
+
+def cycle_of(recording: Recording) -> DriveCycle | None:
+    """That of a driven recording."""
+    time, values = recording.drive()
+    return drive_cycle(time, comparable(values, recording.channels))
 
 
 def _usual_distance(switches: np.ndarray) -> float:

@@ -42,13 +42,13 @@ class Whiteness:
         )
 
 
-def whiteness(residual: np.ndarray, frame_time: float, lags: int = LAGS) -> Whiteness | None:
+def whiteness(residual: np.ndarray, frame_time: float) -> Whiteness | None:
     """Test a residual [n], frames frame_time [s] apart; None for fewer than 20 frames or a constant.
 
     Robust standardised autocorrelations of Dalla, Giraitis and Phillips, Econometric Theory 38 (2022) 913.
     """
     centred = residual - residual.mean()
-    count = min(lags, len(centred) // 4)
+    count = min(LAGS, len(centred) // 4)
     power = float(centred @ centred)
     if len(centred) < 20 or power == 0:
         return None
@@ -143,26 +143,21 @@ class PhaseProfile:
     absolute: np.ndarray
     repeats: float
 
-    @property
-    def worst_phase(self) -> float:
-        """Centre of the bin with the largest mean magnitude, 0 to 1."""
-        return float(self.phase[int(np.nanargmax(self.absolute))])
 
-
-def phase_profile(run: RunSeries, bins: int = BINS) -> PhaseProfile | None:
+def phase_profile(run: RunSeries) -> PhaseProfile | None:
     """Profile of one run; None without a cycle."""
     if run.cycle is None or len(run.time) < 2 or run.cycle.count(run.time) < 0.5:
         return None
     driven = run.time >= run.cycle.start
     residual, time = run.residual[driven], run.time[driven]
-    index = np.minimum((run.cycle.phase(time) * bins).astype(int), bins - 1)
-    count = np.bincount(index, minlength=bins).astype(float)
+    index = np.minimum((run.cycle.phase(time) * BINS).astype(int), BINS - 1)
+    count = np.bincount(index, minlength=BINS).astype(float)
     count[count == 0] = np.nan
-    centres = (np.arange(bins) + 0.5) / bins
+    centres = (np.arange(BINS) + 0.5) / BINS
     return PhaseProfile(
         centres,
-        np.bincount(index, residual, bins) / count,
-        np.bincount(index, np.abs(residual), bins) / count,
+        np.bincount(index, residual, BINS) / count,
+        np.bincount(index, np.abs(residual), BINS) / count,
         _repeats(time, residual, run.cycle.period),
     )
 

@@ -90,17 +90,10 @@ def pool(values: Sequence[float] | np.ndarray, errors: Sequence[float] | np.ndar
     return Pooled(float((weight * value).sum() / weight.sum()), float(weight.sum() ** -0.5), between**0.5)
 
 
-@dataclass(frozen=True)
-class Trend:
-    """A condition (such as 3.5 Hz) in which a value is clearly larger than in the others."""
-
-    condition: float
-    value: float
-    elsewhere: float
-
-
-def trend(conditions: Sequence[float], values: Sequence[float], errors: Sequence[float]) -> Trend | None:
-    """The condition where the value, in the direction of its mean, stands out; None when none does.
+def standing_out(
+    conditions: Sequence[float], values: Sequence[float], errors: Sequence[float]
+) -> float | None:
+    """The condition (such as 3.5 Hz) where the value, in the direction of its mean, stands out; None when none does.
 
     Standing out: half as large again as elsewhere and further away than three standard errors.
     """
@@ -113,6 +106,4 @@ def trend(conditions: Sequence[float], values: Sequence[float], errors: Sequence
     others = pool(value[condition != most], error[condition != most])
     difference = sign * (groups[most].mean - others.mean)
     clear = _CLEAR * np.hypot(groups[most].standard_error, others.standard_error)
-    if difference > clear and difference > 0.5 * abs(others.mean):
-        return Trend(float(most), groups[most].mean, others.mean)
-    return None
+    return float(most) if difference > clear and difference > 0.5 * abs(others.mean) else None

@@ -110,17 +110,13 @@ def half_wave_asymmetry(time: np.ndarray, series: np.ndarray, period: float) -> 
     return float(np.std(even))
 
 
-def _driven_both_ways(run: RunSeries) -> bool:
-    side = driven_side(comparable(run.drive_values, run.channels))
-    return bool(np.any(side > 0) and np.any(side < 0))
-
-
 def upper_against_lower(run: RunSeries, aligned: Alignment) -> Component | None:
     """Bending to the lower side relative to the upper, less one; None when the run is driven or bends to one side only.
 
     A body that only one channel bends has two sides merely because its offset is taken out.
     """
-    if not _driven_both_ways(run):
+    side = driven_side(comparable(run.drive_values, run.channels))
+    if not (np.any(side > 0) and np.any(side < 0)):
         return None
     up, down = aligned.shifted.max(), -aligned.shifted.min()
     if min(up, down) < 0.1 * max(up, down):

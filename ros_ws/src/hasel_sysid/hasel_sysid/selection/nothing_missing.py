@@ -22,16 +22,14 @@ class ScoreTest:
     threshold: float
 
 
-def score_test(
-    fitted: Whitened, columns: Sequence[tuple[str, np.ndarray]], level: float, seed: int = 0
-) -> ScoreTest:
+def score_test(fitted: Whitened, columns: Sequence[tuple[str, np.ndarray]], level: float) -> ScoreTest:
     """Test a model against all candidates at once; the chance is of the maximum, so that many of them cost nothing.
 
     columns: of candidates, by name, whitened [frames, n], size and sign left open.
     """
     gains: dict[str, float] = {}
     largest = np.zeros(_DRAWS)
-    draws = fitted.beyond(_white(len(fitted.residual), seed))
+    draws = fitted.beyond(_white(len(fitted.residual)))
     for name, own in columns:
         directions = _directions(fitted, own)
         gain = 0.5 * float(((directions.T @ fitted.residual) ** 2).sum())
@@ -54,6 +52,6 @@ def _directions(fitted: Whitened, columns: np.ndarray) -> np.ndarray:
 
 
 @lru_cache(maxsize=1)
-def _white(frames: int, seed: int) -> np.ndarray:
+def _white(frames: int) -> np.ndarray:
     """Noise of variance one, [frames, draws]; the same for every model that is tested."""
-    return np.random.default_rng(seed).standard_normal((frames, _DRAWS))
+    return np.random.default_rng(0).standard_normal((frames, _DRAWS))

@@ -7,7 +7,7 @@ import pytest
 from hasel_sysid.comparison import error_by_frequency, error_by_level
 from hasel_sysid.residual_analysis.analysis import where_it_fails
 from hasel_sysid.residual_analysis.component import Kind
-from hasel_sysid.residual_analysis.robust_statistics import pool, trend
+from hasel_sysid.residual_analysis.robust_statistics import pool, standing_out
 from hasel_sysid.residual_analysis.run_series import RunSeries
 
 CONDITIONS = [(voltage, frequency) for voltage in (3500.0, 5500.0) for frequency in (0.5, 2.0, 3.5)]
@@ -94,8 +94,8 @@ def test_pooled_mean_and_scatter():
 
 def test_trend_needs_a_clear_difference():
     """A condition stands out only beyond its errors."""
-    assert trend([1, 1, 2, 2], [1.0, 1.1, 3.0, 3.1], [0.1] * 4).condition == 2
-    assert trend([1, 1, 2, 2], [1.0, 1.1, 1.2, 1.3], [0.3] * 4) is None
+    assert standing_out([1, 1, 2, 2], [1.0, 1.1, 3.0, 3.1], [0.1] * 4) == 2
+    assert standing_out([1, 1, 2, 2], [1.0, 1.1, 1.2, 1.3], [0.3] * 4) is None
 
 
 def test_a_phase_without_any_frame_is_no_warning_and_no_worst_one(made_run):
