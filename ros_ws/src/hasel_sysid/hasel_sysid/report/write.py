@@ -32,6 +32,8 @@ from hasel_sysid.report.wording import percent
 ALPHABET = f"{string.digits}{string.ascii_uppercase}{string.ascii_lowercase}!#$%/()*+-;,=.?@^_`{{|}}~"
 """That of RFC 1924 with / , . in the place of & < >."""
 REPORT_FILE = "report.html"
+Figure: TypeAlias = go.Figure | dict[str, Any]
+"""Plotly's, or what plotly.js takes."""
 
 
 def packed(text: str) -> str:
@@ -42,10 +44,6 @@ def packed(text: str) -> str:
     places = np.array([85**4, 85**3, 85**2, 85, 1], dtype=np.uint32)
     digits = words[:, None] // places % 85
     return np.frombuffer(ALPHABET.encode(), dtype=np.uint8)[digits].tobytes().decode("ascii")
-
-
-Figure: TypeAlias = go.Figure | dict[str, Any]
-"""Plotly's, or what plotly.js takes."""
 
 
 def write_report(content: ReportContent, folder: Path) -> Path:
@@ -117,7 +115,9 @@ def _places(name: str, figures: Sequence[dict[str, Any]]) -> str:
 
 def _plain(value: Any) -> Any:
     """Figures as plotly.js takes them, numbers to six digits."""
-    if hasattr(value, "to_plotly_json"):
+    if isinstance(value, go.Figure):  # whose own to_plotly_json packs numbers that nobody rounded
+        value = {"data": value.data, "layout": value.layout}
+    elif hasattr(value, "to_plotly_json"):
         value = value.to_plotly_json()
     if isinstance(value, dict):
         return {key: _plain(each) for key, each in value.items() if key != "template"}
