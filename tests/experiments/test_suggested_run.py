@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_driver.waveform import Waveform
-from hasel_sysid.suggest import Manoeuvre
+from hasel_sysid.answer.next_run import Manoeuvre
 
 
 def driven(goal, time):

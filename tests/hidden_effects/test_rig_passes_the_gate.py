@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from hasel_sim.bench.cases import fitted_swimmer
 from hasel_sim.parallel import simulate_all
-from hasel_sysid.data_gate import Severity, check_against_model, check_recording
+from hasel_sysid.data_quality import Severity, check_against_model, check_recording
 from hasel_sysid.dataset import load_experiments, prepared
 
 RIG = Path(__file__).resolve().parents[2] / "data" / "unseen_rig"

@@ -30,7 +30,7 @@ def start(entry: str, *arguments: str) -> subprocess.CompletedProcess:
         ("hasel_driver.start_driver:main", "port:="),
         ("hasel_tracker.tracker_commands:tracker_node", "source:="),
         ("hasel_sim.start_simulator:main", "model:=swimmer"),
-        ("hasel_sysid.start_sysid:main", "window:=5.0"),
+        ("hasel_sysid.live.start_sysid:main", "window:=5.0"),
         ("hasel_bringup.entry:virtual_rig", "hidden:="),
         ("hasel_bringup.entry:recorder", "folder:=recordings"),
         ("hasel_bringup.entry:virtual_camera", "hidden:=[random]"),

@@ -10,8 +10,8 @@ import pytest
 from hasel_bringup.demo.processes import Processes
 from hasel_interfaces.msg import SupplyState
 from hasel_sim.model import load_model, save_model
+from hasel_sysid.answer.next_run import Manoeuvre
 from hasel_sysid.errors import SysidError
-from hasel_sysid.suggest import Manoeuvre
 from hasel_workbench.live.rig import RunningRig
 from std_srvs.srv import Trigger
 

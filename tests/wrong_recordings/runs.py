@@ -8,11 +8,9 @@ from hasel_recording import HASEL_PAIR, DriveChannel, Recording
 from hasel_recording.switch_times import with_placed_switches
 from hasel_sim.model import load_model
 from hasel_sim.parallel import SerialExecutor
-from hasel_sysid.data_gate import check_against_model, check_recording, refusal
-from hasel_sysid.dataset import prepared, simulable, usable
-from hasel_sysid.drive_match import check_levels, matched
-from hasel_sysid.experiment import experiment_of
-from hasel_sysid.repeated_runs import check_unseen
+from hasel_sysid.data_quality import check_against_model, check_recording, refusal
+from hasel_sysid.dataset import check_levels, matched, prepared, simulable, usable
+from hasel_sysid.experiment import check_unseen, experiment_of
 from scipy.signal import lsim
 
 TIME = np.arange(0, 2, 1 / 120)

@@ -23,7 +23,7 @@ READERS = [
     *_modules("hasel_recording", "bag.py", "column_map.py", "csv_*.py", "drive_*.py", "mcap_*.py"),
     *_modules("hasel_recording", "plateaus.py", "reading.py", "stand_in.py"),
     *_modules("hasel_tracker", "sources/*.py", "offline/drive*.py"),
-    *_modules("hasel_sysid", "dataset.py", "drive_match.py", "experiment.py", "repeated_runs.py"),
+    *_modules("hasel_sysid", "dataset.py", "experiment.py"),
 ]
 OTHERS = {
     "of writing": (
@@ -101,7 +101,7 @@ def test_every_fault_of_the_set_up_is_on_the_page():
     """Each name that `check` gives to a fault."""
     named = {
         each
-        for path in (SOURCE / "hasel_sysid" / "hasel_sysid" / "data_gate").glob("*.py")
+        for path in (SOURCE / "hasel_sysid" / "hasel_sysid" / "data_quality").glob("*.py")
         for each in faults(path)
     }
     assert named <= {quoted.split(": ")[1] for quoted in QUOTED if quoted.startswith("run: ")}

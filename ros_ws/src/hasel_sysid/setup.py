@@ -35,17 +35,17 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "sysid = hasel_sysid.start_sysid:main",
-            "check = hasel_sysid.command_line.entry:check",
-            "compare = hasel_sysid.command_line.entry:compare",
-            "fit = hasel_sysid.command_line.entry:fit",
-            "diagnose = hasel_sysid.command_line.entry:diagnose",
-            "improve = hasel_sysid.command_line.entry:improve",
-            "suggest = hasel_sysid.command_line.entry:suggest",
-            "measured_fish = hasel_sysid.command_line.entry:measured_fish",
-            "add = hasel_sysid.command_line.entry:add",
-            "remove = hasel_sysid.command_line.entry:remove",
-            "convert = hasel_sysid.command_line.convert:main",
+            "sysid = hasel_sysid.live.start_sysid:main",
+            "check = hasel_sysid.command_line.options:check",
+            "compare = hasel_sysid.command_line.options:compare",
+            "fit = hasel_sysid.command_line.options:fit",
+            "diagnose = hasel_sysid.command_line.options:diagnose",
+            "improve = hasel_sysid.command_line.options:improve",
+            "suggest = hasel_sysid.command_line.options:suggest",
+            "measured_fish = hasel_sysid.command_line.options:measured_fish",
+            "add = hasel_sysid.command_line.options:add",
+            "remove = hasel_sysid.command_line.options:remove",
+            "convert = hasel_recording.command_line:convert_main",
         ]
     },
 )

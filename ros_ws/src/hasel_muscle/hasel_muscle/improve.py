@@ -8,8 +8,10 @@ import numpy as np
 from hasel_sim.effects.base import Effect
 from hasel_sim.muscle.catalogue import find_muscle_effects, muscle_catalogue
 from hasel_sim.muscle.muscle import Muscle
+from hasel_sysid.answer.diagnosis import Finding, Verdict, said_beside
+from hasel_sysid.answer.result import Status
+from hasel_sysid.answer.verdict import DETECTION, findings, share_left, status_with
 from hasel_sysid.candidates import Candidate
-from hasel_sysid.diagnosis import Finding, Verdict, said_beside
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation.covariance import with_numerical_error
 from hasel_sysid.estimation.fit import (
@@ -20,14 +22,12 @@ from hasel_sysid.estimation.fit import (
     fitted_model,
 )
 from hasel_sysid.estimation.starts import starts
-from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
-from hasel_sysid.noise.model import allowed_noise
+from hasel_sysid.model_checking import goodness_of_fit
+from hasel_sysid.noise import allowed_noise
 from hasel_sysid.policy import POLICY
-from hasel_sysid.result import Status
 from hasel_sysid.selection.choose import confidence_set
 from hasel_sysid.selection.likelihood import Names, out_of_range
 from hasel_sysid.selection.search import Search, Searched
-from hasel_sysid.verdict import DETECTION, findings, share_left, status_with
 
 from hasel_muscle.problem import BenchProblem, as_model, as_muscle
 from hasel_muscle.result import BenchFinding, BenchImprovement, BenchVerdict, Described, MuscleStage

@@ -5,7 +5,7 @@ from importlib import resources
 from pathlib import Path
 
 from hasel_sim.muscle.catalogue import muscle_catalogue
-from hasel_sysid.report.provenance import provenance
+from hasel_sysid.report.content import provenance
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 
 from hasel_muscle.result import BenchImprovement

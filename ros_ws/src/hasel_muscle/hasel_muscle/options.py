@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from hasel_recording.reading_options import RecordingsParser, add_map_option
-from hasel_sysid.command_line.specimen_parsers import names, numbers
+from hasel_sysid.command_line.options import names, numbers
 
 
 def bench_muscle_parser() -> argparse.ArgumentParser:

@@ -14,7 +14,7 @@ from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run, Simulation
 from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment
-from hasel_sysid.noise.model import NoiseModel
+from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import Evaluation, Problem
 
 from hasel_muscle.settled import SettledRun

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from enum import Enum
 
 from hasel_sim.muscle.muscle import Muscle
+from hasel_sysid.answer.result import Status
 from hasel_sysid.estimation.fit import FittedModel
-from hasel_sysid.model_checking.lack_of_fit import GoodnessOfFit
-from hasel_sysid.result import Status
+from hasel_sysid.model_checking import GoodnessOfFit
 
 from hasel_muscle.problem import as_muscle
 

@@ -68,12 +68,6 @@ class Candidate:
         own = replace(freed.parameters[self.name], lower=p.lower, upper=p.upper)
         return replace(freed, parameters={**freed.parameters, self.name: own})
 
-    def is_in(self, model: Model) -> bool:
-        """Whether a model has it."""
-        if self.effect is not None:
-            return any(effect.id == self.name for effect in model.effects)
-        return self.name in model.parameters
-
     def is_possible_in(self, model: Model) -> bool:
         """Whether a model file may say what the model has for it."""
         if self.effect is not None:

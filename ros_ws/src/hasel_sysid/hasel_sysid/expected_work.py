@@ -1,17 +1,21 @@
-"""How much work a simulation is, and each stage usually is in simulations of all runs by the fitted model.
+"""How much work a simulation is, each stage usually is in simulations of all runs by the fitted model; a time limit.
 
 By recorded searches (`test/timings/improve.csv`): about the middle of what a stage took; of the rare ones some more,
 as strong effects take longer per simulation. `chance` is about how often a stage comes in use: what is recorded holds
 more of the long searches, which take three to six times as long as the others.
 """
 
-from collections.abc import Sequence
+import math
+import time
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from typing import TypeVar
 
 from hasel_common.workload import Stage
 from hasel_sim.model import Model
 from hasel_sim.run import Run
 
+Work = TypeVar("Work")
 START = Stage("start", 1.0, known=True)
 FIT = Stage("fit", 15.0)
 SET_UP = Stage("faults of the set-up", 28.0, chance=0.4)
@@ -37,6 +41,7 @@ _CANDIDATES = 31
 """Effects of the catalogue beside the swimmer, by which the stages of a search were measured."""
 _SEARCH = (TYPICAL, ALONE, OTHER_SIZES)
 _NUMBERS = (NUMBERS, NUMBERS_ALONE, NUMBERS_OTHER_SIZES)
+_BATCH = 8
 
 
 def work_of(model: Model, runs: Sequence[Run], derivatives: int = 0) -> float:
@@ -80,3 +85,31 @@ def plan_of_suggest(size: float, candidates: int) -> list[Stage]:
 
 def _times(size: float, stages: Sequence[Stage]) -> list[Stage]:
     return [replace(stage, work=stage.work * size) for stage in stages]
+
+
+class TimeLimit:
+    """From its making. `is_over` is asked before each piece of work that could be left out; none is broken off."""
+
+    def __init__(self, seconds: float = math.inf, clock: Callable[[], float] = time.monotonic) -> None:
+        """clock: what tells the time, in seconds."""
+        self.seconds, self._clock = seconds, clock
+        self._began = clock()
+        self.left_something_out = False
+
+    def is_over(self) -> bool:
+        """Whether so many seconds have gone by; who is told so leaves its work out, which is remembered."""
+        over = self._clock() - self._began > self.seconds
+        self.left_something_out |= over
+        return over
+
+    def in_batches(self, pieces: Sequence[Work], even_late: bool = False) -> Iterator[Sequence[Work]]:
+        """Eight pieces of work at a time, to be done side by side, until time is over; even_late: the first eight in
+        any case.
+        """
+        for begin in range(0, len(pieces), _BATCH):
+            if not (even_late and begin == 0) and self.is_over():
+                return
+            yield pieces[begin : begin + _BATCH]
+
+    def __str__(self) -> str:
+        return f"the limit of {self.seconds:g} s"

@@ -7,30 +7,25 @@ from functools import partial
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
+from hasel_sysid.answer.diagnosis import Diagnosis, Verdict
+from hasel_sysid.answer.result import Improvement, Stage, Status, WrongConstant
+from hasel_sysid.answer.set_up_verdict import recorded_or_read
+from hasel_sysid.answer.verdict import diagnosis, share_left, status_with
 from hasel_sysid.candidates import Candidate, effects_of
-from hasel_sysid.diagnosis import Diagnosis, Verdict
 from hasel_sysid.estimation.fit import FittedModel, exact, fit_baseline, fitted_model, refined
 from hasel_sysid.estimation.growing_horizon import horizons, in_phase
 from hasel_sysid.expected_work import BEGINNINGS, ENDING
-from hasel_sysid.model_checking.constancy import against_law
-from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
+from hasel_sysid.model_checking import against_law, goodness_of_fit
 from hasel_sysid.policy import POLICY, Policy
 from hasel_sysid.problem import Problem
-from hasel_sysid.reading import recorded_or_read
-from hasel_sysid.result import Improvement, Stage, Status, WrongConstant
 from hasel_sysid.selection.choose import best_of, is_better
 from hasel_sysid.selection.likelihood import NOTHING, FittedSet, Likelihood
 from hasel_sysid.selection.search import IsLaw, Search, Searched
-from hasel_sysid.verdict import diagnosis, share_left, status_with
 
 OnStage = Callable[[Stage], None]
 
 
-def diagnose(
-    problem: Problem,
-    fit: FittedModel,
-    only: Sequence[str] | None = None,
-) -> Diagnosis:
+def diagnose(problem: Problem, fit: FittedModel, only: Sequence[str] | None = None) -> Diagnosis:
     """Rank every effect of the catalogue (or the named ones) as an explanation of what `fit` leaves.
 
     The search of `improve`, among sets of one effect. Raises ModelError for an unknown effect.
@@ -86,7 +81,7 @@ def improve(
         else:
             for names in found.choice.path[1:]:
                 order = [name for name in found.choice.in_order if name in names]
-                add(_ended(problem, found.models[names].fitted.fit), order)
+                add(refined(problem, exact(problem, found.models[names].fitted.fit)), order)
     reason, nothing_else = _why_the_last(found, policy, stages[0], constant)
     concluded = _conclude(stages, reason, nothing_else)
     if concluded.status is Status.NOTHING_MISSING and (doubt := _unseen_runs_differ(stages[-1], said)):
@@ -113,11 +108,6 @@ def _unseen_runs_differ(stage: Stage, said: Diagnosis) -> str:
         f"The fitted runs are described ({stage.mae_fit:.2g}), the unseen ones are not ({unseen:.2g}): fit runs "
         "that are more like them (levels and frequencies of the drive), or check their drive, times and units."
     )
-
-
-def _ended(problem: Problem, fit: FittedModel) -> FittedModel:
-    """A fit of the search by the model's own derivatives, with the discretisation in its errors."""
-    return refined(problem, exact(problem, fit))
 
 
 def _laws(problem: Problem) -> IsLaw:
@@ -176,11 +166,7 @@ def _refitted(problem: Problem, sets: Sequence[FittedSet]) -> list[FittedSet]:
 
 
 def _searched(
-    problem: Problem,
-    fit: FittedModel,
-    effects: Sequence[Candidate],
-    policy: Policy,
-    with_constants: bool,
+    problem: Problem, fit: FittedModel, effects: Sequence[Candidate], policy: Policy, with_constants: bool
 ) -> Searched:
     """What a fitted baseline lacks; where it is out of phase, first of its beginning."""
     begun: list[FittedSet] = []
@@ -243,8 +229,7 @@ def _judged(
         left = 0.0 if status is Status.NOTHING_MISSING else left
     missing = last.effects if status in (Status.EXPLAINED, Status.PARTLY_EXPLAINED) else ()
     first = replace(
-        stages[0],
-        diagnosis=replace(said.seen_beside(described.adequate, missing), goodness=described),
+        stages[0], diagnosis=replace(said.seen_beside(described.adequate, missing), goodness=described)
     )
     return Improvement(
         [first, *stages[1:]],
@@ -259,10 +244,7 @@ def _judged(
 
 
 def _why_the_last(
-    found: Searched,
-    policy: Policy,
-    first: Stage,
-    constant: WrongConstant | None,
+    found: Searched, policy: Policy, first: Stage, constant: WrongConstant | None
 ) -> tuple[str, bool]:
     """Why the last stage is the last, in a sentence, and whether nothing else is missing."""
     if constant:

@@ -3,7 +3,7 @@
 A series is one output of one run. All outputs are in one unit and of one noise level.
 """
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from copy import copy
 from dataclasses import dataclass, replace
@@ -17,12 +17,10 @@ from hasel_sim.parallel import submit_each
 from hasel_sim.run import Simulation
 
 from hasel_sysid.errors import SysidError
-from hasel_sysid.expected_work import work_of
+from hasel_sysid.expected_work import TimeLimit, work_of
 from hasel_sysid.experiment import Experiment
-from hasel_sysid.noise.model import NoiseModel
-from hasel_sysid.noise.sources import measured_noise
+from hasel_sysid.noise import NoiseModel, measured_noise
 from hasel_sysid.policy import POLICY
-from hasel_sysid.time_limit import TimeLimit
 
 
 @dataclass(frozen=True)
@@ -72,12 +70,9 @@ class Evaluation:
         """The residual sum of squares (RSS)."""
         return float(self.residual @ self.residual)
 
-    def by(self, names: Sequence[str], idle: Collection[str] = ()) -> "Evaluation":
-        """The same with derivatives by these of its parameters only, in this order; by those that are idle zero."""
-        columns = [
-            np.zeros_like(self.residual) if name in idle else self.jacobian[:, self.names.index(name)]
-            for name in names
-        ]
+    def by(self, names: Sequence[str]) -> "Evaluation":
+        """The same with derivatives by these of its parameters only, in this order."""
+        columns = [self.jacobian[:, self.names.index(name)] for name in names]
         return replace(self, names=tuple(names), jacobian=np.reshape(columns, (-1, len(self.residual))).T)
 
     def of_runs(self, numbers: Sequence[int]) -> "Evaluation":
@@ -277,11 +272,13 @@ class LowFidelityProblem(Problem):
     same to the last digit. A low-fidelity model that cannot follow the motion is not used at all.
     """
 
-    def __init__(self, of: Problem, known: Evaluation) -> None:
-        """known: a model, evaluated by `of`."""
+    def __init__(self, of: Problem, known: Evaluation | None = None) -> None:
+        """known: a model, evaluated by `of`; without one nothing is known of the error, and none is added."""
         super().__init__(of.experiments, of.pool, of.measured_noise, of.time_limit, of.workload)
         self.known, self._of, self._lower = known, of, of.low_fidelity
         self._error: np.ndarray | float = 0.0
+        if known is None:
+            return
         try:
             error = known.residual - of.evaluate(of.low_fidelity(known.model)).residual
         except SimulationError:

@@ -13,7 +13,7 @@ from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.problem import Evaluation, Problem
-from hasel_sysid.where_it_fails.run_series import RunSeries
+from hasel_sysid.residual_analysis.run_series import RunSeries
 from scipy.signal import lsim
 
 FRAME_RATE = 120.0

@@ -5,10 +5,10 @@ import math
 
 import pytest
 from hasel_common.workload import Workload
-from hasel_sysid.diagnosis import Verdict
+from hasel_sysid.answer.diagnosis import Verdict
+from hasel_sysid.answer.result import Improvement, Status
+from hasel_sysid.command_line.improve import Ledger
 from hasel_sysid.improvement import improve
-from hasel_sysid.ledger import Ledger
-from hasel_sysid.result import Improvement, Status
 from hasel_sysid.testing.made_up_world import MadeUpProblem, MadeUpWorld
 
 DENSITY = "material.density_kg_per_m3"

@@ -11,10 +11,9 @@ from hasel_sim.model import load_model
 from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run, Simulation
 from hasel_sysid.experiment import Experiment
-from hasel_sysid.noise.model import NoiseModel
+from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import Problem
-from hasel_sysid.testing.made_up_world import MadeUpWorld
-from hasel_sysid.testing.simulated_runs import simulated_runs
+from hasel_sysid.testing.made_up_world import MadeUpWorld, simulated_runs
 
 RUN = Run("let go", np.linspace(0.0, 1.0, 20), None)
 NAMES = ("first", "second")

@@ -8,14 +8,14 @@ from functools import partial
 from hasel_common.workload import Workload
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
+from hasel_sysid.answer.diagnosis import Diagnosis
+from hasel_sysid.answer.next_run import Suggestion, fitted_briefly, rivals, suggest
 from hasel_sysid.dataset import prepared
-from hasel_sysid.diagnosis import Diagnosis
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import FittedModel, identify
 from hasel_sysid.expected_work import USUAL_SPEED, plan_of_next_runs, work_of
 from hasel_sysid.improvement import diagnose
 from hasel_sysid.problem import Problem
-from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest
 
 from hasel_workbench.cards import source_of
 from hasel_workbench.evaluate import Progress, evaluated

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from hasel_sim.effects.base import Effect
 from hasel_sim.model import Model
 from hasel_sim.model.value_text import value_with_error
+from hasel_sysid.answer.diagnosis import Diagnosis, Finding
 from hasel_sysid.candidates import candidate_effects
-from hasel_sysid.diagnosis import Diagnosis, Finding
-from hasel_sysid.report.parameter_words import of_effect
+from hasel_sysid.report.wording import of_effect
 
 
 @dataclass(frozen=True)

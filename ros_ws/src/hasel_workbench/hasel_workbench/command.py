@@ -10,8 +10,7 @@ from pathlib import Path
 
 from hasel_recording.reading import drive_of_each
 from hasel_sim.parallel import executor
-from hasel_sysid.command_line.running import run_command
-from hasel_sysid.command_line.workers import workers
+from hasel_sysid.command_line.running import run_command, workers
 from hasel_sysid.errors import SysidError
 
 from hasel_workbench.options import workbench_parser

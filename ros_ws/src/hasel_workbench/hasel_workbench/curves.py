@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_sysid.report.figures.overlay import driven_stretches
+from hasel_sysid.report.overlay import driven_stretches
 
 from hasel_workbench.state import SessionState
 from hasel_workbench.step import Step

@@ -1,7 +1,7 @@
 """Where the executable begins: options are read before anything heavy is imported, so that --help answers at once."""
 
 from hasel_common.command_entry import command
-from hasel_sysid.command_line.entry import run_module
+from hasel_sysid.command_line.options import run_module
 
 from hasel_workbench.options import workbench_parser
 

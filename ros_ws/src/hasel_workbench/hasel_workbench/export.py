@@ -5,10 +5,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from hasel_sim.model import save_model
-from hasel_sysid.compare.comparison import Comparison
+from hasel_sysid.comparison import Comparison
 from hasel_sysid.report.content import ReportContent
-from hasel_sysid.report.from_diagnosis import ranked_rows, what_remains
-from hasel_sysid.report.from_improvement import next_run
+from hasel_sysid.report.from_improvement import next_run, ranked_rows, what_remains
 from hasel_sysid.report.from_results import comparison_content, parameter_rows
 from hasel_sysid.report.shape import simulated_shapes
 from hasel_sysid.report.write import write_report

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_sysid.compare.run_comparison import RunComparison
-from hasel_sysid.where_it_fails.phase_profile import BINS
-from hasel_sysid.where_it_fails.run_series import RunSeries
+from hasel_sysid.comparison import RunComparison
+from hasel_sysid.residual_analysis.residual_tests import BINS
+from hasel_sysid.residual_analysis.run_series import RunSeries
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """A proposed run as a line for the terminal."""
 
 from hasel_recording import HASEL_PAIR
-from hasel_sysid.suggest import Manoeuvre
+from hasel_sysid.answer.next_run import Manoeuvre
 
 
 def goal_line(manoeuvre: Manoeuvre) -> str:

@@ -3,7 +3,7 @@
 import numpy as np
 from hasel_sim.model import Model
 from hasel_sysid.experiment import Experiment
-from hasel_sysid.measured_tail import measured_tail
+from hasel_sysid.report.shape import measured_tail
 
 
 def measured_markers(

@@ -11,7 +11,7 @@ from hasel_recording.csv_columns import understand
 from hasel_recording.csv_text import TEXT_SUFFIXES, read_text
 from hasel_recording.reading import distinct_names
 from hasel_sim.model import Model
-from hasel_sysid.data_gate import check_recording
+from hasel_sysid.data_quality import check_recording
 from hasel_sysid.dataset import for_model, usable
 from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from hasel_sim.effects.base import EffectParameter
 from hasel_sim.model import Model
-from hasel_sysid.report.parameter_words import meaning, plausible
+from hasel_sysid.report.wording import meaning, plausible
 
 _TIMES = 4.0
 """A baseline parameter is dragged from a quarter of its value to four times it."""

@@ -4,10 +4,10 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from hasel_sysid.diagnosis import Diagnosis
+from hasel_sysid.answer.diagnosis import Diagnosis
+from hasel_sysid.answer.next_run import Suggestion
 from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment
-from hasel_sysid.suggest import Suggestion
 
 from hasel_workbench.step import Step
 

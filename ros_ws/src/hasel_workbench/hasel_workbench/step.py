@@ -5,8 +5,7 @@ from functools import cached_property
 
 from hasel_sim.model import Model
 from hasel_sim.run import Simulation
-from hasel_sysid.compare.compare import comparison_of
-from hasel_sysid.compare.comparison import Comparison
+from hasel_sysid.comparison import Comparison, comparison_of
 from hasel_sysid.estimation import FittedModel
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.problem import Evaluation

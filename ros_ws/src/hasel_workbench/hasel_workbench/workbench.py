@@ -13,8 +13,8 @@ from hasel_sim.model import Model, save_model
 from hasel_sim.run import Simulation
 from hasel_sim.simulate import simulate
 from hasel_sysid.candidates import effects_of
-from hasel_sysid.command_line.chosen_model import chosen_model
-from hasel_sysid.compare.compare import with_amplitudes
+from hasel_sysid.command_line.inputs import chosen_model
+from hasel_sysid.comparison import with_amplitudes
 from hasel_sysid.errors import SysidError
 from hasel_sysid.expected_work import USUAL_SPEED, plan_of_diagnosis, plan_of_fit
 from hasel_sysid.experiment import Experiment

@@ -1,7 +1,7 @@
 """The proposed run as a line for the terminal."""
 
 from hasel_recording import DriveChannel
-from hasel_sysid.suggest import Manoeuvre
+from hasel_sysid.answer.next_run import Manoeuvre
 from hasel_workbench.goal import goal_line
 from ruamel.yaml import YAML
 

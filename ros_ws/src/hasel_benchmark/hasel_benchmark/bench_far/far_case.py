@@ -14,7 +14,7 @@ from hasel_sim.parallel import simulate_all
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 from hasel_sysid.experiment import Experiment
-from hasel_sysid.where_it_fails.swing import fit_swing
+from hasel_sysid.residual_analysis.swing import fit_swing
 from scipy.optimize import brentq
 
 from hasel_benchmark.bench_far.constants_far_off import BODIES, SHIFTS, SIZES

@@ -8,7 +8,7 @@ from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import load_model
 from hasel_sysid.dataset import prepared
 from hasel_sysid.estimation import FittedModel, fit_baseline
-from hasel_sysid.noise.bounds import known_noise
+from hasel_sysid.noise_bounds import known_noise
 from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Problem
 from hasel_sysid.selection.likelihood import Likelihood

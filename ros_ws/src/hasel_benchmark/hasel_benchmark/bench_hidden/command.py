@@ -8,7 +8,7 @@ from pathlib import Path
 
 from hasel_sim.errors import ModelError, SimulationError
 from hasel_sim.parallel import executor, worker_count
-from hasel_sysid.command_line.workers import PACKAGES as IDENTIFYING
+from hasel_sysid.command_line.running import PACKAGES as IDENTIFYING
 
 from hasel_benchmark.bench_hidden.case import Case
 from hasel_benchmark.bench_hidden.case_list import list_cases, quick_cases

@@ -13,8 +13,8 @@ from hasel_recording import RecordingError, read_recording
 from hasel_sysid.command_line import fit, improve, measured_fish
 from hasel_sysid.command_line.running import MISLEADING
 from hasel_sysid.errors import SysidError
-from hasel_sysid.measured_fish.films import filmed_runs
-from hasel_sysid.report.provenance import called_as
+from hasel_sysid.filmed_fish import filmed_runs
+from hasel_sysid.report.content import called_as
 from rich.console import Console
 from rich.markup import escape
 

@@ -1,19 +1,70 @@
-"""Pictures of recordings, comparisons, rankings and falling errors."""
+"""Pictures of recordings, comparisons, rankings and falling errors, and files that Python's user asks for."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from io import BytesIO
+from pathlib import Path
 
 import numpy as np
+from hasel_common.command_entry import of_system
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hasel_sysid.api.picture import Picture
-from hasel_sysid.compare import Comparison
-from hasel_sysid.diagnosis import Diagnosis
+from hasel_sysid.answer.diagnosis import Diagnosis
+from hasel_sysid.answer.result import Stage
+from hasel_sysid.comparison import Comparison
+from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment
-from hasel_sysid.report.figures.style import DROP, FITTED, MEASURED, MODELS, NOISE, UNSEEN
-from hasel_sysid.result import Stage
+from hasel_sysid.report.style import DROP, FITTED, MEASURED, MODELS, NOISE, UNSEEN, bare
+from hasel_sysid.report.wording import count_text
 
+_DOTS_PER_INCH = 110
 _COLUMNS, _MOST_EFFECTS = 3, 8
+
+
+def path_of(given: str | Path) -> Path:
+    """The path itself. Raises SysidError for what is none."""
+    if isinstance(given, (str, Path)):
+        return Path(given)
+    raise SysidError(
+        f"found a {type(given).__name__} where a path is expected: give one such as 'model.yaml'"
+    )
+
+
+def written(path: Path, write: Callable[[Path], object]) -> Path:
+    """The path, after `write` was called with it. Raises SysidError for what the system refused."""
+    try:
+        write(path)
+    except OSError as error:
+        raise SysidError(of_system(error)) from None
+    return path
+
+
+class Picture:
+    """figure: matplotlib's, to be changed at will."""
+
+    def __init__(self, figure: Figure) -> None:
+        self.figure = figure
+
+    def save(self, path: str | Path) -> Path:
+        """Write it; the file's ending (.png, .svg, .pdf) says as what. Raises SysidError."""
+        path, kinds = path_of(path), self.figure.canvas.get_supported_filetypes()
+        if path.suffix.lower().removeprefix(".") not in kinds:
+            raise SysidError(
+                f"'{path}' does not say which kind of picture; expected a name that ends in .png, .svg or .pdf: choose "
+                "one"
+            )
+        return written(path, lambda path: self.figure.savefig(path, dpi=2 * _DOTS_PER_INCH))
+
+    def __str__(self) -> str:
+        panels = len([axes for axes in self.figure.axes if axes.get_visible()])
+        return f"A picture of {count_text(panels, 'panel')}: a notebook shows it, and save('picture.png') writes it."
+
+    __repr__ = __str__
+
+    def _repr_png_(self) -> bytes:
+        buffer = BytesIO()
+        self.figure.savefig(buffer, format="png", dpi=_DOTS_PER_INCH)
+        return buffer.getvalue()
 
 
 def draw_recordings(experiments: Sequence[Experiment]) -> Picture:
@@ -64,7 +115,7 @@ def draw_ranking(diagnosis: Diagnosis) -> Picture:
     axis.invert_yaxis()
     axis.set_xlim(0, 100)
     axis.legend(frameon=False, fontsize=8)
-    _bare(axis)
+    bare(axis)
     return Picture(figure)
 
 
@@ -82,7 +133,7 @@ def draw_stages(stages: Sequence[Stage], noise_floor: float) -> Picture:
     axis.set_xticks(place, ["fitted", *("+ " + stage.added[-1] for stage in stages[1:])])
     axis.set_ylabel("mean |Δ sin θ|")
     axis.legend(frameon=False, fontsize=8)
-    _bare(axis)
+    bare(axis)
     return Picture(figure)
 
 
@@ -94,13 +145,8 @@ def _grid(count: int) -> tuple[Figure, list[Axes]]:
     for axis in axes[count:]:
         axis.set_visible(False)
     for axis in axes[:count]:
-        _bare(axis)
+        bare(axis)
         axis.set_xlabel("time [s]", fontsize=8)
     for axis in axes[:count:columns]:
         axis.set_ylabel("sin θ")
     return figure, axes[:count]
-
-
-def _bare(axis: Axes) -> None:
-    axis.spines[["top", "right"]].set_visible(False)
-    axis.tick_params(labelsize=8)

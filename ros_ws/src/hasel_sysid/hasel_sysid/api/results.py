@@ -5,14 +5,13 @@ from dataclasses import dataclass
 
 from hasel_sim.model import Model
 
-from hasel_sysid.api.drawing import draw_comparisons, draw_ranking, draw_recordings, draw_stages
-from hasel_sysid.api.picture import Picture
-from hasel_sysid.compare import Comparison
-from hasel_sysid.diagnosis import Diagnosis, Verdict
+from hasel_sysid.answer.diagnosis import Diagnosis, Verdict
+from hasel_sysid.answer.result import Improvement
+from hasel_sysid.api.drawing import Picture, draw_comparisons, draw_ranking, draw_recordings, draw_stages
+from hasel_sysid.comparison import Comparison
 from hasel_sysid.estimation import FittedModel
 from hasel_sysid.experiment import Experiment
-from hasel_sysid.found_values import found_values
-from hasel_sysid.result import Improvement
+from hasel_sysid.report.wording import found_values
 
 _MOST_SAID = 8
 

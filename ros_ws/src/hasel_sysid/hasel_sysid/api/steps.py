@@ -8,18 +8,17 @@ from hasel_recording import Recording, RecordingError
 from hasel_sim.model import Model, load_model, save_model
 from hasel_sim.parallel import executor
 
+from hasel_sysid.api.drawing import path_of, written
 from hasel_sysid.api.results import Diagnosed, Fitted, Improved, Recordings, Simulated
-from hasel_sysid.api.writing import path_of, written
 from hasel_sysid.candidates import named_effects
-from hasel_sysid.compare import compare
+from hasel_sysid.comparison import compare
 from hasel_sysid.dataset import for_model, load_experiments, prepared, simulable, usable
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import fit_baseline, identify
-from hasel_sysid.experiment import GENTLEST, Experiment
+from hasel_sysid.experiment import GENTLEST, Experiment, check_unseen, counted_once
 from hasel_sysid.improvement import diagnose as diagnosis_of
 from hasel_sysid.improvement import improve as improvement_of
 from hasel_sysid.problem import Problem
-from hasel_sysid.repeated_runs import check_unseen, counted_once
 
 AnyModel: TypeAlias = Model | str | Path | Simulated | Improved
 """A model, a result that has one, or a model's name or file."""

@@ -5,19 +5,17 @@ import sys
 from collections.abc import Sequence
 from dataclasses import replace
 
+from hasel_common.command_entry import BAD_INPUT
 from hasel_recording import Recording, RecordingError
 from hasel_recording.reading import distinct_names, drive_of_each, read_recording
 from hasel_sim.model import Model, load_model
 
-from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.parsers import check_parser
-from hasel_sysid.command_line.running import BAD_INPUT, run_command
-from hasel_sysid.data_gate.check import refusal
-from hasel_sysid.data_gate.understood import Summary, summary
+from hasel_sysid.command_line.options import check_parser
+from hasel_sysid.command_line.running import told, write_json
+from hasel_sysid.data_quality.recording_check import Summary, refusal, summary
 from hasel_sysid.dataset import for_model
 from hasel_sysid.errors import SysidError
-from hasel_sysid.experiment import experiment_of
-from hasel_sysid.repeated_runs import is_repeat
+from hasel_sysid.experiment import experiment_of, is_repeat
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -25,15 +23,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return run(check_parser().parse_args(arguments))
 
 
+@told
 def run(options: argparse.Namespace) -> int:
-    """Run the command with these options."""
+    """Print a summary of each recording; returns the exit code."""
     refused: list[str] = []
-    code = run_command(lambda: _check(options, refused))
-    return code or (BAD_INPUT if refused else 0)
-
-
-def _check(options: argparse.Namespace, refused: list[str]) -> None:
-    """Print a summary of each recording; what cannot be used is added to `refused`."""
     drives = drive_of_each(options.recordings, options.drive)
     model = load_model(options.model) if options.model else None
     shown: list[Summary] = []
@@ -65,6 +58,7 @@ def _check(options: argparse.Namespace, refused: list[str]) -> None:
         print(
             f"Not to be used as they are: {names}." if refused else "All recordings can be used as they are."
         )
+    return BAD_INPUT if refused else 0
 
 
 def _for(model: Model | None, recording: Recording) -> tuple[Recording, tuple[str, ...]]:

@@ -7,19 +7,14 @@ from collections.abc import Sequence
 from hasel_common.progress import progress_bar
 from hasel_common.workload import Stage
 from hasel_sim.errors import SimulationError
-from hasel_sim.model import Model
 
-from hasel_sysid.command_line.chosen_model import chosen_model
-from hasel_sysid.command_line.inputs import load_all
-from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.parsers import compare_parser
-from hasel_sysid.command_line.running import run_command
+from hasel_sysid.command_line.inputs import chosen_model, load_all
+from hasel_sysid.command_line.options import compare_parser
+from hasel_sysid.command_line.running import told, workers, write_json
 from hasel_sysid.command_line.shown import code_after, show
-from hasel_sysid.command_line.workers import workers
-from hasel_sysid.compare import Comparison, compare
+from hasel_sysid.comparison import Comparison, compare
 from hasel_sysid.dataset import for_model, simulable
 from hasel_sysid.expected_work import USUAL_SPEED, work_of
-from hasel_sysid.experiment import Experiment
 from hasel_sysid.report.from_results import comparison_content, never_fitted
 from hasel_sysid.report.write import write_report
 
@@ -32,12 +27,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return run(compare_parser().parse_args(arguments))
 
 
+@told
 def run(options: argparse.Namespace) -> int:
     """Run the command with these options; returns its exit code."""
-    return run_command(lambda: _compare(options))
-
-
-def _compare(options: argparse.Namespace) -> int:
     experiments, unseen = load_all(options)
     names = options.model or [None]
     seen = len(experiments)
@@ -46,8 +38,8 @@ def _compare(options: argparse.Namespace) -> int:
     comparisons: list[Comparison] = []
     firsts: list[str] = []
     try:
-        jobs = _worth_it(models, [*experiments, *unseen])
         runs = [each.run for each in (*experiments, *unseen)]
+        jobs = 1 if len(models) * sum(len(run.time) for run in runs) < _FEW_FRAMES else None
         stage = Stage("compare", sum(work_of(model, runs) for _, model in models), known=True)
         with (
             workers(options, jobs) as pool,
@@ -74,12 +66,6 @@ def _compare(options: argparse.Namespace) -> int:
         raise
     _finish(options, comparisons, firsts)
     return code_after(comparisons[0].set_up)
-
-
-def _worth_it(models: Sequence[tuple[str, Model]], experiments: Sequence[Experiment]) -> int | None:
-    """1 where starting further processes takes longer than simulating every frame here, otherwise one per core."""
-    frames = len(models) * sum(len(each.run.time) for each in experiments)
-    return 1 if frames < _FEW_FRAMES else None
 
 
 def _finish(options: argparse.Namespace, comparisons: Sequence[Comparison], firsts: Sequence[str]) -> None:

@@ -6,24 +6,21 @@ from collections.abc import Sequence
 
 from hasel_common.progress import progress_bar
 
+from hasel_sysid.answer.diagnosis import diagnosis_json
 from hasel_sysid.candidates import effects_of
 from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
-from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.parsers import diagnose_parser
-from hasel_sysid.command_line.running import run_command
+from hasel_sysid.command_line.options import diagnose_parser
+from hasel_sysid.command_line.running import told, workers, write_json
 from hasel_sysid.command_line.shown import code_after, show, summarise, tell
 from hasel_sysid.command_line.summary import diagnosis_lines
-from hasel_sysid.command_line.workers import workers
-from hasel_sysid.compare import compare
-from hasel_sysid.diagnosis import diagnosis_json
+from hasel_sysid.comparison import compare
 from hasel_sysid.estimation import fit_baseline
-from hasel_sysid.expected_work import COMPARISON, USUAL_SPEED, plan_of_diagnosis, work_of
+from hasel_sysid.expected_work import COMPARISON, USUAL_SPEED, TimeLimit, plan_of_diagnosis, work_of
 from hasel_sysid.improvement import diagnose
 from hasel_sysid.problem import Problem
-from hasel_sysid.report.from_diagnosis import diagnosis_content
+from hasel_sysid.report.from_improvement import diagnosis_content
 from hasel_sysid.report.pictures import vector_figures
 from hasel_sysid.report.write import write_report
-from hasel_sysid.time_limit import TimeLimit
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -31,12 +28,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return run(diagnose_parser().parse_args(arguments))
 
 
+@told
 def run(options: argparse.Namespace) -> int:
     """Run the command with these options; returns its exit code."""
-    return run_command(lambda: _diagnose(options))
-
-
-def _diagnose(options: argparse.Namespace) -> int:
     given, limit = load_inputs(options), TimeLimit(options.seconds)
     size = work_of(given.model, [each.run for each in given.experiments])
     plan = plan_of_diagnosis(size, len(effects_of(given.model, options.effects)))

@@ -8,8 +8,8 @@ from pathlib import Path
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import Model, load_model, save_model
 
-from hasel_sysid.command_line.parsers import add_parser, remove_parser
-from hasel_sysid.command_line.running import run_command
+from hasel_sysid.command_line.options import add_parser, remove_parser
+from hasel_sysid.command_line.running import told
 from hasel_sysid.errors import SysidError
 
 
@@ -23,26 +23,23 @@ def remove_main(arguments: Sequence[str] | None = None) -> int:
     return run_remove(remove_parser().parse_args(arguments))
 
 
-def run_add(options: argparse.Namespace) -> int:
+@told
+def run_add(options: argparse.Namespace) -> None:
     """Run `add` with these options."""
-    return _run(options, "+", lambda model, effects: model.with_effects(*effects))
+    _change(options, "+", lambda model, effects: model.with_effects(*effects))
 
 
-def run_remove(options: argparse.Namespace) -> int:
+@told
+def run_remove(options: argparse.Namespace) -> None:
     """Run `remove` with these options."""
-    return _run(options, "-", lambda model, effects: model.without_effects(*effects))
-
-
-def _run(chosen: argparse.Namespace, joint: str, change: Callable[[Model, Sequence[str]], Model]) -> int:
-    return run_command(_list if chosen.list else lambda: _change(chosen, joint, change))
-
-
-def _list() -> None:
-    for effect in catalogue().values():
-        print(f"{effect.id:20} {effect.place:12} {effect.physics}")
+    _change(options, "-", lambda model, effects: model.without_effects(*effects))
 
 
 def _change(chosen: argparse.Namespace, joint: str, change: Callable[[Model, Sequence[str]], Model]) -> None:
+    if chosen.list:
+        for effect in catalogue().values():
+            print(f"{effect.id:20} {effect.place:12} {effect.physics}")
+        return
     if not chosen.effects:
         raise SysidError("no effect was named; expected at least one: name one, or give --list to see them")
     changed = change(load_model(chosen.model), chosen.effects)

@@ -6,21 +6,19 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hasel_common.progress import progress_bar
-from hasel_sim.errors import ClusterError
+from hasel_sim.errors import ClusterError, SimulationError
 from hasel_sim.model import Model, save_model
 
-from hasel_sysid.command_line.best_so_far import BestSoFar
 from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
-from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.parsers import fit_parser
-from hasel_sysid.command_line.running import run_command
+from hasel_sysid.command_line.options import fit_parser
+from hasel_sysid.command_line.running import told, workers, write_json
 from hasel_sysid.command_line.shown import code_after, show
-from hasel_sysid.command_line.workers import workers
-from hasel_sysid.compare import Comparison, compare
-from hasel_sysid.data_gate import DataFinding
+from hasel_sysid.comparison import Comparison, compare
+from hasel_sysid.data_quality import DataFinding
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import FittedModel, identify
 from hasel_sysid.expected_work import COMPARISON, USUAL_SPEED, plan_of_fit, work_of
+from hasel_sysid.problem import Evaluation, Problem
 from hasel_sysid.report.from_results import fit_content
 from hasel_sysid.report.pictures import vector_figures
 from hasel_sysid.report.write import write_report
@@ -28,17 +26,32 @@ from hasel_sysid.report.write import write_report
 MODEL_FILE = "fitted_model.yaml"
 
 
+class BestSoFar(Problem):
+    """best: the evaluation with the least sum of squares so far; None before the first."""
+
+    best: Evaluation | None = None
+
+    def evaluate_each(
+        self, models: Sequence[Model], names: Sequence[Sequence[str]]
+    ) -> list[Evaluation | SimulationError]:
+        """As the problem itself does."""
+        found = super().evaluate_each(models, names)
+        for evaluation in found:
+            if isinstance(evaluation, SimulationError):
+                continue
+            if self.best is None or evaluation.sum_of_squares < self.best.sum_of_squares:
+                self.best = evaluation
+        return found
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns its exit code."""
     return run(fit_parser().parse_args(arguments))
 
 
+@told
 def run(options: argparse.Namespace) -> int:
     """Run the command with these options; returns its exit code."""
-    return run_command(lambda: _fit(options))
-
-
-def _fit(options: argparse.Namespace) -> int:
     given = load_inputs(options)
     if not given.model.free:
         raise SysidError(

@@ -1,6 +1,7 @@
 """`improve RECORDING…`: fit, diagnose, add, refit, and write what was found at every stage."""
 
 import argparse
+import json
 import sys
 from collections.abc import Sequence
 from concurrent.futures import Executor
@@ -11,31 +12,52 @@ from hasel_common.workload import Workload
 from hasel_sim.model import Model, save_model
 from hasel_sim.parallel import simulate_all
 
+from hasel_sysid.answer.next_run import Suggestion, in_doubt, suggest
+from hasel_sysid.answer.result import Improvement, Stage, Status, table_of_models
+from hasel_sysid.answer.set_up import DECIDED
 from hasel_sysid.candidates import effects_of
 from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
-from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.parsers import improve_parser
-from hasel_sysid.command_line.running import MISLEADING, run_command
+from hasel_sysid.command_line.options import improve_parser
+from hasel_sysid.command_line.running import MISLEADING, told, workers, write_json
 from hasel_sysid.command_line.shown import code_after, show, summarise, tell
 from hasel_sysid.command_line.summary import improvement_lines
-from hasel_sysid.command_line.workers import workers
-from hasel_sysid.compare import Comparison, compare
-from hasel_sysid.compare.compare import comparison_of
-from hasel_sysid.data_gate import DataFinding
-from hasel_sysid.expected_work import START, USUAL_SPEED, plan_of_improve, work_of
+from hasel_sysid.comparison import Comparison, compare, comparison_of
+from hasel_sysid.data_quality import DataFinding
+from hasel_sysid.expected_work import START, USUAL_SPEED, TimeLimit, plan_of_improve, work_of
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.improvement import improve
-from hasel_sysid.ledger import Ledger
 from hasel_sysid.problem import Problem
 from hasel_sysid.report.from_improvement import improvement_content
 from hasel_sysid.report.pictures import stages_picture, vector_figures, waterfall_picture
 from hasel_sysid.report.write import write_report
-from hasel_sysid.result import Improvement, Stage, Status, table_of_models
-from hasel_sysid.set_up import DECIDED
-from hasel_sysid.suggest import Suggestion, in_doubt, suggest
-from hasel_sysid.time_limit import TimeLimit
 
 MODEL_FILE = "improved_model.yaml"
+
+
+class Ledger:
+    """Writes `stage_<n>_<effects>.yaml` and one line of `ledger.jsonl` for every stage as soon as it is known."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self.path = folder, folder / "ledger.jsonl"
+        self.path.write_text("")
+        self._count = 0
+
+    def add(self, stage: Stage) -> None:
+        """Write a stage's model and what was found there."""
+        name = "_".join([f"stage_{self._count}", *(stage.added or ("baseline",))]) + ".yaml"
+        save_model(stage.fit.model, self.folder / name)
+        self._count += 1
+        best = None if stage.diagnosis is None else stage.diagnosis.best
+        line = {
+            "model": name,
+            "effects": list(stage.effects),
+            "constant": stage.constant or None,
+            "mae_fit": stage.mae_fit,
+            "mae_validation": stage.mae_validation,
+            "next": None if best is None else {"effect": best.effect, "finding": str(best)},
+        }
+        with self.path.open("a") as file:
+            file.write(json.dumps(line, ensure_ascii=False) + "\n")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -43,12 +65,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return run(improve_parser().parse_args(arguments))
 
 
+@told
 def run(options: argparse.Namespace) -> int:
     """Run the command with these options; returns its exit code."""
-    return run_command(lambda: _improve(options))
-
-
-def _improve(options: argparse.Namespace) -> int:
     given = load_inputs(options, DECIDED)
     label, model = given.label, given.model
     options.output.mkdir(parents=True, exist_ok=True)

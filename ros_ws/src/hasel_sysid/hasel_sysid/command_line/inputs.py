@@ -1,25 +1,38 @@
 """What commands on recordings begin with: the runs and the model."""
 
 import argparse
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from hasel_recording import Recording
 from hasel_recording.reading import distinct_names, drive_of_each
-from hasel_sim.model import Model
+from hasel_sim.errors import OwnCodeError
+from hasel_sim.model import Model, load_model
 
 from hasel_sysid.candidates import named_effects
-from hasel_sysid.command_line.chosen_model import chosen_model
+from hasel_sysid.command_line.options import DEFAULT_MODEL
 from hasel_sysid.command_line.shown import announce
-from hasel_sysid.data_gate import DataFinding
-from hasel_sysid.dataset import for_model, load_experiments, prepared, simulable
-from hasel_sysid.drive_match import check_levels
-from hasel_sysid.experiment import GENTLEST, Experiment
-from hasel_sysid.repeated_runs import check_unseen
+from hasel_sysid.data_quality import DataFinding
+from hasel_sysid.dataset import check_levels, for_model, load_experiments, prepared, simulable
+from hasel_sysid.errors import SysidError
+from hasel_sysid.experiment import GENTLEST, Experiment, check_unseen
 
 if TYPE_CHECKING:
-    from hasel_sysid.noise.model import NoiseModel
+    from hasel_sysid.noise import NoiseModel
+
+
+def chosen_model(asked: str | None, recordings: Sequence[Recording]) -> tuple[str, Model]:
+    """What to call the model, and the model. Raises SysidError where code would run that --model did not ask for."""
+    named = {recording.metadata.get("model") for recording in recordings}
+    name = asked or (named.pop() if len(named) == 1 else None) or DEFAULT_MODEL
+    try:
+        model = load_model(name, own_code=bool(asked))
+    except OwnCodeError as error:
+        raise SysidError(f"named by the recordings, {error}: give --model {name} if that is meant") from None
+    return Path(name).stem if Path(name).suffix in (".yaml", ".yml") else name, model
 
 
 @dataclass(frozen=True)
@@ -62,16 +75,14 @@ def that_can_be_simulated(given: Inputs, pool: Executor) -> Inputs:
 def _noise(given: float | None) -> "NoiseModel | None":
     if given is None:
         return None
-    from hasel_sysid.noise.sources import (
+    from hasel_sysid.noise import (
         given_noise,  # takes as long to import as all else that compare needs
     )
 
     return given_noise(given)
 
 
-def load_all(
-    options: argparse.Namespace,
-) -> tuple[list[Experiment], list[Experiment]]:
+def load_all(options: argparse.Namespace) -> tuple[list[Experiment], list[Experiment]]:
     """The experiments to fit and the unseen ones.
 
     Raises RecordingError when there are none to read, SysidError where one is both.

@@ -10,18 +10,16 @@ from hasel_recording import HASEL_PAIR
 from hasel_sim.model import Model
 from ruamel.yaml import YAML
 
+from hasel_sysid.answer.next_run import Suggestion, fitted_briefly, rivals, suggest
 from hasel_sysid.candidates import effects_of
 from hasel_sysid.command_line.inputs import load_inputs, that_can_be_simulated
-from hasel_sysid.command_line.json_file import write_json
-from hasel_sysid.command_line.parsers import suggest_parser
-from hasel_sysid.command_line.running import run_command
-from hasel_sysid.command_line.workers import workers
+from hasel_sysid.command_line.options import suggest_parser
+from hasel_sysid.command_line.running import told, workers, write_json
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import fit_baseline
 from hasel_sysid.expected_work import USUAL_SPEED, plan_of_suggest, work_of
 from hasel_sysid.improvement import diagnose
 from hasel_sysid.problem import Problem
-from hasel_sysid.suggest import Suggestion, fitted_briefly, rivals, suggest
 
 GOAL_FILE = "suggested_run.yaml"
 _SHOWN = 5
@@ -33,12 +31,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return run(suggest_parser().parse_args(arguments))
 
 
-def run(options: argparse.Namespace) -> int:
+@told
+def run(options: argparse.Namespace) -> None:
     """Run the command with these options; returns its exit code."""
-    return run_command(lambda: _suggest(options))
-
-
-def _suggest(options: argparse.Namespace) -> None:
     given = load_inputs(options)
     size = work_of(given.model, [each.run for each in given.experiments])
     plan = plan_of_suggest(size, len(effects_of(given.model, options.effects)))

@@ -2,13 +2,12 @@
 
 from collections.abc import Sequence
 
-from hasel_sysid.compare import Comparison
-from hasel_sysid.diagnosis import Diagnosis, Verdict
-from hasel_sysid.found_values import found_values, value_line
+from hasel_sysid.answer.diagnosis import Diagnosis, Verdict
+from hasel_sysid.answer.next_run import Suggestion
+from hasel_sysid.answer.result import Improvement
+from hasel_sysid.comparison import Comparison
 from hasel_sysid.report.from_improvement import what_is_missing
-from hasel_sysid.report.numbers import error_text
-from hasel_sysid.result import Improvement
-from hasel_sysid.suggest import Suggestion
+from hasel_sysid.report.wording import error_text, found_values, value_line
 
 
 def improvement_lines(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from hasel_sim.errors import SimulationError
 
-from hasel_sysid.noise.model import NoiseModel
+from hasel_sysid.noise import NoiseModel
 from hasel_sysid.policy import POLICY
 from hasel_sysid.problem import Evaluation, Problem
 

@@ -35,7 +35,7 @@ from hasel_sysid.estimation.least_squares import (
 from hasel_sysid.estimation.starts import MOST_FOLLOWED, screen, starts
 from hasel_sysid.expected_work import FIT
 from hasel_sysid.experiment import GENTLEST
-from hasel_sysid.noise.model import estimate_noise
+from hasel_sysid.noise import estimate_noise
 from hasel_sysid.problem import Evaluation, LowFidelityProblem, Problem
 
 TOLERANCE = 1e-3
@@ -129,11 +129,7 @@ def refined(problem: Problem, fit: FittedModel) -> FittedModel:
 
 
 def descend(
-    problem: Problem,
-    models: Sequence[Model],
-    first: Sequence[str] = (),
-    tolerance: float = TOLERANCE,
-    may_win: MayWin = may_be_least,
+    problem: Problem, models: Sequence[Model], first: Sequence[str] = (), may_win: MayWin = may_be_least
 ) -> list[Evaluation]:
     """Least squares from each of these models that can be simulated, side by side, as long as it may win; what leaves
     least comes first.
@@ -143,13 +139,13 @@ def descend(
     """
     names = [_without_onsets(model) for model in models]
     begun = [one for one in problem.evaluate_each(models, names) if not isinstance(one, SimulationError)]
-    searches = [GaussNewton(one, tolerance, first) for one in begun]
+    searches = [GaussNewton(one, TOLERANCE, first) for one in begun]
     step_together(problem, searches, may_win)
     found = sorted((search.at for search in searches), key=lambda one: one.sum_of_squares)
     if found and found[0].names != found[0].model.free:
         whole = problem.evaluate_each([found[0].model], [found[0].model.free])[0]
         if not isinstance(whole, SimulationError):
-            found[0] = minimise(problem, whole, tolerance, MOST_STEPS)[0]
+            found[0] = minimise(problem, whole, TOLERANCE, MOST_STEPS)[0]
     return found
 
 
@@ -157,7 +153,7 @@ def _without_onsets(model: Model) -> tuple[str, ...]:
     return tuple(n for n in model.free if not model.is_onset(n) or model.values[n])
 
 
-def mapped(problem: Problem, low: Evaluation, tolerance: float = TOLERANCE) -> Evaluation:
+def mapped(problem: Problem, low: Evaluation) -> Evaluation:
     """The model itself from where the low-fidelity model ended, by its derivatives: one to three simulations without
     any of its own. Raises SimulationError where the model cannot be simulated there.
     """
@@ -168,7 +164,7 @@ def mapped(problem: Problem, low: Evaluation, tolerance: float = TOLERANCE) -> E
         change, left = bounded_change(
             here.residual, jacobian, np.maximum(lower - value, -reach), np.minimum(upper - value, reach)
         )
-        if here.sum_of_squares - left <= tolerance * here.sum_of_squares:
+        if here.sum_of_squares - left <= TOLERANCE * here.sum_of_squares:
             break
         ahead = here.model.with_values(dict(zip(names, value + change, strict=True)))
         (new,) = problem.evaluate_each([ahead], [()])
@@ -255,7 +251,7 @@ def fit_from_starts(problem: Problem, model: Model) -> FittedModel:
 
     Raises SimulationError when no start can be simulated.
     """
-    before, coarse = problem.evaluations, _Coarse(problem)
+    before, coarse = problem.evaluations, LowFidelityProblem(problem)
     own = {name for effect in model.effects for p in effect.parameters for name in [f"{effect.id}.{p.name}"]}
     with problem.workload.stage(Stage("low-fidelity model")):
         begin = [_that_runs(coarse, model)]
@@ -266,24 +262,6 @@ def fit_from_starts(problem: Problem, model: Model) -> FittedModel:
         start = problem.evaluate(led[0].model if led else begin[0], model.free)
         evaluation, ended = minimise(problem, start, 0.5 * TOLERANCE, MOST_STEPS)
     return replace(fitted_model(evaluation, problem.evaluations - before), converged=ended)
-
-
-class _Coarse(Problem):
-    """A problem by the low-fidelity model alone, before anything is known of its error."""
-
-    def __init__(self, of: Problem) -> None:
-        super().__init__(of.experiments, of.pool, of.measured_noise, of.time_limit, of.workload)
-        self._of = of
-
-    def evaluate_each(
-        self, models: Sequence[Model], names: Sequence[Sequence[str]]
-    ) -> list[Evaluation | SimulationError]:
-        """As of a problem."""
-        found = self._of.evaluate_each([self._of.low_fidelity(model) for model in models], names)
-        return [
-            one if isinstance(one, SimulationError) else replace(one, model=model)
-            for model, one in zip(models, found, strict=True)
-        ]
 
 
 def _that_runs(problem: Problem, model: Model) -> Model:

@@ -9,8 +9,8 @@ import numpy as np
 
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.problem import Evaluation, Problem
-from hasel_sysid.where_it_fails.drive_cycle import drive_cycle
-from hasel_sysid.where_it_fails.swing import fit_swing
+from hasel_sysid.residual_analysis.drive_cycle import drive_cycle
+from hasel_sysid.residual_analysis.swing import fit_swing
 
 _OUT_OF_PHASE = 0.5
 """A model that leaves this share of the measured power moves against the body in part of the time."""

@@ -1,6 +1,7 @@
-"""What was heard, as recordings to fit."""
+"""What was heard, as recordings to fit: a long stream of the supply's states and measured angles, cut into runs."""
 
 from collections import deque
+from collections.abc import Sequence
 from datetime import datetime
 from typing import NamedTuple
 
@@ -9,14 +10,68 @@ from hasel_recording import Recording
 from hasel_recording.zero_order_hold import held
 
 from hasel_sysid.errors import SysidError
-from hasel_sysid.live.driven_parts import driven_parts
 
+REST_S = 2.0
+"""After this long at 0 V the body is at rest."""
+_BEFORE_S, AFTER_S = 0.25, 1.0
+"""Of the rest, so much is kept around what is driven: the start, and the ringing."""
 _FEWEST_FRAMES = 20
 _MOST_MESSAGES = 400_000
 """Of one topic in one run; about an hour. Older ones are forgotten."""
-
 _A_CLOCKS = 1e9
 """Stamps [s] below are counted from the start of something, not from 1970."""
+
+
+def driven_parts(time: np.ndarray, voltage: np.ndarray, end: float) -> list[tuple[float, float]]:
+    """Begin and end [s] of the stretches between long rests.
+
+    time [s] [n], voltage [V] [n, 2], each holding until the next; end [s] of the stream. A body that is never driven
+    swings by itself: it is one stretch.
+    """
+    on = voltage.any(axis=1)
+    if not on.any():
+        return [(float(time[0]), end)]
+    switched = np.flatnonzero(np.diff(np.concatenate([[False], on, [False]]).astype(int)))
+    edges = np.append(time, end)[switched].reshape(-1, 2)
+    parts = [list(edges[0])]
+    for begin, stop in edges[1:]:
+        if begin - parts[-1][1] > REST_S:
+            parts.append([begin, stop])
+        else:
+            parts[-1][1] = stop
+    first = float(time[0])
+    return [(max(first, begin - _BEFORE_S), min(end, stop + AFTER_S)) for begin, stop in parts]
+
+
+class DriveWatch:
+    """Told of states one after the other, as `driven_parts` cuts the whole stream; a voltage holds until the next."""
+
+    def __init__(self) -> None:
+        self._epoch: int | None = None
+        self._driven = False
+        self._resting_since_ns = 0
+        self._last_rest_ns: tuple[float, float] | None = None
+
+    def begins(self, epoch: int, stamp_ns: int, voltage: Sequence[float]) -> bool:
+        """Whether a run begins with this state; a voltage [V] that is not known (NaN) drives nothing."""
+        if epoch != self._epoch:
+            self._epoch, self._driven = epoch, False
+            self._resting_since_ns, self._last_rest_ns = stamp_ns, None
+        was_driven, self._driven = self._driven, any(abs(each) > 0 for each in voltage)
+        if was_driven and not self._driven:
+            self._resting_since_ns, self._last_rest_ns = stamp_ns, (stamp_ns, float("inf"))
+        if was_driven or not self._driven:
+            return False
+        if self._last_rest_ns is not None:
+            self._last_rest_ns = self._resting_since_ns, stamp_ns
+        return stamp_ns - self._resting_since_ns > REST_S * 1e9
+
+    def is_over(self, epoch: int, stamp_ns: int) -> bool:
+        """Whether the body, once driven, has come to rest by a stamp [ns], which may lie before the last state."""
+        if epoch != self._epoch or self._last_rest_ns is None:
+            return False
+        since_ns, until_ns = self._last_rest_ns
+        return since_ns + AFTER_S * 1e9 < stamp_ns < until_ns
 
 
 class _Series:

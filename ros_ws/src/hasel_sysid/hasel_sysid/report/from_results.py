@@ -6,13 +6,11 @@ from typing import TYPE_CHECKING
 
 from hasel_sim.model import Model
 
-from hasel_sysid.compare.comparison import Comparison
-from hasel_sysid.compare.run_comparison import RunComparison
+from hasel_sysid.comparison import Comparison, RunComparison
 from hasel_sysid.report.content import KeyNumber, ParameterRow, ReportContent, RunOverlay
-from hasel_sysid.report.figures.overlay import driven_stretches
-from hasel_sysid.report.numbers import count_text, error_text
-from hasel_sysid.report.parameter_words import meaning, plausible, remark
+from hasel_sysid.report.overlay import driven_stretches
 from hasel_sysid.report.shape import Shapes, simulated_shapes
+from hasel_sysid.report.wording import count_text, error_text, meaning, plausible, remark
 
 if TYPE_CHECKING:
     from hasel_sysid.estimation import FittedModel

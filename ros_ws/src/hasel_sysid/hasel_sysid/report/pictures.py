@@ -11,9 +11,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
-from hasel_sysid.report.content import ReportContent, RunOverlay, StageRow
-from hasel_sysid.report.figures.style import DROP, FITTED, MEASURED, MODELS, NOISE, RISE, UNSEEN
-from hasel_sysid.report.numbers import change_text, error_text
+from hasel_sysid.report.content import ReportContent, RunOverlay, StageRow, known_errors
+from hasel_sysid.report.style import DROP, FITTED, MEASURED, MODELS, NOISE, OF_RUNS, RISE, UNSEEN, bare
+from hasel_sysid.report.wording import change_text, error_text
 
 _DOTS_PER_INCH = 150
 _BESIDE = 4
@@ -32,15 +32,10 @@ def vector_figures(content: ReportContent, folder: Path) -> list[Path]:
 
 def waterfall_picture(stages: Sequence[StageRow], noise_floor: float | None, path: Path) -> Path:
     """Draw the error waterfall on fitted and, where there are any, on unseen runs."""
-    groups = [("fitted runs", [s.error for s in stages], FITTED)]
-    if any(stage.error_unseen is not None for stage in stages):
-        groups.append(("unseen runs", [s.error_unseen for s in stages], UNSEEN))
+    groups = known_errors(stages)
     figure, axes = plt.subplots(1, len(groups), figsize=(4.6 * len(groups), 3.4), sharey=True, squeeze=False)
-    for axis, (name, errors, colour) in zip(axes[0], groups, strict=True):
-        known = [
-            (stage.label, error) for stage, error in zip(stages, errors, strict=True) if error is not None
-        ]
-        _waterfall(axis, known, colour)
+    for axis, (name, known) in zip(axes[0], groups.items(), strict=True):
+        _waterfall(axis, known, OF_RUNS[name])
         _noise(axis, noise_floor)
         if noise_floor is not None:
             axis.legend(frameon=False, loc="upper right", fontsize=8)
@@ -66,7 +61,7 @@ def stages_picture(stages: Sequence[StageRow], noise_floor: float | None, path: 
     axis.set_xticks(place, [stage.label for stage in stages])
     axis.set_ylabel("mean |Δ sin θ|")
     axis.legend(frameon=False)
-    _bare(axis)
+    bare(axis)
     return _save(figure, path)
 
 
@@ -84,7 +79,7 @@ def overlay_picture(runs: Sequence[RunOverlay], path: Path) -> Path:
             axis.plot(run.time, simulated, color=MODELS[number % len(MODELS)], linewidth=1.3, label=label)
         axis.set_title(run.name + (" (unseen)" if run.unseen else ""), fontsize=10)
         axis.set_xlabel("time [s]")
-        _bare(axis)
+        bare(axis)
     for axis in axes[:, 0]:
         axis.set_ylabel("sin θ")
     figure.legend(*axes[0][0].get_legend_handles_labels(), frameon=False, ncols=4, loc="outside lower center")
@@ -93,43 +88,30 @@ def overlay_picture(runs: Sequence[RunOverlay], path: Path) -> Path:
 
 def _waterfall(axis: Axes, known: Sequence[tuple[str, float]], colour: str) -> None:
     labels, errors = [label for label, _ in known], [error for _, error in known]
+
+    def write(text: str, place: int, height: float, weight: str = "normal") -> None:
+        where = (place, height), (0, 3)
+        axis.annotate(text, *where, textcoords="offset points", ha="center", fontsize=8, weight=weight)
+
     axis.bar(0, errors[0], 0.75, color=colour)
-    axis.annotate(
-        error_text(errors[0]), (0, errors[0]), (0, 3), textcoords="offset points", ha="center", fontsize=8
-    )
+    write(error_text(errors[0]), 0, errors[0])
     for place, (before, after) in enumerate(zip(errors, errors[1:], strict=False), start=1):
         falls = after <= before
         axis.bar(place, before - after, 0.75, bottom=after, color=DROP if falls else RISE)
         axis.plot([place - 1.375 + 0.75, place + 0.375], [before, before], color="#c3c9cf", linewidth=0.8)
-        text = change_text(after - before)
-        axis.annotate(
-            text, (place, max(before, after)), (0, 3), textcoords="offset points", ha="center", fontsize=8
-        )
+        write(change_text(after - before), place, max(before, after))
     end = len(errors)
     axis.bar(end, errors[-1], 0.75, color=colour)
-    axis.annotate(
-        error_text(errors[-1]),
-        (end, errors[-1]),
-        (0, 3),
-        textcoords="offset points",
-        ha="center",
-        fontsize=8,
-        weight="bold",
-    )
+    write(error_text(errors[-1]), end, errors[-1], weight="bold")
     axis.set_xticks(range(end + 1), [*labels, "left over"], rotation=20, ha="right")
     axis.set_ylim(0, 1.12 * max(errors))
-    _bare(axis)
+    bare(axis)
 
 
 def _noise(axis: Axes, noise_floor: float | None) -> None:
     if noise_floor is not None:
         label = f"noise floor {error_text(noise_floor)}"
         axis.axhline(noise_floor, color=NOISE, linestyle="--", linewidth=1.0, label=label)
-
-
-def _bare(axis: Axes) -> None:
-    axis.spines[["top", "right"]].set_visible(False)
-    axis.tick_params(labelsize=8)
 
 
 def _save(figure: plt.Figure, path: Path) -> Path:

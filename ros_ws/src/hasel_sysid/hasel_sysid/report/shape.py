@@ -12,10 +12,24 @@ from hasel_sim.run import Run
 from hasel_sim.simd import LANES
 from hasel_sim.simulate import simulate_many
 
-from hasel_sysid.compare.run_comparison import RunComparison
-from hasel_sysid.measured_tail import measured_tail
+from hasel_sysid.comparison import RunComparison
 
 _LONGEST_S = 1.5
+
+
+def measured_tail(markers: np.ndarray, sin_theta: np.ndarray) -> np.ndarray:
+    """The tail [m] [n, 2] at its simulated distance from the middle marker, in the measured direction.
+
+    markers [m] [n, 3, 2]: simulated head, middle, tail; sin_theta [n]: measured, the run's offset taken out.
+    """
+    body, fin = markers[:, 1] - markers[:, 0], markers[:, 2] - markers[:, 1]
+    sine = np.clip(sin_theta, -1.0, 1.0)
+    cosine = np.sqrt(1.0 - sine**2)
+    turned = np.stack(
+        [body[:, 0] * cosine - body[:, 1] * sine, body[:, 0] * sine + body[:, 1] * cosine], axis=-1
+    )
+    ratio = np.linalg.norm(fin, axis=-1) / np.linalg.norm(body, axis=-1)
+    return markers[:, 1] + turned * ratio[:, None]
 
 
 @dataclass(frozen=True)

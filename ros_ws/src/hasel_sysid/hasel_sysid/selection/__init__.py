@@ -1,5 +1,6 @@
 """Which candidates a model lacks: a choice among sets of them, by one currency.
 
-Read in this order: `likelihood` (the currency), `race` (every candidate alone), `linearise` and `best_subsets` (the
-table of all sets, to first order), `search` (which of them are fitted), `cross_validation` and `choose` (the answer).
+Read in this order: `likelihood` (the currency), `nothing_missing` (a test), `race` (every candidate alone), `linearise`
+and `best_subsets` (the table of all sets, to first order), `search` (which of them are fitted), `cross_validation` and
+`choose` (the answer).
 """

@@ -82,12 +82,7 @@ def choose(
         no_laws = ()
     chosen, same = rivals[len(no_laws)], [names for names in rivals if names not in no_laws]
     return Choice(
-        chosen,
-        tuple(same),
-        weights(models),
-        _path(models, chosen),
-        _groups(chosen, same, likeness),
-        no_laws,
+        chosen, tuple(same), weights(models), _path(models, chosen), _groups(chosen, same, likeness), no_laws
     )
 
 

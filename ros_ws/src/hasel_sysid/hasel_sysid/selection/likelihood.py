@@ -15,7 +15,7 @@ from numba import njit
 from hasel_sysid.candidates import Candidate
 from hasel_sysid.estimation.fit import FittedModel
 from hasel_sysid.estimation.least_squares import further_without_bounds
-from hasel_sysid.noise.model import LONGEST_CORRELATION, NoiseModel, allowed_noise
+from hasel_sysid.noise import LONGEST_CORRELATION, NoiseModel, allowed_noise
 from hasel_sysid.policy import POLICY
 from hasel_sysid.projection import orthonormal
 

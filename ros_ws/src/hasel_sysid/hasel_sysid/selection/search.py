@@ -34,9 +34,8 @@ from hasel_sysid.expected_work import (
     ROUND,
     TYPICAL,
 )
-from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
-from hasel_sysid.model_checking.nothing_missing import ScoreTest, score_test
-from hasel_sysid.noise.bounds import known_noise
+from hasel_sysid.model_checking import goodness_of_fit
+from hasel_sysid.noise_bounds import known_noise
 from hasel_sysid.policy import Policy
 from hasel_sysid.problem import Evaluation, LowFidelityProblem, Problem
 from hasel_sysid.projection import orthonormal
@@ -45,6 +44,7 @@ from hasel_sysid.selection.choose import Choice, ComparedModel, Judged, choose, 
 from hasel_sysid.selection.cross_validation import leave_one_run_out
 from hasel_sysid.selection.likelihood import NOTHING, FittedSet, Likelihood, Names, Whitened
 from hasel_sysid.selection.linearise import CandidateColumns, linearise, secant
+from hasel_sysid.selection.nothing_missing import ScoreTest, score_test
 from hasel_sysid.selection.race import (
     Entries,
     at_other_sizes,

@@ -9,14 +9,13 @@ from hasel_sim.run import Run
 
 from hasel_sysid.candidates import Candidate
 from hasel_sysid.estimation.fit import FittedModel
-from hasel_sysid.noise.model import NoiseModel
+from hasel_sysid.noise import NoiseModel
 from hasel_sysid.policy import POLICY
 from hasel_sysid.selection.choose import Choice, Judged, choose
 from hasel_sysid.selection.cross_validation import leave_one_run_out
 from hasel_sysid.selection.likelihood import FittedSet, Likelihood, Names
 from hasel_sysid.selection.linearise import CandidateColumns
-from hasel_sysid.testing.made_up_effects import made_up_effect, with_made_up
-from hasel_sysid.testing.made_up_runs import evaluation_of_runs
+from hasel_sysid.testing.made_up_runs import evaluation_of_runs, made_up_effect, with_made_up
 
 RUNS, FRAMES = 8, 80
 WHITE = NoiseModel(0.03**2, 0.0, 0.5)

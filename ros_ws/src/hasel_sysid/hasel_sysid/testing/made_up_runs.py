@@ -1,18 +1,42 @@
-"""A model beside runs, for tests: what it misses in every frame is known, and nothing is simulated."""
+"""Made-up effects, and models beside runs: what is missed in every frame is known, and nothing is simulated."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
+from hasel_recording import Recording
 from hasel_sim.drive.schedule import DriveSchedule
-from hasel_sim.model import Model
+from hasel_sim.effects.base import Effect, EffectParameter, ObservationEffect
+from hasel_sim.errors import SimulationError
+from hasel_sim.model import Model, Parameter
+from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run, Simulation
 
-from hasel_sysid.compare.comparison import Comparison
-from hasel_sysid.compare.run_comparison import RunComparison
+from hasel_sysid.comparison import Comparison, RunComparison
 from hasel_sysid.estimation import FittedModel
-from hasel_sysid.problem import Evaluation
-from hasel_sysid.where_it_fails.analyse import where_it_fails
-from hasel_sysid.where_it_fails.run_series import run_series
+from hasel_sysid.experiment import Experiment
+from hasel_sysid.problem import Evaluation, Problem
+from hasel_sysid.residual_analysis.analysis import where_it_fails
+from hasel_sysid.residual_analysis.run_series import run_series
+
+_STEP = 1e-6
+
+
+def made_up_size(largest: float = 10.0) -> EffectParameter:
+    """A size that is noticed at 1."""
+    return EffectParameter("size", "x", "1", 0.0, 0.0, largest, 1.0)
+
+
+def made_up_effect(name: str, *parameters: EffectParameter) -> Effect:
+    """An effect of this name; default of its parameters: one size."""
+    return type(name, (ObservationEffect,), {"id": name, "parameters": parameters or (made_up_size(),)})()
+
+
+def with_made_up(model: Model, *effects: Effect) -> Model:
+    """The model with these effects at their nulls, as `Model.with_effects` has it of those in the catalogue."""
+    sizes = {f"{effect.id}.{p.name}": p for effect in effects for p in effect.parameters}
+    parameters = {name: Parameter(name, p.null, p.unit, p.lower, p.upper) for name, p in sizes.items()}
+    return replace(model, effects=(*model.effects, *effects), parameters={**model.parameters, **parameters})
 
 
 def made_up_evaluation(
@@ -92,3 +116,38 @@ def made_up_comparison(model: Model, label: str, error: float, unseen: float) ->
         RunComparison(one, one.name == "unseen", found) for one, found in zip(series, where.runs, strict=True)
     )
     return Comparison(label, model, runs, where)
+
+
+Formula = Callable[[Model, np.ndarray], np.ndarray]
+
+
+class FormulaProblem(Problem):
+    """One run; formula: sin theta [frames] of a model at times [s] [frames]. Derivatives are central differences."""
+
+    def __init__(self, formula: Formula, time: np.ndarray, measured: np.ndarray) -> None:
+        """time [s], measured: sin theta, [frames]."""
+        super().__init__([Experiment(Recording("run", time, measured), Run("run", time))], SerialExecutor())
+        self._formula = formula
+
+    def evaluate_each(
+        self, models: Sequence[Model], names: Sequence[Sequence[str]]
+    ) -> list[Evaluation | SimulationError]:
+        """As of a problem that simulates."""
+        self.evaluations += len(models)
+        return [
+            self._collect(
+                model, tuple(by), [self._simulated(model, tuple(by), e.run) for e in self.experiments]
+            )
+            for model, by in zip(models, names, strict=True)
+        ]
+
+    def _simulated(self, model: Model, names: tuple[str, ...], run: Run) -> Simulation:
+        slopes = np.zeros((len(run.time), len(names)))
+        for column, name in zip(slopes.T, names, strict=True):
+            p = model.parameters[name]
+            step = _STEP * max(p.magnitude, _STEP)
+            ends = np.clip([p.value - step, p.value + step], p.lower, p.upper)
+            less, more = (self._formula(model.with_values({name: end}), run.time) for end in ends)
+            column[:] = (more - less) / np.ptp(ends)
+        nothing = np.zeros((len(run.time), 0))
+        return Simulation(run, self._formula(model, run.time), names, slopes, nothing, nothing)

@@ -1,7 +1,8 @@
-"""Runs of a swimmer in a world in which every parameter moves the angle by a known series."""
+"""Runs of a swimmer in a world in which every parameter moves the angle by a known series, and of two such worlds."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -13,10 +14,11 @@ from hasel_sim.model import Model, load_model
 from hasel_sim.model.constants import constants
 from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run, Simulation
+from hasel_sim.simulate import simulate
 
+from hasel_sysid.expected_work import TimeLimit
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.problem import Evaluation, Problem
-from hasel_sysid.time_limit import TimeLimit
 
 VOLTAGES, FREQUENCIES = (3500.0, 4500.0, 5500.0), (0.5, 2.0)
 NOISE = 0.0024
@@ -204,3 +206,65 @@ def _smooth(time: np.ndarray, generator: np.random.Generator) -> np.ndarray:
     frequency, phase = generator.uniform(0.5, 8.0, _TONES), generator.uniform(0, 2 * np.pi, _TONES)
     series = np.sin(2 * np.pi * np.outer(time, frequency) + phase) @ generator.standard_normal(_TONES)
     return series / max(float(np.std(series)), 1e-12)
+
+
+@dataclass(frozen=True)
+class TwoMeasured(Experiment):
+    """other: of the second angle."""
+
+    other: Recording
+
+    @property
+    def outputs(self) -> np.ndarray:
+        """Both angles, [n, 2]."""
+        return np.column_stack([self.sin_theta, self.other.sin_theta[: len(self.run.time)]])
+
+
+@dataclass(frozen=True)
+class TwoSimulated(Simulation):
+    """other: of the second angle."""
+
+    other: Simulation | None = None
+
+    @property
+    def outputs(self) -> np.ndarray:
+        """Both angles, [n, 2]."""
+        return np.column_stack([self.sin_theta, self.other.sin_theta])
+
+    @property
+    def output_slopes(self) -> np.ndarray:
+        """Their derivatives, [n, 2, parameters]."""
+        return np.stack([self.slopes, self.other.slopes], axis=1)
+
+
+class TwoOutputs(MadeUpProblem):
+    """Measured runs of two worlds in which a model's parameters move one angle each."""
+
+    def __init__(self, first: MadeUpWorld, second: MadeUpWorld, truth: Model, noise: float = NOISE) -> None:
+        """truth: as of `MadeUpWorld.measured`."""
+        one, other = first.measured(truth, noise), second.measured(truth, noise)
+        super().__init__(first, [e.sin_theta for e in one.experiments])
+        self.second = second
+        self.experiments = tuple(
+            TwoMeasured(e.recording, e.run, o.recording)
+            for e, o in zip(one.experiments, other.experiments, strict=True)
+        )
+
+    def _made_up(self, model: Model, names: tuple[str, ...]) -> Evaluation:
+        both = (self.simulations(world, model, names) for world in (self.world, self.second))
+        return self._collect(
+            model,
+            names,
+            [TwoSimulated(**{**vars(one), "other": other}) for one, other in zip(*both, strict=True)],
+        )
+
+
+def simulated_runs(truth: Model, drives: Iterable[tuple[float, float]], time: np.ndarray) -> Problem:
+    """One run per voltage [V] and frequency [Hz] of a box drive, at these times [s] [n]."""
+    experiments = []
+    for voltage, frequency in drives:
+        schedule = box_drive(voltage, frequency)
+        run = Run(f"{voltage:.0f} V, {frequency} Hz", time, schedule)
+        angle = simulate(truth, run).sin_theta
+        experiments.append(Experiment(Recording(run.name, time, angle, drive_signal=schedule.at(time)), run))
+    return Problem(experiments, SerialExecutor())

@@ -8,12 +8,18 @@ import subprocess
 import sys
 from pathlib import Path
 
+import hasel_sysid
 import hasel_sysid as h
 import hasel_sysid.api
+import numpy as np
 import pytest
 from hasel_recording import RecordingError
 from hasel_sim.errors import ModelError, SimulationError
+from hasel_sim.model import load_model
+from hasel_sysid.answer.result import Improvement, Stage, Status
+from hasel_sysid.api import Improved
 from hasel_sysid.errors import SysidError
+from hasel_sysid.testing.made_up_runs import made_up_fit
 
 PACKAGE = Path(__file__).parents[2]
 ROOT = PACKAGE.parents[2]
@@ -201,3 +207,33 @@ def test_a_picture_prints_as_a_sentence():
     assert str(h.load(RUN).plot()) == (
         "A picture of 1 panel: a notebook shows it, and save('picture.png') writes it."
     )
+
+
+def test_the_package_offers_what_the_facade_does():
+    """Every name, and the same object behind it, packages of the same meaning notwithstanding."""
+    for name in hasel_sysid.api.__all__:
+        assert getattr(hasel_sysid, name) is getattr(hasel_sysid.api, name)
+        assert name in dir(hasel_sysid)
+
+
+def test_a_name_it_does_not_have_is_answered_with_those_it_has():
+    """As Python does, and with what there is."""
+    with pytest.raises(AttributeError, match=r"'fitted'; expected one of .* fit, improve"):
+        hasel_sysid.fitted  # noqa: B018
+
+
+def test_sizes_and_intervals_are_printed_as_by_the_command():
+    """Of what was found missing, and of nothing else."""
+    name = "quadratic_drag.coefficient"
+    baseline = load_model("swimmer").with_levels(np.array([4500.0]))
+    drag = baseline.with_effects("quadratic_drag").with_values({name: 0.25}, {name: 0.01})
+    stages = [
+        Stage((), made_up_fit(baseline, 0.03), None),
+        Stage(("quadratic_drag",), made_up_fit(drag, 0.003), None),
+    ]
+    found = Improved(
+        Improvement(stages, Status.EXPLAINED, ("quadratic_drag",), 0.02, 0.002, "What is left is noise.")
+    )
+    said = str(found).splitlines()
+    assert said[-1] == f"  {name} = 0.250 (95 % interval 0.230 to 0.270)"
+    assert len([line for line in said if " = " in line]) == 1

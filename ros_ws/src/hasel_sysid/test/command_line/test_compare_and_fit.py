@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from hasel_common.workload import Workload
 from hasel_recording import Recording, read_recording, write_recording
+from hasel_recording.command_line import convert_main
 from hasel_sim.model import load_model, save_model
-from hasel_sysid.command_line import compare, convert, fit
+from hasel_sysid.command_line import compare, fit
 from hasel_sysid.command_line.running import MISLEADING
 
 FREQUENCY = 2.0
@@ -181,8 +182,8 @@ def test_the_drive_may_be_a_file_of_its_own(folder, tmp_path, capsys):
 def test_convert_goes_both_ways(folder, tmp_path):
     """CSV to MCAP and back gives the same numbers."""
     source = folder / "run_3500.csv"
-    assert convert.main([str(source), "--output", str(tmp_path)]) == 0
-    assert convert.main([str(tmp_path / "run_3500.mcap"), "--output", str(tmp_path / "back.csv")]) == 0
+    assert convert_main([str(source), "--output", str(tmp_path)]) == 0
+    assert convert_main([str(tmp_path / "run_3500.mcap"), "--output", str(tmp_path / "back.csv")]) == 0
     before, after = read_recording(source), read_recording(tmp_path / "back.csv")
     np.testing.assert_allclose(after.sin_theta, before.sin_theta, rtol=0, atol=0)
     np.testing.assert_allclose(after.time_s, before.time_s, atol=1e-9)

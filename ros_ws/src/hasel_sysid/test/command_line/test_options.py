@@ -2,7 +2,7 @@
 
 import pytest
 from hasel_sysid.command_line import diagnose, improve, inputs, suggest
-from hasel_sysid.command_line.parsers import check_parser, compare_parser, diagnose_parser, improve_parser
+from hasel_sysid.command_line.options import check_parser, compare_parser, diagnose_parser, improve_parser
 
 
 def test_effects_of_ones_own_are_added_to_the_catalogue():

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from hasel_sysid.command_line import parsers
+from hasel_sysid.command_line import options
 from hasel_sysid.estimation import METHODS
 
 HEAVY = ("torch", "statsmodels", "scipy.stats", "scipy.signal", "pandas", "dask")
@@ -26,7 +26,7 @@ def test_compare_imports_nothing_that_it_does_not_use():
 
 def test_help_needs_neither_simulator_nor_scipy():
     """The executables read their options before anything heavy is imported."""
-    found = imported_by("import hasel_sysid.command_line.entry")
+    found = imported_by("import hasel_sysid.command_line.options")
     assert not {
         name for name in found if name.split(".")[0] in ("scipy", "numba", "torch", "hasel_sim", "plotly")
     }
@@ -41,18 +41,16 @@ def test_help_needs_neither_simulator_nor_scipy():
 )
 def test_every_executable_has_its_options(name, monkeypatch, capsys):
     """Each entry point answers --help by its own name."""
-    from hasel_sysid.command_line import entry
-
     monkeypatch.setattr(sys, "argv", [name, "--help"])
     with pytest.raises(SystemExit) as left:
-        getattr(entry, name)()
+        getattr(options, name)()
     assert left.value.code == 0
     assert capsys.readouterr().out.startswith(f"usage: {name} ")
 
 
 def test_the_methods_of_fit_are_all_there():
     """The choices are written out so that --help need not import the methods."""
-    assert sorted(METHODS) == list(parsers.FIT_METHODS)
+    assert sorted(METHODS) == list(options.FIT_METHODS)
 
 
 RUNS = sorted((Path(__file__).resolve().parents[5] / "data" / "unseen_rig" / "quadratic_drag").glob("*.csv"))
@@ -89,6 +87,6 @@ def test_help_takes_a_part_of_a_second():
     """Of any command."""
     program = (
         "import sys; sys.argv = ['improve', '--help']\n"
-        "from hasel_sysid.command_line.entry import improve\nimprove()"
+        "from hasel_sysid.command_line.options import improve\nimprove()"
     )
     assert used("-c", program)[0] < SLOWER * 0.5

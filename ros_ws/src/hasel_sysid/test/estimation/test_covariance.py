@@ -11,7 +11,7 @@ from hasel_sysid.estimation.covariance import (
     wider_where_runs_disagree,
     with_numerical_error,
 )
-from hasel_sysid.noise.model import NoiseModel
+from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import Evaluation, refinements
 from hasel_sysid.testing.made_up_runs import made_up_evaluation
 from scipy.linalg import fractional_matrix_power

@@ -7,11 +7,10 @@ from hasel_sim.model import Model, load_model, save_model
 from hasel_sysid.estimation import FittedModel, fit_baseline
 from hasel_sysid.estimation.fit import descend, exact, fit, fitted_model, mapped
 from hasel_sysid.estimation.least_squares import GaussNewton, best_of_each, minimise
-from hasel_sysid.noise.model import NoiseModel
+from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import Evaluation, LowFidelityProblem, low_fidelity
 from hasel_sysid.selection.likelihood import Likelihood
-from hasel_sysid.testing.formula_problem import FormulaProblem
-from hasel_sysid.testing.made_up_runs import made_up_evaluation
+from hasel_sysid.testing.made_up_runs import FormulaProblem, made_up_evaluation
 from hasel_sysid.testing.made_up_world import NOISE, MadeUpWorld
 
 TIME = np.arange(0.0, 2.0, 0.01)

@@ -6,8 +6,7 @@ from hasel_sim.model import Model, load_model
 from hasel_sysid.estimation import fit_baseline
 from hasel_sysid.estimation.fit import exact, fitted_model
 from hasel_sysid.estimation.growing_horizon import horizons, in_phase, length
-from hasel_sysid.testing.formula_problem import FormulaProblem
-from hasel_sysid.testing.made_up_runs import made_up_evaluation
+from hasel_sysid.testing.made_up_runs import FormulaProblem, made_up_evaluation
 
 TIME = np.arange(0.0, 3.0, 0.01)
 STIFFNESS = "material.soft.youngs_modulus_pa"

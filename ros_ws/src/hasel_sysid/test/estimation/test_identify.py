@@ -5,7 +5,7 @@ import pytest
 from hasel_sim.model import Model, load_model
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import identify
-from hasel_sysid.testing.formula_problem import FormulaProblem
+from hasel_sysid.testing.made_up_runs import FormulaProblem
 
 NAME, MASS = "material_damping.retardation_time", "payload.mass"
 TIME = np.arange(0.0, 2.0, 0.01)

@@ -12,7 +12,7 @@ from hasel_sysid.estimation.least_squares import (
     values_and_bounds,
 )
 from hasel_sysid.problem import Evaluation
-from hasel_sysid.testing.formula_problem import FormulaProblem
+from hasel_sysid.testing.made_up_runs import FormulaProblem
 from scipy.optimize import least_squares, lsq_linear
 
 JACOBIAN = np.random.default_rng(0).standard_normal((50, 3)) * [1.0, 1e-4, 1e3]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sysid.errors import SysidError
-from hasel_sysid.live.heard import Heard
+from hasel_sysid.live.heard import DriveWatch, Heard, driven_parts
 
 _FRAME = 8_333_333
 _EPOCH_NS = 1_800_000_000_000_000_000
@@ -101,3 +101,85 @@ def test_nothing_heard_is_said():
         heard.state(0, n * _FRAME, (0.0, 0.0))
     with pytest.raises(SysidError, match="no run was heard"):
         heard.recordings()
+
+
+def _stream(*driven: tuple[float, float], end: float) -> tuple[np.ndarray, np.ndarray, float]:
+    time = np.arange(0.0, end, 0.01)
+    on = np.any([(begin - 1e-9 <= time) & (time < stop - 1e-9) for begin, stop in driven], axis=0)
+    return time, np.stack([5000.0 * on, np.zeros(len(time))], axis=1), end
+
+
+def test_two_experiments_with_a_pause_are_two_parts():
+    """Each with some rest before and its ringing after."""
+    parts = driven_parts(*_stream((10.0, 12.0), (60.0, 61.0), end=100.0))
+    assert parts == [pytest.approx((9.75, 13.0)), pytest.approx((59.75, 62.0))]
+
+
+def test_the_half_periods_of_one_experiment_stay_together():
+    """Short rests belong to the waveform."""
+    parts = driven_parts(*_stream((1.0, 1.5), (2.0, 2.5), (3.0, 3.5), end=20.0))
+    assert parts == [pytest.approx((0.75, 4.5))]
+
+
+def test_parts_stay_within_the_stream():
+    """Driven from the first to the last message."""
+    assert driven_parts(*_stream((0.0, 1.0), end=1.0)) == [pytest.approx((0.0, 1.0))]
+
+
+def test_a_body_never_driven_is_one_part():
+    """A beam that was let go."""
+    time = np.arange(100) * 0.01
+    assert driven_parts(time, np.zeros((100, 2)), 1.0) == [(0.0, 1.0)]
+
+
+_S = 1_000_000_000
+ON, OFF = (0.0, -4000.0), (0.0, 0.0)
+
+
+@pytest.fixture
+def watch():
+    """Driven from 3 s to 5 s."""
+    watch = DriveWatch()
+    assert not watch.begins(0, 0, OFF)
+    assert watch.begins(0, 3 * _S, ON)
+    assert not watch.begins(0, 5 * _S, OFF)
+    return watch
+
+
+def test_a_run_is_over_a_second_after_its_drive(watch):
+    """What rings after it still belongs to it; before the first run nothing is over."""
+    assert [watch.is_over(0, round(t * _S)) for t in (1.0, 4.0, 5.5, 6.0, 6.1, 60.0)] == [False] * 4 + [
+        True
+    ] * 2
+
+
+def test_a_frame_of_the_rest_may_come_after_the_next_start(watch):
+    """Angles come later than states."""
+    assert watch.begins(0, 9 * _S, ON)
+    assert watch.is_over(0, 8 * _S)
+    assert not watch.is_over(0, 9 * _S)
+
+
+def test_a_short_rest_is_none(watch):
+    """Of a drive with pauses."""
+    assert not watch.begins(0, 7 * _S, ON)
+
+
+def test_a_voltage_holds_until_the_next_state():
+    """States that come only when something changes: a body that is held bent is driven all the time."""
+    watch = DriveWatch()
+    watch.begins(0, 0, ON)
+    assert not watch.is_over(0, 30 * _S)
+    assert not watch.begins(0, 31 * _S, ON)
+
+
+def test_another_epoch_knows_nothing_of_the_last(watch):
+    """Stamps that went back are of another run."""
+    assert not watch.begins(1, 0, OFF)
+    assert not watch.is_over(1, 60 * _S)
+    assert watch.begins(1, 3 * _S, ON)
+
+
+def test_an_unknown_voltage_begins_no_run():
+    """A supply in FAULT says NaN."""
+    assert not DriveWatch().begins(0, 0, (float("nan"), 0.0))

@@ -1,9 +1,10 @@
 """The running error ends where `compare` ends."""
 
+import math
+
 import numpy as np
 import pytest
-from hasel_sysid.live.pairing import Pair
-from hasel_sysid.live.running_error import RunningErrors
+from hasel_sysid.live.running_error import Epochs, Pair, Pairing, RunningErrors, StreamEpoch
 
 _FRAME = 10_000_000
 
@@ -83,3 +84,53 @@ def test_a_body_that_is_never_driven_is_never_at_rest():
         errors.state(0, n * _FRAME, (0.0, 0.0))
         error = errors.add(Pair(0, n * _FRAME, 0.0, 1.0))
     assert error.count == 500
+
+
+_PERIOD = 10_000_000
+
+
+def test_equal_stamps_pair_whatever_comes_first():
+    """The simulated angle may come before or after the measured one."""
+    pairing = Pairing(gap=0.1)
+    assert pairing.measured(0, 0, 0.1) == []
+    assert pairing.simulated(0, 0, 0.3) == [Pair(0, 0, 0.1, 0.3)]
+    assert pairing.simulated(0, _PERIOD, 0.4) == []
+    (pair,) = pairing.measured(0, _PERIOD, 0.1)
+    assert pair.difference == pytest.approx(0.3)
+
+
+def test_a_stamp_between_two_is_interpolated():
+    """A camera has its own clock; its frame waits until the simulation has passed it."""
+    pairing = Pairing(gap=0.1)
+    pairing.simulated(0, 0, 0.0)
+    assert pairing.measured(0, _PERIOD // 4, 0.5) == []
+    (pair,) = pairing.simulated(0, _PERIOD, 1.0)
+    assert pair.simulated == pytest.approx(0.25)
+
+
+def test_no_pair_across_a_gap_before_the_start_or_without_an_angle():
+    """Nothing is made up where the simulation says nothing or a marker was lost."""
+    pairing = Pairing(gap=0.1)
+    pairing.measured(0, 0, 0.1)
+    assert pairing.simulated(0, _PERIOD, 0.0) == []
+    assert pairing.measured(0, 15 * _PERIOD, 0.1) == []
+    assert pairing.simulated(0, 30 * _PERIOD, 0.0) == []
+    assert pairing.measured(0, 30 * _PERIOD, math.nan) == []
+
+
+def test_a_run_replayed_again_is_not_paired_with_the_first_one():
+    """Equal stamps of different epochs do not meet."""
+    pairing = Pairing(gap=0.1)
+    pairing.simulated(0, 5 * _PERIOD, 0.7)
+    assert pairing.measured(1, 5 * _PERIOD, 0.1) == []
+    pairing.simulated(1, 0, 0.2)
+    assert pairing.simulated(1, 5 * _PERIOD, 0.3) == [Pair(1, 5 * _PERIOD, 0.1, 0.3)]
+
+
+def test_streams_agree_on_the_epoch_whichever_goes_back_first():
+    """Each stream sees the replay begin anew at its own moment; a stream that begins later joins the others."""
+    epochs = Epochs()
+    a, b = StreamEpoch(epochs, late=0.5), StreamEpoch(epochs, late=0.5)
+    assert [a.of(0), a.of(200 * _PERIOD), b.of(0), b.of(200 * _PERIOD)] == [0, 0, 0, 0]
+    assert [a.of(0), b.of(199 * _PERIOD), b.of(0), a.of(_PERIOD)] == [1, 0, 1, 1]
+    assert StreamEpoch(epochs, late=0.5).of(0) == 1

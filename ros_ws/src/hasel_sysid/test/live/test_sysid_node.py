@@ -24,9 +24,9 @@ from hasel_sim.node_process import run_node
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 from hasel_sim.simulator_messages import angle_message, to_nanoseconds, to_time
-from hasel_sysid import sysid_node
 from hasel_sysid.errors import SysidError
-from hasel_sysid.sysid_node import SysidNode
+from hasel_sysid.live import sysid_node
+from hasel_sysid.live.sysid_node import SysidNode
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.parameter import Parameter
 

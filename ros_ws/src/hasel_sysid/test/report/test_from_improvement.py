@@ -5,15 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hasel_sim.model import load_model
+from hasel_sysid.answer.diagnosis import Diagnosis, Finding, Verdict
+from hasel_sysid.answer.result import Improvement, Stage, Status, WrongConstant
 from hasel_sysid.command_line.summary import improvement_lines
-from hasel_sysid.diagnosis import Diagnosis, Finding, Verdict
 from hasel_sysid.estimation import FittedModel
-from hasel_sysid.model_checking.lack_of_fit import GoodnessOfFit
-from hasel_sysid.noise.model import NoiseModel
-from hasel_sysid.report.from_diagnosis import diagnosis_content, ranked_rows
-from hasel_sysid.report.from_improvement import improvement_content, what_is_missing
+from hasel_sysid.model_checking import GoodnessOfFit
+from hasel_sysid.noise import NoiseModel
+from hasel_sysid.report.from_improvement import (
+    diagnosis_content,
+    improvement_content,
+    ranked_rows,
+    what_is_missing,
+)
 from hasel_sysid.report.write import render
-from hasel_sysid.result import Improvement, Stage, Status, WrongConstant
 from hasel_sysid.testing.made_up_runs import made_up_comparison, made_up_fit
 
 DRAG = {"quadratic_drag.coefficient": (0.25, 0.004)}

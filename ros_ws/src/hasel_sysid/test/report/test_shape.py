@@ -5,11 +5,10 @@ import pytest
 from hasel_recording import sin_theta_from_markers
 from hasel_sim.model import load_model
 from hasel_sim.parallel import executor
-from hasel_sysid.compare import compare
+from hasel_sysid.comparison import compare
 from hasel_sysid.dataset import load_experiments
-from hasel_sysid.measured_tail import measured_tail
-from hasel_sysid.report.figures.shapes import shapes_figure
-from hasel_sysid.report.shape import simulated_shapes
+from hasel_sysid.report.figures import shapes_figure
+from hasel_sysid.report.shape import measured_tail, simulated_shapes
 
 
 def test_the_measured_tail_gives_the_measured_angle():

@@ -11,14 +11,14 @@ import plotly.graph_objects as go
 import pytest
 from hasel_sim.model import load_model
 from hasel_sim.run import Simulation
-from hasel_sysid.compare.compare import comparison_of
+from hasel_sysid.comparison import comparison_of
 from hasel_sysid.experiment import experiment_of
 from hasel_sysid.report.content import NextRun, ParameterRow, RankedRow, ReportContent, RunOverlay, StageRow
-from hasel_sysid.report.figures.overlay import driven_stretches, overlay_figure
-from hasel_sysid.report.figures.style import CHANNELS
-from hasel_sysid.report.figures.waterfall import waterfall_figures
+from hasel_sysid.report.figures import waterfall_figures
 from hasel_sysid.report.from_results import comparison_content
-from hasel_sysid.report.write import render, write_report
+from hasel_sysid.report.overlay import driven_stretches, overlay_figure
+from hasel_sysid.report.style import CHANNELS
+from hasel_sysid.report.write import packed, render, write_report
 from plotly.offline import get_plotlyjs
 
 
@@ -197,3 +197,14 @@ def test_a_run_shows_residuals_before_and_after_and_the_angle_beside_its_sine():
     assert {shape["fillcolor"] for shape in figure["layout"]["shapes"]} == set(CHANNELS[:2])
     assert above[2]["line"]["width"] < above[0]["marker"]["size"] / 2
     go.Figure(figure)  # raises where plotly knows a name or a value otherwise
+
+
+@pytest.mark.parametrize("text", ["", "a", "<&>\"'", "θ" * 5000, "".join(map(chr, range(32, 3000)))])
+def test_python_s_own_decoder_gets_it_back(text):
+    """Length, deflated text and padding in base 85, the characters that mean something in HTML replaced."""
+    page = packed(text)
+    assert not set(page) & set("<>&\"'")
+    raw = base64.b85decode(page.translate(str.maketrans("/,.", "&<>")))
+    length = int.from_bytes(raw[:4], "big")
+    assert zlib.decompress(raw[4 : 4 + length]).decode() == text
+    assert len(raw) - 4 - length < 4

@@ -6,7 +6,7 @@ from hasel_sim.effects.registry import catalogue
 from hasel_sim.model import load_model
 from hasel_sysid.candidates import Candidate
 from hasel_sysid.estimation import FittedModel
-from hasel_sysid.noise.model import LONGEST_CORRELATION, NoiseModel
+from hasel_sysid.noise import LONGEST_CORRELATION, NoiseModel
 from hasel_sysid.selection.likelihood import FittedSet, Likelihood, on_edge, out_of_range
 from hasel_sysid.testing.made_up_runs import made_up_evaluation
 from scipy.linalg import toeplitz

@@ -5,12 +5,11 @@ import pytest
 from hasel_sim.model import load_model
 from hasel_sysid.candidates import effects_of
 from hasel_sysid.estimation import fit_baseline
-from hasel_sysid.noise.model import NoiseModel
+from hasel_sysid.noise import NoiseModel
 from hasel_sysid.problem import LowFidelityProblem
 from hasel_sysid.selection.likelihood import Likelihood
 from hasel_sysid.selection.race import at_other_sizes, at_typical_size, race, screen_typical
-from hasel_sysid.testing.made_up_world import NOISE, MadeUpWorld
-from hasel_sysid.testing.simulated_runs import simulated_runs
+from hasel_sysid.testing.made_up_world import NOISE, MadeUpWorld, simulated_runs
 
 SOME = ("payload", "pre_bend", "linear_drag", "viscoelastic_creep", "tether")
 

@@ -5,8 +5,7 @@ from hasel_sysid.estimation import fit_baseline
 from hasel_sysid.improvement import improve
 from hasel_sysid.selection.likelihood import Likelihood
 from hasel_sysid.testing.linear_world import SLOW
-from hasel_sysid.testing.made_up_world import MadeUpWorld
-from hasel_sysid.testing.two_outputs import TwoOutputs
+from hasel_sysid.testing.made_up_world import MadeUpWorld, TwoOutputs
 
 TWINS = ("payload", "linear_drag")
 LOUD = 0.05

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hasel_recording import Recording
+from hasel_sysid.answer.next_run import Manoeuvre
 from hasel_sysid.errors import SysidError
-from hasel_sysid.suggest import Manoeuvre
 
 from hasel_workbench.evaluate import Progress
 from hasel_workbench.live.simulator import OwnSimulator

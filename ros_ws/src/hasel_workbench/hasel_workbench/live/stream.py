@@ -7,10 +7,8 @@ from pathlib import Path
 
 import numpy as np
 from hasel_recording import Recording, write_recording
-from hasel_sysid.live.epochs import Epochs, StreamEpoch
 from hasel_sysid.live.heard import Heard
-from hasel_sysid.live.pairing import Pairing
-from hasel_sysid.live.running_error import RunningError, RunningErrors
+from hasel_sysid.live.running_error import Epochs, Pairing, RunningError, RunningErrors, StreamEpoch
 
 _LATE_S, _GAP_S, _RESET_S = 0.5, 0.1, 2.0
 WINDOW_S = 5.0

@@ -3,7 +3,7 @@
 from html import escape
 from typing import Any
 
-from hasel_sysid.report.numbers import percent
+from hasel_sysid.report.wording import percent
 from nicegui import ui
 
 from hasel_workbench.cards import Card

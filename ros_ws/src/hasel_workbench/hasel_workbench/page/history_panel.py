@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from hasel_sysid.suggest import Suggestion
+from hasel_sysid.answer.next_run import Suggestion
 from nicegui import ui
 
 from hasel_workbench.goal import goal_line

@@ -6,8 +6,8 @@ from html import escape
 
 import numpy as np
 from hasel_sim.model.value_text import value_with_error
-from hasel_sysid.compare.run_comparison import RunComparison
-from hasel_sysid.report.numbers import error_text
+from hasel_sysid.comparison import RunComparison
+from hasel_sysid.report.wording import error_text
 
 from hasel_workbench.cards import Card
 from hasel_workbench.failure_map import MapRow

@@ -5,7 +5,7 @@ from html import escape
 from pathlib import Path
 
 from hasel_sysid.errors import SysidError
-from hasel_sysid.report.numbers import error_text
+from hasel_sysid.report.wording import error_text
 from nicegui import ui
 from nicegui.events import GenericEventArguments, MultiUploadEventArguments
 

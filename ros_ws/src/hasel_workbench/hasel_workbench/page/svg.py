@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from html import escape
 
-from hasel_sysid.report.numbers import change_text, error_text
+from hasel_sysid.report.wording import change_text, error_text
 
 from hasel_workbench.waterfall import Waterfall
 

@@ -1,0 +1,1 @@
+"""What a search comes to: faults of the set-up, what is said of every effect, the verdict, and the next run."""

@@ -1,1 +1,0 @@
-"""The noise of the measured angle: its model, where it is measured, and how it is bounded elsewhere."""
