@@ -6,7 +6,7 @@ from typing import cast
 
 import numpy as np
 from hasel_sim.effects.base import Effect
-from hasel_sim.muscle.catalogue import find_muscle_effects, muscle_catalogue
+from hasel_sim.muscle.effect import find_muscle_effects, muscle_catalogue
 from hasel_sim.muscle.muscle import Muscle
 from hasel_sysid.candidates import Candidate
 from hasel_sysid.diagnosis import Finding, Verdict, said_beside

@@ -5,8 +5,7 @@ from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future,
 from threading import Event, Thread
 
 import pytest
-from hasel_sim.parallel import SerialExecutor, all_at_once
-from hasel_sim.turns import Turn, Turns
+from hasel_sim.parallel import SerialExecutor, Turn, Turns, all_at_once
 
 PATIENCE_S = 20.0
 

@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass
 from enum import Enum
 
 from hasel_sim.model import Model, Parameter
-from hasel_sim.model.value_text import value_with_error
+from hasel_sim.parameter import value_with_error
 
 from hasel_sysid.diagnosis import Diagnosis, diagnosis_json
 from hasel_sysid.estimation.fit import FittedModel

@@ -3,8 +3,8 @@
 import math
 
 from hasel_interfaces.msg import Diagnosis, Fit, NamedParameter, RankedEffect, RunningError
+from hasel_sim.live.simulator_interface import to_time
 from hasel_sim.model import Model
-from hasel_sim.simulator_messages import to_time
 from std_msgs.msg import Header
 
 from hasel_sysid import result as diagnosis_result

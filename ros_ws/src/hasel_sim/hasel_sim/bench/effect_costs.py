@@ -2,16 +2,14 @@
 
 import itertools
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 from hasel_common.measured_bar import MeasuredBar
 from rich.console import Console
 from rich.table import Table
 
-from hasel_sim.bench.cases import box_run, fitted_swimmer
-from hasel_sim.bench.speed_report import bars_table
-from hasel_sim.bench.timing import processor_seconds
+from hasel_sim.bench.cases import BarsReport, bars_table, box_run, fitted_swimmer, processor_seconds
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
@@ -37,7 +35,7 @@ class EffectCost:
 
 
 @dataclass(frozen=True)
-class EffectsReport:
+class EffectsReport(BarsReport):
     """All effects, and the baseline: seconds of its four runs, and its sensitivities over them."""
 
     baseline_s: float
@@ -53,10 +51,6 @@ class EffectsReport:
             MeasuredBar("effect in the middle / without", float(np.median(forward)), MEDIAN_BAR),
             MeasuredBar("all sensitivities / forward, dearest", max(sensitivities), SENSITIVITIES_BAR),
         ]
-
-    def values(self) -> dict:
-        """Everything as plain values, for JSON."""
-        return asdict(self) | {"bars": [asdict(bar) | {"met": bar.met} for bar in self.bars()]}
 
     def print(self, console: Console) -> None:
         """Print the table and the bars."""

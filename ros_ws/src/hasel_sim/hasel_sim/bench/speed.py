@@ -1,21 +1,28 @@
 """Cost of a second of motion: forward, with all sensitivities, and by the adjoint; by nodes and by parameters."""
 
+import cProfile
 import itertools
+import pstats
 from dataclasses import dataclass
 
 import numpy as np
+from hasel_common.measured_bar import MeasuredBar
+from rich.console import Console
+from rich.table import Table
 
 from hasel_sim.adjoint import DifferentiableRun
 from hasel_sim.bench.cases import (
     FRAMES_PER_SECOND,
+    BarsReport,
+    band_solutions,
+    bars_table,
     box_run,
     fitted_swimmer,
     node_count,
+    processor_seconds,
     swimmer_with_every_force,
     with_nodes,
 )
-from hasel_sim.bench.reference import band_solutions
-from hasel_sim.bench.timing import processor_seconds
 from hasel_sim.model import Model
 from hasel_sim.simulate import simulate, simulate_many
 
@@ -34,7 +41,7 @@ MANY_PARAMETERS = (
 class Speed:
     """Processor seconds per second of motion on a mesh.
 
-    adjoint: the sweep back alone; band_solutions: LAPACK solving one linear system per time step (`bench.reference`).
+    adjoint: the sweep back alone; band_solutions: LAPACK solving one linear system per time step (`band_solutions`).
     """
 
     nodes: int
@@ -150,3 +157,131 @@ def free_swim_factor(duration: float = 10.0) -> float:
     run = box_run(duration)
     (seconds,) = processor_seconds([lambda: simulate(model, run)], 1)
     return duration / seconds
+
+
+KERNELS = {
+    ("march.py", "march"): "the compiled time loop",
+    ("prepared_run.py", "__init__"): "mesh, matrices, drive (prepared once)",
+    ("prepared_run.py", "start"): "the state it starts from",
+    ("simulate.py", "_observed"): "what the markers see of it",
+}
+REST = "everything else"
+
+
+def shares(model: Model) -> list[tuple[str, float]]:
+    """What is done and its share of the time, largest first."""
+    simulate(model, box_run(0.05))
+    profile = cProfile.Profile()
+    profile.runcall(simulate, model, box_run())
+    rows = pstats.Stats(profile).stats  # type: ignore[attr-defined]
+    total = sum(row[2] for row in rows.values())  # 2: time in the function itself, 3: with what it calls
+    found = {
+        label: sum(
+            row[3] for (path, _, name), row in rows.items() if path.endswith(file) and name == function
+        )
+        for (file, function), label in KERNELS.items()
+    }
+    found[REST] = total - sum(found.values())
+    return sorted(((label, seconds / total) for label, seconds in found.items()), key=lambda pair: -pair[1])
+
+
+@dataclass(frozen=True)
+class SpeedReport(BarsReport):
+    """All speeds; slope: of log cost against log nodes; parameters: (number, cost over forward).
+
+    free_swim: real-time factor of a free swim of 10 s with every force of the fluid.
+    """
+
+    first_run: float
+    sizes: list[Speed]
+    default: Speed
+    large: Speed
+    slope: float
+    parameters: list[tuple[int, float]]
+    lanes: SideBySide
+    profile: list[tuple[str, float]]
+    free_swim: float
+
+    def bars(self) -> list[MeasuredBar]:
+        """The figures that have a bar."""
+        named = (("default mesh", self.default), (f"{self.large.nodes} nodes", self.large))
+        return [
+            MeasuredBar(f"real-time factor, {named[0][0]}", self.default.real_time_factor, 5, at_least=True),
+            MeasuredBar(f"real-time factor, {named[1][0]}", self.large.real_time_factor, 2, at_least=True),
+            MeasuredBar(
+                "real-time factor, free swim of 10 s with every force of the fluid",
+                self.free_swim,
+                5,
+                at_least=True,
+            ),
+            *(
+                MeasuredBar(f"all sensitivities / forward, {name}", s.sensitivities / s.forward, 2)
+                for name, s in named
+            ),
+            *(MeasuredBar(f"adjoint sweep / forward, {name}", s.adjoint / s.forward, 2) for name, s in named),
+            MeasuredBar(
+                f"{self.lanes.runs} runs side by side / one after the other",
+                self.lanes.forward_ratio,
+                4,
+                at_least=True,
+            ),
+            MeasuredBar("first run, compiling (s)", self.first_run, 30),
+        ]
+
+    def print(self, console: Console) -> None:
+        """Print the tables."""
+        console.print(
+            self._speed_table(),
+            self._parameter_table(),
+            self._lanes_table(),
+            self._profile_table(),
+            bars_table(self.bars()),
+        )
+
+    def _speed_table(self) -> Table:
+        table = Table(title=f"Processor time on one core, 240 steps/s; cost grows as nodes^{self.slope:.2f}")
+        for heading in (
+            "nodes",
+            "ms/frame",
+            "x real time",
+            "all sensitivities",
+            "adjoint sweep",
+            "LAPACK/step",
+        ):
+            table.add_column(heading, justify="right")
+        for speed in self.sizes:
+            ratios = [f"{part / speed.forward:.2f} x" for part in (speed.sensitivities, speed.adjoint)]
+            frame = f"{speed.milliseconds(speed.forward):.2f}"
+            solutions = f"{speed.solutions_per_step:.1f}"
+            table.add_row(str(speed.nodes), frame, f"{speed.real_time_factor:.1f}", *ratios, solutions)
+        return table
+
+    def _parameter_table(self) -> Table:
+        table = Table(title="Forward cost with sensitivities, by number of parameters (six effects)")
+        for count, _ in self.parameters:
+            table.add_column(str(count), justify="right")
+        table.add_row(*(f"{ratio:.2f} x" for _, ratio in self.parameters))
+        return table
+
+    def _lanes_table(self) -> Table:
+        lanes = self.lanes
+        table = Table(title=f"{lanes.runs} runs of 0.5 s, default mesh, processor time")
+        for heading in ("", "one after the other", "side by side", "ratio"):
+            table.add_column(heading, justify="right" if heading else "left")
+        for name, alone, beside, ratio in (
+            ("forward", lanes.after_the_other, lanes.side_by_side, lanes.forward_ratio),
+            (
+                "with all sensitivities",
+                lanes.sensitivities_after_the_other,
+                lanes.sensitivities_side_by_side,
+                lanes.sensitivities_ratio,
+            ),
+        ):
+            table.add_row(name, f"{1e3 * alone:.0f} ms", f"{1e3 * beside:.0f} ms", f"{ratio:.2f} x")
+        return table
+
+    def _profile_table(self) -> Table:
+        table = Table("where the time goes", "share", title="Default mesh, forward")
+        for label, share in self.profile:
+            table.add_row(label, f"{100 * share:.0f} %")
+        return table

@@ -2,14 +2,14 @@
 
 import os
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 from hasel_common.measured_bar import MeasuredBar
 from rich.console import Console
 
+from hasel_sim.bench.cases import BarsReport, bars_table
 from hasel_sim.bench.speed import free_swim_factor
-from hasel_sim.bench.speed_report import bars_table
 from hasel_sim.model import load_model
 from hasel_sim.parallel import executor
 from hasel_sim.swimming.boxes import Boxes
@@ -21,7 +21,7 @@ DURATION_S, JOBS = 10.0, 2
 
 
 @dataclass(frozen=True)
-class SwimmingReport:
+class SwimmingReport(BarsReport):
     """free_swim: real-time factor of a swim of 10 s with every force of the fluid, by processor time of one core;
     sweep: time of `swims` swims by the clock on the wall, in `JOBS` processes [s]; load: processes that wanted a core
     before it began.
@@ -45,10 +45,6 @@ class SwimmingReport:
                 f"sweep of {self.swims} swims of {DURATION_S:g} s, {JOBS} processes (s)", self.sweep, 300
             ),
         ]
-
-    def values(self) -> dict:
-        """Everything as plain values, for JSON."""
-        return asdict(self) | {"bars": [asdict(bar) | {"met": bar.met} for bar in self.bars()]}
 
     def print(self, console: Console) -> None:
         """Print the bars, and how busy the machine was with other work."""

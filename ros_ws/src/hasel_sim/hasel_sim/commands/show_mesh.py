@@ -2,19 +2,11 @@
 
 import argparse
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 
-from hasel_sim.angle_picture import draw_angle
-from hasel_sim.commands.parsers import show_mesh_parser
 from hasel_sim.errors import HaselSimError
-from hasel_sim.mesh_picture import draw_mesh, save_picture
+from hasel_sim.mesh_picture import draw_angle, draw_mesh, save_picture
 from hasel_sim.model import load_model
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return run(show_mesh_parser().parse_args(arguments))
 
 
 def run(options: argparse.Namespace) -> int:
@@ -30,7 +22,3 @@ def run(options: argparse.Namespace) -> int:
         return 1
     print(f"Drew {path}.")
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

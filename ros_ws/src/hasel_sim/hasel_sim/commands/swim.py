@@ -3,7 +3,6 @@
 import argparse
 import json
 import sys
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -11,7 +10,6 @@ from hasel_common.progress import counted
 from rich.console import Console
 from rich.table import Table
 
-from hasel_sim.commands.parsers import swim_parser
 from hasel_sim.errors import HaselSimError
 from hasel_sim.mesh_picture import save_picture
 from hasel_sim.model import Model, load_model
@@ -29,11 +27,6 @@ class Swept:
     model: Model
     curves: dict[str, list[Swam]]
     optima: dict[str, Optimum | None]
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return run(swim_parser().parse_args(arguments))
 
 
 def run(options: argparse.Namespace) -> int:
@@ -191,4 +184,6 @@ def _values(swept: Swept, varied: dict[str, dict[float, Swept]]) -> dict:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    from hasel_sim.commands import entry
+
+    sys.exit(entry.swim())

@@ -1,12 +1,19 @@
-"""What an effect of the muscle on its bench states, and the places where one can act."""
+"""What an effect of the muscle on its bench states, the places where one can act, and the catalogue of all."""
 
+import importlib
+import inspect
+import pkgutil
 from dataclasses import dataclass
+from functools import cache
 from types import SimpleNamespace
 from typing import ClassVar
 
 import numpy as np
+from hasel_common.names import nearest_name
 
 from hasel_sim.effects.base import EffectParameter
+from hasel_sim.errors import ModelError
+from hasel_sim.muscle import effects
 from hasel_sim.muscle.pouch import Pouch
 
 
@@ -62,3 +69,27 @@ class MuscleEffect:
     def before(self, time: np.ndarray, contraction: np.ndarray, p: SimpleNamespace) -> np.ndarray:
         """The inverse of `follow`: what is in balance when the contraction [m] [n] is held by the bench."""
         return contraction
+
+
+@cache
+def muscle_catalogue() -> dict[str, MuscleEffect]:
+    """The effects by id, in alphabetical order."""
+    found: dict[str, MuscleEffect] = {}
+    for name in sorted(module.name for module in pkgutil.iter_modules(effects.__path__)):
+        module = importlib.import_module(f"{effects.__name__}.{name}")
+        for kind in vars(module).values():
+            own = inspect.isclass(kind) and kind.__module__ == module.__name__
+            if own and issubclass(kind, MuscleEffect):
+                found[kind.id] = kind()
+    return found
+
+
+def find_muscle_effects(names: tuple[str, ...]) -> tuple[MuscleEffect, ...]:
+    """Effects by id. Raises ModelError with the nearest known one."""
+    known = muscle_catalogue()
+    for name in names:
+        if name not in known:
+            raise ModelError(
+                f"unknown effect of a muscle '{name}'; {nearest_name(name, known)}: correct the name"
+            )
+    return tuple(known[name] for name in names)

@@ -1,7 +1,7 @@
 """The triangles of the picture cover the body."""
 
 import numpy as np
-from hasel_sim.live.body_picture import region_triangles, skin_line
+from hasel_sim.live.simulator_interface import region_triangles, skin_line
 from hasel_sim.mesh.mesh import Region
 from hasel_sim.model_mesh import model_mesh
 

@@ -3,7 +3,7 @@
 import numpy as np
 from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.schedule import DriveSchedule
-from hasel_sim.live.drive_history import DriveHistory
+from hasel_sim.live.histories import DriveHistory
 from hasel_sim.model import load_model
 
 HALF_PERIOD_S, STEPS_PER_SECOND = 0.11, 240

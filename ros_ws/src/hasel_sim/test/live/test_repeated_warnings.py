@@ -1,6 +1,6 @@
 """Warnings that keep coming."""
 
-from hasel_sim.live.repeated_warnings import RepeatedWarnings
+from hasel_sim.node_process import RepeatedWarnings
 
 
 def test_nine_hundred_warnings_in_six_minutes_become_a_few():

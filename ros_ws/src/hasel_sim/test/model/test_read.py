@@ -4,10 +4,10 @@ from importlib import resources
 
 import numpy as np
 import pytest
+from hasel_common.yaml_text import read_yaml, yaml_text
 from hasel_sim.errors import ModelError, OwnCodeError
 from hasel_sim.model import load_model, model_names, save_model
 from hasel_sim.simulate import simulate
-from ruamel.yaml import YAML
 
 OWN_EFFECT = """
 from hasel_sim.effects.base import DriveEffect, EffectParameter
@@ -27,7 +27,7 @@ class Gain(DriveEffect):
 @pytest.fixture
 def content() -> dict:
     """The default swimmer's file as a dictionary."""
-    return YAML(typ="safe").load((resources.files("hasel_sim") / "models" / "swimmer.yaml").read_text())
+    return read_yaml((resources.files("hasel_sim") / "models" / "swimmer.yaml").read_text())
 
 
 @pytest.fixture
@@ -36,7 +36,7 @@ def refusal(tmp_path):
 
     def read(content: dict) -> str:
         path = tmp_path / "model.yaml"
-        YAML(typ="safe").dump(content, path)
+        path.write_text(yaml_text(content))
         with pytest.raises(ModelError) as error:
             load_model(path)
         return str(error.value)
@@ -226,7 +226,7 @@ def test_a_medium_is_named_or_described(tmp_path, content, medium, density, visc
     content["medium"], content["body"]["depth_m"] = medium, 0.04
     content["parameters"]["medium.viscosity_pa_s"] = {"lower": 1e-4, "upper": 1.0}
     content["effects"] = ["normal_drag"]
-    YAML(typ="safe").dump(content, tmp_path / "model.yaml")
+    (tmp_path / "model.yaml").write_text(yaml_text(content))
     save_model(load_model(tmp_path / "model.yaml"), tmp_path / "again.yaml")
     model = load_model(tmp_path / "again.yaml")
     around = model.described.surroundings
@@ -276,6 +276,6 @@ def test_correlations_that_make_no_sense_are_refused(tmp_path, correlations, sai
 def test_a_model_that_nobody_chose_brings_no_code(tmp_path, content):
     """As one that a recording names: its effect's file is not run."""
     (tmp_path / "effect.py").write_text("raise SystemExit('it ran')")
-    YAML(typ="safe").dump({**content, "effects": ["effect.py:Evil"]}, tmp_path / "model.yaml")
+    (tmp_path / "model.yaml").write_text(yaml_text({**content, "effects": ["effect.py:Evil"]}))
     with pytest.raises(OwnCodeError, match=r"model.yaml has the effect effect.py:Evil, which is code"):
         load_model(tmp_path / "model.yaml", own_code=False)

@@ -1,8 +1,7 @@
 """Values with their standard errors."""
 
 import pytest
-from hasel_sim.model.parameter import Parameter
-from hasel_sim.model.value_text import value_with_error
+from hasel_sim.parameter import Parameter, value_with_error
 
 
 @pytest.mark.parametrize(

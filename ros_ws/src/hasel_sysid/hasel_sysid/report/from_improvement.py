@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from hasel_sim.model import Model
-from hasel_sim.model.value_text import value_with_error
+from hasel_sim.parameter import value_with_error
 
 from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.diagnosis import Verdict

@@ -1,22 +1,51 @@
-"""Numbers of a model file that may be freed: named by their path, such as `material.soft.youngs_modulus_pa`.
+"""Which parameters a model can have: numbers of its file that are freed, and those that every body with muscles has.
 
-What all materials of a body have in common is one number besides, such as `material.density_kg_per_m3`: a body that was
-weighed has one density. Among them are those of the body's shape. They move the nodes of the mesh that the file's own
-shape has, and with them markers and whatever else lies on the fin: a simulation can then be differentiated by them.
+A number of the file is named by its path, such as `material.soft.youngs_modulus_pa`. What all materials of a body have
+in common is one number besides, such as `material.density_kg_per_m3`: a body that was weighed has one density. Among
+them are those of the body's shape. They move the nodes of the mesh that the file's own shape has, and with them markers
+and whatever else lies on the fin: a simulation can then be differentiated by them.
+
+The muscles have parameters for how fast they contract, an amplitude for every level of the drive or those of a law, and
+an onset wherever the drive passes levels at which no amplitude is known.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, TypeVar
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 from pydantic import BaseModel
 
-from hasel_sim.model.moved import moved_points
+from hasel_sim.drive.amplitudes import AmplitudeTable
+from hasel_sim.drive.sloped_box import LARGEST_ONSET
+from hasel_sim.effects.base import DriveEffect, DriveStage, Effect
+from hasel_sim.model.description import Description
+from hasel_sim.model.muscle_law import law_parameters
+from hasel_sim.model.sections import Body
+from hasel_sim.parameter import Parameter
 
-if TYPE_CHECKING:
-    from hasel_sim.model.body import Body
-    from hasel_sim.model.description import Description
+
+def moved_points(points: np.ndarray, before: Body, after: Body) -> np.ndarray:
+    """Points [m] [n, 2] of one body at the same places of another, of the same length.
+
+    Along the body x stays, along the fin it keeps its share of the fin; across, a point keeps its share of the spine's
+    half thickness, or of the soft half between the spine and the outline. Continuous, and linear within each part.
+    """
+    x, y = np.asarray(points, dtype=float).T
+    length = before.length_m
+    fins = [body.whole_length_m - length for body in (before, after)]
+    stretch = fins[1] / fins[0] if fins[0] > 0 else 1.0
+    behind = x > length
+    spines = [0.5 * body.spine_thickness_m for body in (before, after)]
+    heights = [body.half_heights(np.minimum(x, length) / length) for body in (before, after)]
+    size = np.abs(y)
+    within = size <= spines[0]
+    in_spine = size * (spines[1] / spines[0] if spines[0] > 0 else 1.0)
+    share = (size - spines[0]) / np.where(within, 1.0, heights[0] - spines[0])
+    in_soft = spines[1] + share * (heights[1] - spines[1])
+    across = np.sign(y) * np.where(within, in_spine, in_soft)
+    return np.column_stack([np.where(behind, length + stretch * (x - length), x), across])
+
 
 _UNITS = {
     "_kg_per_m3": "kg/m^3",
@@ -146,3 +175,68 @@ def _changed(section: _Section, path: list[str], value: float) -> _Section:
     else:
         new = _changed(old, rest, value)
     return section.model_copy(update={head: new})
+
+
+_AMPLITUDE_START = 0.04
+"""Contraction at which the highest level of a drive is first tried."""
+_START_VOLTAGE = 5500.0
+"""Voltage [V] of a Peano-HASEL at which that contraction is a good first guess."""
+_RESPONSES = {
+    "sloped_box": (("slope", 0.5, "1/s", 0.02, 50.0),),
+    "first_order": (("rise_time", 0.05, "s", 0.0, 2.0), ("fall_time", 0.05, "s", 0.0, 2.0)),
+}
+
+
+def response_parameters(description: Description) -> dict[str, Parameter]:
+    """What a body with muscles always has besides its amplitudes: how fast the contraction follows, and its law's."""
+    if not description.muscles:
+        return {}
+    response = {row[0]: Parameter(*row) for row in _RESPONSES[description.muscle_response]}
+    return {**law_parameters(), **response} if description.muscle else response
+
+
+def amplitude_parameters(
+    tables: Iterable[AmplitudeTable], levels, known: Mapping[str, Parameter]
+) -> dict[str, Parameter]:
+    """An amplitude of every table for each level, those that are known as they are.
+
+    levels: of every channel in its SI unit, or by the name of a channel for those that contract alike.
+    """
+    found: dict[str, Parameter] = {}
+    for table in tables:
+        if isinstance(levels, Mapping):
+            own = np.unique(np.concatenate([[], *(levels[c] for c in table.channels if c in levels)]))
+        else:
+            own = np.unique(levels)
+        for level in own:
+            name = table.name(level)
+            highest = _START_VOLTAGE if table.unit == "V" else float(own[-1])
+            start = Parameter(name, _AMPLITUDE_START * float(level) / highest, "1", 0.0, table.largest)
+            found[name] = known.get(name, start)
+    return found
+
+
+def sweeps(description: Description, effects: Iterable[Effect]) -> bool:
+    """Whether anything before the target lets the drive pass levels that nobody commanded."""
+    return description.muscle_response == "first_order" or any(
+        isinstance(effect, DriveEffect) and effect.sweeps and effect.stage < DriveStage.TARGET
+        for effect in effects
+    )
+
+
+def onset_parameters(
+    tables: Iterable[AmplitudeTable], parameters: Mapping[str, Parameter]
+) -> dict[str, Parameter]:
+    """One of every table with an amplitude; those that are known as they are, within what its levels allow.
+
+    A new one is at 0, where the model is the same as without it.
+    """
+    found = {}
+    for table in tables:
+        levels = table.levels(parameters)
+        if len(levels) == 0:
+            continue
+        new = Parameter(table.onset, 0.0, table.unit, 0.0, float("inf"))
+        known, largest = parameters.get(table.onset, new), LARGEST_ONSET * float(levels[0])
+        found[table.onset] = replace(known, value=min(known.value, largest), upper=min(known.upper, largest))
+    return found

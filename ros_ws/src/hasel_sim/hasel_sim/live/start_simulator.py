@@ -1,6 +1,10 @@
-"""The simulator node's parameters."""
+"""`ros2 run hasel_sim simulator`: its parameters, and where it begins; --help is answered before all that is slow."""
 
+import sys
+
+from hasel_common.command_entry import command
 from hasel_common.node_parameter import AUTOSTART, NodeParameter
+from hasel_common.node_usage import answer_help
 
 PARAMETERS = (
     NodeParameter(*AUTOSTART),
@@ -45,3 +49,21 @@ PARAMETERS = (
     ),
     NodeParameter("frame_id", "swimmer", "frame of the stamped messages, within the node's namespace"),
 )
+
+
+@command
+def main() -> int:
+    """Run the node until it is interrupted; returns the exit code."""
+    answer_help(
+        "simulator",
+        "Simulates the bending angle under the supply's state (/hasel/state), and publishes it "
+        "(/hasel/bending/simulated) with the shape (/hasel/swimmer).",
+        [parameter.usage for parameter in PARAMETERS],
+    )
+    from hasel_sim.live.simulator_node import main as run
+
+    return run()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

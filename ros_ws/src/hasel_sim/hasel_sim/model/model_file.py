@@ -1,4 +1,4 @@
-"""Model files: reading with one-sentence errors, and writing."""
+"""Model files: reading with one-sentence errors, those of the former kinds of body too, and writing."""
 
 import json
 import os
@@ -9,21 +9,18 @@ from pathlib import Path
 
 from hasel_common.names import nearest_name
 from hasel_common.provenance import installed_version
+from hasel_common.yaml_text import YAMLError, read_yaml, yaml_text
 from pydantic import ValidationError
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
 
 from hasel_sim.effects.base import Effect
 from hasel_sim.errors import ModelError, OwnCodeError
-from hasel_sim.model.constants import constants, unit_of
 from hasel_sim.model.description import Description, ParameterEntry
-from hasel_sim.model.former import is_former, translated
 from hasel_sim.model.model import Model
+from hasel_sim.model.muscle_file import law_content, load_muscle
 from hasel_sim.model.muscle_law import MuscleLaw
-from hasel_sim.model.parameter import Parameter
-from hasel_sim.model.plausible import implausible
-from hasel_sim.model.start_values import response_parameters
-from hasel_sim.model.validation import sentence_for
+from hasel_sim.model.parameters import constants, response_parameters, unit_of
+from hasel_sim.model.validation import implausible, sentence_for
+from hasel_sim.parameter import Parameter
 
 
 def model_names() -> list[str]:
@@ -60,7 +57,7 @@ def load_model(name_or_path: str | Path, own_code: bool = True) -> Model:
 
 def _parse(text: str, source: str, folder: Path, own_code: bool = True) -> Model:
     try:
-        content = YAML(typ="safe").load(text)
+        content = read_yaml(text)
     except YAMLError as error:
         raise ModelError(
             f"{source} is not valid YAML: {' '.join(str(error).split())}; correct that line"
@@ -111,8 +108,6 @@ def _with_muscle_file(description: Description, folder: Path, source: str) -> De
     law = description.muscle
     if law is None or law.file is None:
         return description
-    from hasel_sim.muscle.muscle_file import law_content, load_muscle
-
     try:
         muscle = load_muscle(folder / law.file if (folder / law.file).is_file() else law.file)
     except ModelError as error:
@@ -163,12 +158,9 @@ def _named_from(folder: Path, effect: Effect) -> str:
 def save_model(model: Model, path: str | Path) -> None:
     """Write a model file that `load_model` reads back to the same model; effects in files are named relative to it."""
     content = _content(model, model.description, Path(path).resolve().parent)
-    yaml = YAML(typ="safe")
-    yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]
-    yaml.default_flow_style = False
-    with Path(path).open("w") as file:
-        file.write(f"# written by hasel_sim {installed_version('hasel_sim')}\n")
-        yaml.dump(content, file)
+    Path(path).write_text(
+        f"# written by hasel_sim {installed_version('hasel_sim')}\n{yaml_text(content)}", encoding="utf-8"
+    )
 
 
 def model_text(model: Model, description: Description) -> str:
@@ -199,3 +191,57 @@ def _entry(parameter: Parameter, names: Iterable[str]) -> dict:
     if correlations:
         entry["correlations"] = correlations
     return entry
+
+
+_LENGTHS = ("body_length_m", "fin_length_m", "spine_thickness_m", "largest_half_height_m")
+_KEYS = {
+    "swimmer": (*_LENGTHS, "outline_coefficients", "head_length_m", "muscle_end_m", "clamped"),
+    "rectangle": ("length_m", "height_m", "clamped"),
+}
+
+
+def is_former(content: dict) -> bool:
+    """Whether a file's content is of a former kind."""
+    return isinstance(content.get("body"), dict) and "kind" in content["body"]
+
+
+def translated(content: dict) -> dict:
+    """The content as a file of today. Raises ModelError for what a file of its kind could not say."""
+    content, body = dict(content), dict(content["body"])
+    kind = body.pop("kind")
+    if kind not in _KEYS:
+        raise ModelError(
+            f"body.kind is '{kind}'; expected swimmer or rectangle, or no kind and a body as of today: correct it"
+        )
+    for key in body:
+        if key not in _KEYS[kind]:
+            raise ModelError(
+                f"unknown key 'body.{key}'; {nearest_name(key, _KEYS[kind])}: rename or remove it"
+            )
+    muscle = content.pop("muscle", None)
+    numerics = dict(content.get("numerics", {}))
+    numerics.setdefault("quadrature_order", 3)
+    content["numerics"] = numerics
+    if kind == "rectangle":
+        if muscle is not None:
+            raise ModelError(
+                "a rectangle has no place for the section 'muscle'; expected muscles with channel, layer, from_m and "
+                "to_m: describe them so and leave out body.kind"
+            )
+        return {**content, "body": body}
+    missing = [key for key in _KEYS["swimmer"][:-1] if key not in body] + ["muscle"] * (muscle is None)
+    if missing:
+        raise ModelError(f"the key 'body.{missing[0]}' of a swimmer is missing: add it")
+    content["body"] = {
+        "length_m": body["body_length_m"],
+        "outline": {
+            "largest_half_height_m": body["largest_half_height_m"],
+            "coefficients": body["outline_coefficients"],
+        },
+        "spine": {"thickness_m": body["spine_thickness_m"], "fin_length_m": body["fin_length_m"]},
+    }
+    sides = ("upper", "lower")
+    content["channels"] = [{"name": side, "quantity": "voltage", "unit": "V"} for side in sides]
+    places = {"from_m": body["head_length_m"], "to_m": body["muscle_end_m"]}
+    content["muscles"] = [{"name": s, "channel": s, "layer": s, **places, **muscle} for s in sides]
+    return content

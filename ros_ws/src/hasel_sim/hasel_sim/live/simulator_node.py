@@ -3,6 +3,7 @@
 import sys
 import time
 from collections import Counter
+from dataclasses import dataclass
 
 import numpy as np
 from hasel_common.declared_parameters import declare, words
@@ -18,17 +19,61 @@ from threadpoolctl import threadpool_limits
 from visualization_msgs.msg import MarkerArray
 
 from hasel_sim.errors import HaselSimError, SimulationError
-from hasel_sim.live.live_model import live_model
-from hasel_sim.live.live_simulator import LiveAnswer, LiveSimulator
-from hasel_sim.live.own_files import within
-from hasel_sim.live.pace import Pace
-from hasel_sim.live.repeated_warnings import RepeatedWarnings
+from hasel_sim.live.live_simulator import LiveAnswer, LiveSimulator, live_model, within
+from hasel_sim.live.simulator_interface import (
+    BodyMessage,
+    ModelParameters,
+    angle_message,
+    rig_voltage,
+    to_nanoseconds,
+)
+from hasel_sim.live.start_simulator import PARAMETERS
 from hasel_sim.model import Model
-from hasel_sim.model.value_text import value_with_error
-from hasel_sim.model_parameters import ModelParameters
-from hasel_sim.node_process import run_node
-from hasel_sim.simulator_messages import BodyMessage, angle_message, rig_voltage, to_nanoseconds
-from hasel_sim.simulator_parameters import PARAMETERS
+from hasel_sim.node_process import RepeatedWarnings, run_node
+from hasel_sim.parameter import value_with_error
+
+
+@dataclass(frozen=True)
+class PaceReport:
+    """real_time_factor: simulated over computing time, NaN before there is any; lags [s] from reception to answer."""
+
+    messages: int
+    real_time_factor: float
+    mean_lag: float
+    worst_lag: float
+
+    @property
+    def behind(self) -> bool:
+        """Whether messages come faster than they are answered."""
+        return self.real_time_factor < 1.0 or self.worst_lag > 0.1
+
+    def __str__(self) -> str:
+        if self.messages == 0:
+            return "no state message in the last second"
+        return (
+            f"{self.real_time_factor:.1f} times real time, answers after {1e3 * self.mean_lag:.1f} ms"
+            f" (at worst {1e3 * self.worst_lag:.1f} ms)"
+        )
+
+
+class Pace:
+    """Collects what each message took, between two reports."""
+
+    def __init__(self) -> None:
+        self._rows: list[tuple[float, float, float]] = []
+
+    def add(self, simulated: float, computing: float, lag: float) -> None:
+        """One message: time simulated, time spent on it, time from its reception to the answer [s]."""
+        self._rows.append((simulated, computing, lag))
+
+    def report(self) -> PaceReport:
+        """Sum up since the last report."""
+        rows, self._rows = np.array(self._rows).reshape(-1, 3), []
+        if len(rows) == 0:
+            return PaceReport(0, np.nan, np.nan, np.nan)
+        simulated, computing, _ = rows.sum(axis=0)
+        factor = simulated / computing if simulated > 0 else np.nan
+        return PaceReport(len(rows), float(factor), float(rows[:, 2].mean()), float(rows[:, 2].max()))
 
 
 class SimulatorNode(ManagedNode):

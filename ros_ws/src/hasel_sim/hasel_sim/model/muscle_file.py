@@ -3,21 +3,19 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from importlib import resources
-from io import StringIO
 from pathlib import Path
 
 from hasel_common.names import nearest_name
+from hasel_common.yaml_text import YAMLError, read_yaml, yaml_text
 from pydantic import Field, ValidationError
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
 
 from hasel_sim.errors import ModelError
 from hasel_sim.model.description import ParameterEntry
-from hasel_sim.model.parameter import Parameter
-from hasel_sim.model.pouch_section import PouchSection
-from hasel_sim.model.section import NotNegative, Section
+from hasel_sim.model.muscle_law import PouchSection
+from hasel_sim.model.sections import NotNegative, Section
 from hasel_sim.model.validation import sentence_for
 from hasel_sim.muscle.muscle import POUCH, Muscle
+from hasel_sim.parameter import Parameter
 
 _FREE = {"relative_permittivity": ("1", 0.85, 1.15), "fill": ("1", 0.5, 1.5)}
 """Constants of a pouch that are never known well: unit, and bounds by the file's value."""
@@ -61,7 +59,7 @@ def load_muscle(name_or_path: str | Path) -> Muscle:
 
 def _parse(text: str, source: str) -> Muscle:
     try:
-        content = YAML(typ="safe").load(text)
+        content = read_yaml(text)
     except YAMLError as error:
         raise ModelError(
             f"{source} is not valid YAML: {' '.join(str(error).split())}; correct that line"
@@ -126,12 +124,7 @@ def muscle_text(muscle: Muscle) -> str:
         "effects": [effect.id for effect in muscle.effects],
         "parameters": {name: _entry(parameter) for name, parameter in muscle.parameters.items()},
     }
-    yaml = YAML(typ="safe")
-    yaml.sort_base_mapping_type_on_output = False  # type: ignore[assignment]
-    yaml.default_flow_style = False
-    out = StringIO()
-    yaml.dump(content, out)
-    return out.getvalue()
+    return yaml_text(content)
 
 
 def law_content(muscle: Muscle) -> dict:
