@@ -11,7 +11,6 @@ from hasel_sim.effects.base import ObservationEffect, guarded
 from hasel_sim.errors import ModelError
 from hasel_sim.mesh.body_mesh import StripShape, strip_mesh
 from hasel_sim.mesh.mesh import Mesh
-from hasel_sim.mesh.outline import outline_fault
 from hasel_sim.model import Model
 from hasel_sim.model.description import Description
 from hasel_sim.model.parameters import moved_points
@@ -96,10 +95,8 @@ def body_mesh(description: Description) -> Mesh:
 
 
 def _check_shape(body: Body) -> None:
-    coefficients = np.array(body.coefficients)
-    fault = outline_fault(coefficients, body.largest_half_height_m, body.spine_thickness_m, body.length_m)
-    if fault:
-        raise ModelError(fault)
+    if body.outline_fault:
+        raise ModelError(body.outline_fault)
 
 
 def model_mesh(model: Model) -> Mesh:

@@ -15,7 +15,7 @@ from concurrent.futures import (
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
-from itertools import count, pairwise
+from itertools import count, pairwise, product
 from numbers import Integral
 from typing import TypeVar
 
@@ -33,10 +33,9 @@ _ASKED = 0
 
 @dataclass(eq=False)
 class Turn:
-    """A place in the order of a `Turns`, the first ones first; given_up: nobody wants its results any more."""
+    """A place in the order of a `Turns`, the first ones first."""
 
     place: int = _ASKED
-    given_up: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,17 +61,12 @@ class Turns(Executor):
         self._places = count(_ASKED + 1)
 
     def submit(self, function: Callable, /, *arguments, **keywords) -> Future:
-        """A task in the turn of this thread; one of a turn that was given up is cancelled."""
+        """A task in the turn of this thread."""
         turn = getattr(self._of_thread, "turn", None) or Turn()
         task = _Task(turn, partial(function, *arguments, **keywords))
         with self._lock:
-            wanted = not turn.given_up
-            if wanted:
-                self._waiting.append(task)
-        if wanted:
-            self._hand_on()
-        else:
-            task.future.cancel()
+            self._waiting.append(task)
+        self._hand_on()
         return task.future
 
     def foreseen(self) -> Turn:
@@ -100,15 +94,6 @@ class Turns(Executor):
         with self._lock:
             self.workers = workers
         self._hand_on()
-
-    def give_up(self, turn: Turn) -> None:
-        """Cancel what waits in a turn, and whatever is still submitted in it."""
-        with self._lock:
-            turn.given_up = True
-            gone = [task for task in self._waiting if task.turn is turn]
-            self._waiting = [task for task in self._waiting if task.turn is not turn]
-        for task in gone:
-            task.future.cancel()
 
     def _hand_on(self) -> None:
         while (task := self._next()) is not None:
@@ -286,29 +271,24 @@ def submit_each(
     """
     futures: list[list[Future[Simulation]]] = [[Future() for _ in runs] for _ in models]
     if ended:
-        for model, of_model in enumerate(futures):
-            for run, future in enumerate(of_model):
-                future.add_done_callback(partial(_tell, ended, model, run))
+        for model, run in product(range(len(models)), range(len(runs))):
+            futures[model][run].add_done_callback(partial(_tell, ended, model, run))
     alike: dict[tuple, list[int]] = {}
     for number, (model, names) in enumerate(zip(models, slopes_by, strict=True)):
         alike.setdefault((kind_of(model), tuple(names)), []).append(number)
     share = -(-len(models) * len(runs) // getattr(pool, "workers", 1))
     for (_, names), numbers in alike.items():
-        for batch in side_by_side(_by_length(numbers, runs), share):
+        # the longest first: those side by side are of like length
+        by_length = sorted(product(numbers, range(len(runs))), key=lambda case: -len(runs[case[1]].time))
+        for batch in side_by_side(by_length, share):
             asked = [futures[model][run] for model, run in batch]
             done = pool.submit(simulate_many, [(models[model], runs[run]) for model, run in batch], names)
             done.add_done_callback(partial(_hand_on, futures=asked))
     return futures
 
 
-def _tell(ended: Callable[[int, int], None], model: int, run: int, _future: Future) -> None:
+def _tell(ended: Callable[[int, int], None], model: int, run: int, _: Future) -> None:
     ended(model, run)
-
-
-def _by_length(models: Sequence[int], runs: Sequence[Run]) -> list[tuple[int, int]]:
-    """Numbers of the models and runs to simulate, the longest first: those side by side are of like length."""
-    cases = [(model, run) for model in models for run in range(len(runs))]
-    return sorted(cases, key=lambda case: -len(runs[case[1]].time))
 
 
 def _hand_on(batch: Future, futures: Sequence[Future]) -> None:

@@ -35,8 +35,8 @@ class Parameter:
     name: str
     value: float
     unit: str
-    lower: float
-    upper: float
+    lower: float = -float("inf")
+    upper: float = float("inf")
     free: bool = True
     standard_error: float | None = None
     correlations: dict[str, float] = field(default_factory=dict, hash=False)

@@ -5,12 +5,12 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
 
 import numpy as np
 from hasel_common.measured_bar import MeasuredBar
-from rich.table import Table
+from rich.table import Column, Table
 from scipy.linalg import lapack
 
 from hasel_sim.drive.schedule import DriveSchedule
@@ -121,10 +121,24 @@ class BarsReport:
         return asdict(self) | {"bars": [asdict(bar) | {"met": bar.met} for bar in self.bars()]}
 
 
+def table_of(title: str, headings: Sequence[str], rows: Iterable[Sequence[str]], words: int = 0) -> Table:
+    """A table of numbers; words: how many of its first columns hold words."""
+    columns = [Column(h, justify="left" if n < words else "right") for n, h in enumerate(headings)]
+    table = Table(*columns, title=title)
+    for row in rows:
+        table.add_row(*row)
+    return table
+
+
 def bars_table(bars: list[MeasuredBar]) -> Table:
     """Measured values beside their bars."""
-    table = Table("what", "measured", "bar", "met", title="Bars")
-    for bar in bars:
-        sign = "≥" if bar.at_least else "≤"
-        table.add_row(bar.what, f"{bar.measured:.2f}", f"{sign} {bar.limit:g}", "yes" if bar.met else "NO")
-    return table
+    rows = [
+        (
+            bar.what,
+            f"{bar.measured:.2f}",
+            f"{'≥' if bar.at_least else '≤'} {bar.limit:g}",
+            "yes" if bar.met else "NO",
+        )
+        for bar in bars
+    ]
+    return table_of("Bars", ("what", "measured", "bar", "met"), rows, words=4)

@@ -21,6 +21,7 @@ from hasel_sim.bench.cases import (
     node_count,
     processor_seconds,
     swimmer_with_every_force,
+    table_of,
     with_nodes,
 )
 from hasel_sim.model import Model
@@ -205,83 +206,67 @@ class SpeedReport(BarsReport):
     def bars(self) -> list[MeasuredBar]:
         """The figures that have a bar."""
         named = (("default mesh", self.default), (f"{self.large.nodes} nodes", self.large))
+        swim = "real-time factor, free swim of 10 s with every force of the fluid"
+        lanes = f"{self.lanes.runs} runs side by side / one after the other"
         return [
-            MeasuredBar(f"real-time factor, {named[0][0]}", self.default.real_time_factor, 5, at_least=True),
-            MeasuredBar(f"real-time factor, {named[1][0]}", self.large.real_time_factor, 2, at_least=True),
-            MeasuredBar(
-                "real-time factor, free swim of 10 s with every force of the fluid",
-                self.free_swim,
-                5,
-                at_least=True,
+            *(
+                MeasuredBar(f"real-time factor, {name}", speed.real_time_factor, bar, at_least=True)
+                for (name, speed), bar in zip(named, (5, 2), strict=True)
             ),
+            MeasuredBar(swim, self.free_swim, 5, at_least=True),
             *(
                 MeasuredBar(f"all sensitivities / forward, {name}", s.sensitivities / s.forward, 2)
                 for name, s in named
             ),
             *(MeasuredBar(f"adjoint sweep / forward, {name}", s.adjoint / s.forward, 2) for name, s in named),
-            MeasuredBar(
-                f"{self.lanes.runs} runs side by side / one after the other",
-                self.lanes.forward_ratio,
-                4,
-                at_least=True,
-            ),
+            MeasuredBar(lanes, self.lanes.forward_ratio, 4, at_least=True),
             MeasuredBar("first run, compiling (s)", self.first_run, 30),
         ]
 
     def print(self, console: Console) -> None:
         """Print the tables."""
+        headings = ("nodes", "ms/frame", "x real time", "all sensitivities", "adjoint sweep", "LAPACK/step")
+        sizes = [
+            (
+                str(speed.nodes),
+                f"{speed.milliseconds(speed.forward):.2f}",
+                f"{speed.real_time_factor:.1f}",
+                *(f"{part / speed.forward:.2f} x" for part in (speed.sensitivities, speed.adjoint)),
+                f"{speed.solutions_per_step:.1f}",
+            )
+            for speed in self.sizes
+        ]
+        cost = f"Processor time on one core, 240 steps/s; cost grows as nodes^{self.slope:.2f}"
+        counts = [str(count) for count, _ in self.parameters]
+        ratios = [f"{ratio:.2f} x" for _, ratio in self.parameters]
+        lanes = self.lanes
+        forward = lanes.after_the_other, lanes.side_by_side, lanes.forward_ratio
+        with_slopes = (
+            lanes.sensitivities_after_the_other,
+            lanes.sensitivities_side_by_side,
+            lanes.sensitivities_ratio,
+        )
+        beside = [
+            (name, f"{1e3 * alone:.0f} ms", f"{1e3 * together:.0f} ms", f"{ratio:.2f} x")
+            for name, (alone, together, ratio) in (
+                ("forward", forward),
+                ("with all sensitivities", with_slopes),
+            )
+        ]
+        profile = Table("where the time goes", "share", title="Default mesh, forward")
+        for label, share in self.profile:
+            profile.add_row(label, f"{100 * share:.0f} %")
         console.print(
-            self._speed_table(),
-            self._parameter_table(),
-            self._lanes_table(),
-            self._profile_table(),
+            table_of(cost, headings, sizes),
+            table_of(
+                "Forward cost with sensitivities, by number of parameters (six effects)", counts, [ratios]
+            ),
+            table_of(
+                f"{lanes.runs} runs of 0.5 s, default mesh, processor time",
+                ("", "one after the other", "side by side", "ratio"),
+                beside,
+                words=1,
+            ),
+            profile,
             bars_table(self.bars()),
         )
-
-    def _speed_table(self) -> Table:
-        table = Table(title=f"Processor time on one core, 240 steps/s; cost grows as nodes^{self.slope:.2f}")
-        for heading in (
-            "nodes",
-            "ms/frame",
-            "x real time",
-            "all sensitivities",
-            "adjoint sweep",
-            "LAPACK/step",
-        ):
-            table.add_column(heading, justify="right")
-        for speed in self.sizes:
-            ratios = [f"{part / speed.forward:.2f} x" for part in (speed.sensitivities, speed.adjoint)]
-            frame = f"{speed.milliseconds(speed.forward):.2f}"
-            solutions = f"{speed.solutions_per_step:.1f}"
-            table.add_row(str(speed.nodes), frame, f"{speed.real_time_factor:.1f}", *ratios, solutions)
-        return table
-
-    def _parameter_table(self) -> Table:
-        table = Table(title="Forward cost with sensitivities, by number of parameters (six effects)")
-        for count, _ in self.parameters:
-            table.add_column(str(count), justify="right")
-        table.add_row(*(f"{ratio:.2f} x" for _, ratio in self.parameters))
-        return table
-
-    def _lanes_table(self) -> Table:
-        lanes = self.lanes
-        table = Table(title=f"{lanes.runs} runs of 0.5 s, default mesh, processor time")
-        for heading in ("", "one after the other", "side by side", "ratio"):
-            table.add_column(heading, justify="right" if heading else "left")
-        for name, alone, beside, ratio in (
-            ("forward", lanes.after_the_other, lanes.side_by_side, lanes.forward_ratio),
-            (
-                "with all sensitivities",
-                lanes.sensitivities_after_the_other,
-                lanes.sensitivities_side_by_side,
-                lanes.sensitivities_ratio,
-            ),
-        ):
-            table.add_row(name, f"{1e3 * alone:.0f} ms", f"{1e3 * beside:.0f} ms", f"{ratio:.2f} x")
-        return table
-
-    def _profile_table(self) -> Table:
-        table = Table("where the time goes", "share", title="Default mesh, forward")
-        for label, share in self.profile:
-            table.add_row(label, f"{100 * share:.0f} %")
-        return table

@@ -2,15 +2,15 @@
 
 import importlib
 import importlib.util
-import inspect
 import pkgutil
 import sys
-from collections.abc import Container
+from collections.abc import Container, Iterator
 from functools import cache, lru_cache
 from hashlib import sha256
 from importlib.util import decode_source
 from pathlib import Path
 from types import ModuleType
+from typing import TypeVar
 
 from hasel_common.names import nearest_name
 
@@ -19,7 +19,9 @@ from hasel_sim.effects.base import DriveEffect, Effect, ForceEffect, MaterialEff
 from hasel_sim.effects.checks import check_effect
 from hasel_sim.errors import ModelError
 
+_FOLDERS = ("drive", "material", "force", "observation")
 _PLACES = (DriveEffect, ForceEffect, MaterialEffect, ObservationEffect)
+Kind = TypeVar("Kind")
 
 
 def load_own_effect(path: Path, kind: str, taken: Container[str] = ()) -> Effect:
@@ -91,29 +93,31 @@ def _module(path: str, text: str) -> ModuleType:
     return module
 
 
-def _effects_in(module) -> list[type[Effect]]:
-    found = [value for value in vars(module).values() if inspect.isclass(value) and issubclass(value, Effect)]
-    return [value for value in found if value.__module__ == module.__name__ and not inspect.isabstract(value)]
+def kinds_in(package: ModuleType, base: type[Kind]) -> Iterator[type[Kind]]:
+    """The subclasses of a class that the modules of a package define, in alphabetical order of these."""
+    for name in sorted(module.name for module in pkgutil.iter_modules(package.__path__)):
+        module = importlib.import_module(f"{package.__name__}.{name}")
+        yield from (
+            kind for kind in vars(module).values() if _is_own_class(kind, module) and issubclass(kind, base)
+        )
 
 
 @cache
 def catalogue() -> dict[str, Effect]:
     """All built-in effects by id, in alphabetical order of place and id."""
-    found: dict[str, Effect] = {}
-    for place in ("drive", "material", "force", "observation"):
-        package = importlib.import_module(f"{effects.__name__}.{place}")
-        for name in sorted(module.name for module in pkgutil.iter_modules(package.__path__)):
-            for kind in _effects_in(importlib.import_module(f"{package.__name__}.{name}")):
-                found[kind.id] = kind()
-    return found
+    packages = [importlib.import_module(f"{effects.__name__}.{place}") for place in _FOLDERS]
+    return {kind.id: kind() for package in packages for kind in kinds_in(package, Effect)}
 
 
 def find_effects(names: tuple[str, ...]) -> tuple[Effect, ...]:
     """Effects by id, or by `path/to/file.py:ClassName`. Raises ModelError with the nearest known id."""
-    return tuple(_own(name) if ":" in name else _built_in(name) for name in names)
+    return tuple(_found(name) for name in names)
 
 
-def _built_in(name: str) -> Effect:
+def _found(name: str) -> Effect:
+    path, is_own, kind = name.rpartition(":")
+    if is_own:
+        return load_own_effect(Path(path), kind, taken=catalogue())
     if name.endswith(".py"):
         raise ModelError(
             f"'{name}' names a file and no class in it; expected path/to/file.py:ClassName: write {name}:CLASS, with "
@@ -125,8 +129,3 @@ def _built_in(name: str) -> Effect:
             "path/to/file.py:ClassName"
         )
     return catalogue()[name]
-
-
-def _own(name: str) -> Effect:
-    path, _, kind = name.rpartition(":")
-    return load_own_effect(Path(path), kind, taken=catalogue())

@@ -116,7 +116,9 @@ class SimulatorNode(ManagedNode):
         options = {name: self._value(name) for name in ("history", "gap", "reset", "late", "load_factor")}
         model = self.model_parameters.declare(model)
         self._live = LiveSimulator(model, **options)
-        _warm_up(LiveSimulator(model, **options))
+        compiled = LiveSimulator(model, **options)  # and all loaded, before the first message
+        for stamp_ns in (0, 8_000_000, 16_000_000):
+            compiled.receive(stamp_ns, np.zeros(2))
         self._body = BodyMessage(self._live.mesh, len(self._live.markers), self._frame_id)
 
     def activate(self) -> None:
@@ -248,12 +250,6 @@ class SimulatorNode(ManagedNode):
             response.message, response.success = str(error), False
             self._warn(response.message)
         return response
-
-
-def _warm_up(live: LiveSimulator) -> None:
-    """Have everything compiled and loaded before the first message."""
-    for stamp_ns in (0, 8_000_000, 16_000_000):
-        live.receive(stamp_ns, np.zeros(2))
 
 
 def main() -> int:

@@ -149,7 +149,7 @@ def _law(d: Description) -> Iterator[str]:
 
 
 def _markers(d: Description) -> Iterator[str]:
-    for name in ("head", "middle", "tail"):
+    for name in ANGLE_MARKERS:
         if name not in d.markers:
             yield f"markers has no '{name}'; expected head, middle and tail, which give the angle: add it"
     for name, marker in d.markers.items():
@@ -179,30 +179,23 @@ def check_together(effects: tuple[Effect, ...], body: Description) -> None:
                     f"effect '{effect.id}' {reason}; expected one of each kind: remove one of the two"
                 )
             seen[word] = effect.id
-        if effect.needs_muscles and not body.muscles:
-            raise ModelError(
-                f"effect '{effect.id}' acts on the muscles, and model '{body.name}' has none; "
-                "remove it or use a model with muscles"
-            )
-        if effect.needs_spine and body.body.spine is None:
-            raise ModelError(
-                f"effect '{effect.id}' acts on the spine, and model '{body.name}' has none; "
-                "remove it or use a model whose body has a spine"
-            )
-        count = len(body.muscles)
-        if effect.needs_antagonists and count != 2:
-            raise ModelError(
-                f"effect '{effect.id}' compares two muscles, and model '{body.name}' has {count}; remove it or use a "
-                "model with two"
-            )
-        if effect.needs_medium and body.medium is None:
-            raise ModelError(
-                f"effect '{effect.id}' is a force of the fluid around the body, and model '{body.name}' names none; "
-                "remove it or add a section medium"
-            )
-        quantities = sorted({channel.quantity for channel in body.channels})
-        if effect.quantity and effect.quantity not in quantities:
-            raise ModelError(
-                f"effect '{effect.id}' acts on a {effect.quantity}, and model '{body.name}' is driven by "
-                f"{', '.join(quantities) or 'nothing'}; remove it or use a model with such a channel"
-            )
+        count, quantities = len(body.muscles), sorted({channel.quantity for channel in body.channels})
+        on = f"and model '{body.name}'"
+        wrong = {
+            f"acts on the muscles, {on} has none; remove it or use a model with muscles": (
+                effect.needs_muscles and not count
+            ),
+            f"acts on the spine, {on} has none; remove it or use a model whose body has a spine": (
+                effect.needs_spine and body.body.spine is None
+            ),
+            f"compares two muscles, {on} has {count}; remove it or use a model with two": (
+                effect.needs_antagonists and count != 2
+            ),
+            f"is a force of the fluid around the body, {on} names none; remove it or add a section medium": (
+                effect.needs_medium and body.medium is None
+            ),
+            f"acts on a {effect.quantity}, {on} is driven by {', '.join(quantities) or 'nothing'}; remove it or use a "
+            "model with such a channel": effect.quantity and effect.quantity not in quantities,
+        }
+        for sentence in (sentence for sentence, found in wrong.items() if found):
+            raise ModelError(f"effect '{effect.id}' {sentence}")

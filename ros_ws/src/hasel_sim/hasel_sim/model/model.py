@@ -138,7 +138,7 @@ class Model(Parametrised):
                     f"'{name}' is neither a parameter nor a constant of model '{self.name}'; "
                     f"{nearest_name(name, {*freed, *known})}"
                 )
-            freed[name] = Parameter(name, known[name], unit_of(name), -float("inf"), float("inf"))
+            freed[name] = Parameter(name, known[name], unit_of(name))
         return replace(self, parameters=freed)
 
     def with_constants_settled(self, *names: str) -> "Model":
@@ -147,10 +147,7 @@ class Model(Parametrised):
         Its mesh is made for its shape as it is then. Raises ModelError where that does not fit together.
         """
         settled = with_constants(self.description, {name: self.parameter(name).value for name in names})
-        try:
-            description = Description.model_validate(settled.model_dump())
-        except ValidationError as error:
-            raise ModelError(sentence_for(error)) from None
+        description = _validated(settled.model_dump())
         parameters = {name: p for name, p in self.parameters.items() if name not in names}
         return replace(self, description=description, parameters=parameters)
 
@@ -220,11 +217,7 @@ class Model(Parametrised):
         content = self.description.model_dump()
         content["medium"] = fluid if isinstance(fluid, str) else dict(fluid)
         content["body"]["depth_m"] = depth_m
-        try:
-            changed = Description.model_validate(content)
-        except ValidationError as error:
-            raise ModelError(sentence_for(error)) from None
-        return replace(self, description=changed)
+        return replace(self, description=_validated(content))
 
     def with_numerics(self, **changes: float | str) -> "Model":
         """A copy with other numerics, such as mesh_density=2 or steps_per_second=960.
@@ -255,3 +248,10 @@ class Model(Parametrised):
     def __repr__(self) -> str:
         named = " + ".join([self.name, *(effect.id for effect in self.effects)])
         return f"<Model {named}, {len(self.parameters)} parameters>"
+
+
+def _validated(content: dict) -> Description:
+    try:
+        return Description.model_validate(content)
+    except ValidationError as error:
+        raise ModelError(sentence_for(error)) from None

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from hasel_common.names import nearest_name
 from hasel_common.provenance import installed_version
-from hasel_common.yaml_text import YAMLError, read_yaml, yaml_text
+from hasel_common.yaml_text import yaml_text
 from pydantic import ValidationError
 
 from hasel_sim.effects.base import Effect
@@ -19,16 +19,13 @@ from hasel_sim.model.model import Model
 from hasel_sim.model.muscle_file import law_content, load_muscle
 from hasel_sim.model.muscle_law import MuscleLaw
 from hasel_sim.model.parameters import constants, response_parameters, unit_of
-from hasel_sim.model.validation import implausible, sentence_for
+from hasel_sim.model.validation import implausible, names_in, sections_of, sentence_for
 from hasel_sim.parameter import Parameter
 
 
 def model_names() -> list[str]:
     """Names of the models that come with the package."""
-    folder = resources.files("hasel_sim") / "models"
-    return sorted(
-        entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml")
-    )
+    return names_in("models")
 
 
 def load_model(name_or_path: str | Path, own_code: bool = True) -> Model:
@@ -56,14 +53,7 @@ def load_model(name_or_path: str | Path, own_code: bool = True) -> Model:
 
 
 def _parse(text: str, source: str, folder: Path, own_code: bool = True) -> Model:
-    try:
-        content = read_yaml(text)
-    except YAMLError as error:
-        raise ModelError(
-            f"{source} is not valid YAML: {' '.join(str(error).split())}; correct that line"
-        ) from None
-    if not isinstance(content, dict):
-        raise ModelError(f"{source} holds no model; expected keys such as name, body, material and markers")
+    content = sections_of(text, source, "no model; expected keys such as name, body, material and markers")
     try:
         description = Description.model_validate(translated(content) if is_former(content) else content)
     except ModelError as error:
@@ -77,19 +67,20 @@ def _parse(text: str, source: str, folder: Path, own_code: bool = True) -> Model
     code = [effect for effect in description.effects if ":" in effect]
     if code and not own_code:
         raise OwnCodeError(f"{source} has the effect {code[0]}, which is code that would run")
-    bare = Model(description.model_copy(update={"effects": (), "parameters": {}}))
-    bare = replace(bare, parameters=response_parameters(description))
-    model = bare.with_effects(*(_located(effect, folder) for effect in description.effects))
+    bare = description.model_copy(update={"effects": (), "parameters": {}})
+    model = Model(bare, parameters=response_parameters(description)).with_effects(
+        *(_located(effect, folder) for effect in description.effects)
+    )
     freed = constants(description)
     given = {}
     for name, entry in description.parameters.items():
         known = model.parameters.get(name)
         if known is None and name in freed:
-            known = Parameter(name, freed[name], unit_of(name), -float("inf"), float("inf"))
-        if known is None and model.is_amplitude(name):
-            known = Parameter(name, 0.0, "1", -float("inf"), float("inf"))
-        if known is None and model.is_onset(name):
-            known = Parameter(name, 0.0, model.onset_units[name], 0.0, float("inf"))
+            known = Parameter(name, freed[name], unit_of(name))
+        elif known is None and model.is_amplitude(name):
+            known = Parameter(name, 0.0, "1")
+        elif known is None and model.is_onset(name):
+            known = Parameter(name, 0.0, model.onset_units[name], 0.0)
         if known is None:
             raise ModelError(f"{source}: unknown parameter '{name}'; {_nearest(name, model, freed)}")
         given[name] = _parameter(known, entry, freed.get(name), source)

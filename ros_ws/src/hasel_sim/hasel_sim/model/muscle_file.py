@@ -6,14 +6,14 @@ from importlib import resources
 from pathlib import Path
 
 from hasel_common.names import nearest_name
-from hasel_common.yaml_text import YAMLError, read_yaml, yaml_text
+from hasel_common.yaml_text import yaml_text
 from pydantic import Field, ValidationError
 
 from hasel_sim.errors import ModelError
 from hasel_sim.model.description import ParameterEntry
 from hasel_sim.model.muscle_law import PouchSection
 from hasel_sim.model.sections import NotNegative, Section
-from hasel_sim.model.validation import sentence_for
+from hasel_sim.model.validation import names_in, sections_of, sentence_for
 from hasel_sim.muscle.muscle import POUCH, Muscle
 from hasel_sim.parameter import Parameter
 
@@ -33,10 +33,7 @@ class MuscleDescription(Section):
 
 def muscle_names() -> list[str]:
     """Names of the muscles that come with the package."""
-    folder = resources.files("hasel_sim") / "muscle" / "muscles"
-    return sorted(
-        entry.name.removesuffix(".yaml") for entry in folder.iterdir() if entry.name.endswith(".yaml")
-    )
+    return names_in("muscle/muscles")
 
 
 def load_muscle(name_or_path: str | Path) -> Muscle:
@@ -58,16 +55,8 @@ def load_muscle(name_or_path: str | Path) -> Muscle:
 
 
 def _parse(text: str, source: str) -> Muscle:
-    try:
-        content = read_yaml(text)
-    except YAMLError as error:
-        raise ModelError(
-            f"{source} is not valid YAML: {' '.join(str(error).split())}; correct that line"
-        ) from None
-    if not isinstance(content, dict):
-        raise ModelError(
-            f"{source} holds no muscle; expected the keys {', '.join(MuscleDescription.model_fields)}"
-        )
+    keys = ", ".join(MuscleDescription.model_fields)
+    content = sections_of(text, source, f"no muscle; expected the keys {keys}")
     try:
         return muscle_of(MuscleDescription.model_validate(content))
     except ValidationError as error:
@@ -140,16 +129,8 @@ def law_content(muscle: Muscle) -> dict:
 
 
 def _pouch(muscle: Muscle) -> dict:
-    pouch = muscle.pouch
-    return {
-        "count": muscle.count,
-        "film_length_m": pouch.film_length,
-        "electrode_length_m": pouch.electrode_length,
-        "width_m": pouch.width,
-        "film_thickness_m": pouch.film_thickness,
-        "relative_permittivity": pouch.relative_permittivity,
-        "fill": pouch.fill,
-    }
+    keys = [key for key in PouchSection.model_fields if key != "count"]
+    return {"count": muscle.count} | {key: getattr(muscle.pouch, key.removesuffix("_m")) for key in keys}
 
 
 def _entry(p: Parameter) -> dict:

@@ -29,14 +29,8 @@ class PouchSection(Section):
     @property
     def pouch(self) -> Pouch:
         """One of them. Raises ModelError where the lengths do not fit together."""
-        return Pouch(
-            film_length=self.film_length_m,
-            electrode_length=self.electrode_length_m,
-            width=self.width_m,
-            film_thickness=self.film_thickness_m,
-            relative_permittivity=self.relative_permittivity,
-            fill=self.fill,
-        )
+        keys = [key for key in type(self).model_fields if key != "count"]
+        return Pouch(**{key.removesuffix("_m"): getattr(self, key) for key in keys})
 
 
 STIFFNESS, PRELOAD, GAIN = "muscle.stiffness", "muscle.preload", "muscle.gain"

@@ -236,7 +236,7 @@ def onset_parameters(
         levels = table.levels(parameters)
         if len(levels) == 0:
             continue
-        new = Parameter(table.onset, 0.0, table.unit, 0.0, float("inf"))
+        new = Parameter(table.onset, 0.0, table.unit, 0.0)
         known, largest = parameters.get(table.onset, new), LARGEST_ONSET * float(levels[0])
         found[table.onset] = replace(known, value=min(known.value, largest), upper=min(known.upper, largest))
     return found

@@ -97,12 +97,16 @@ class Body(Section):
     def _sound(self) -> "Body":
         if (self.height_m is None) == (self.outline is None):
             raise ValueError("expected either height_m or outline: give one of the two")
-        fault = outline_fault(
+        if self.outline_fault:
+            raise ValueError(self.outline_fault)
+        return self
+
+    @property
+    def outline_fault(self) -> str | None:
+        """What is wrong with an outline that crosses the spine or itself; None where nothing is."""
+        return outline_fault(
             np.array(self.coefficients), self.largest_half_height_m, self.spine_thickness_m, self.length_m
         )
-        if fault:
-            raise ValueError(fault)
-        return self
 
     @property
     def coefficients(self) -> tuple[float, ...]:

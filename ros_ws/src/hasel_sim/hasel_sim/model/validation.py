@@ -2,11 +2,14 @@
 
 import re
 from collections.abc import Iterator
+from importlib import resources
 from typing import Any, get_args
 
 from hasel_common.names import nearest_name
+from hasel_common.yaml_text import YAMLError, read_yaml
 from pydantic import BaseModel, ValidationError
 
+from hasel_sim.errors import ModelError
 from hasel_sim.model.description import Description
 
 _SCALES: tuple[dict[str, float], ...] = (
@@ -31,6 +34,25 @@ def _sections_in(annotation: Any) -> Iterator[type[BaseModel]]:
         yield annotation
     for part in parts:
         yield from _sections_in(part)
+
+
+def names_in(folder: str) -> list[str]:
+    """Names of the YAML files in a folder of this package."""
+    found = (resources.files("hasel_sim") / folder).iterdir()
+    return sorted(entry.name.removesuffix(".yaml") for entry in found if entry.name.endswith(".yaml"))
+
+
+def sections_of(text: str, source: str, otherwise: str) -> dict[str, Any]:
+    """What a file's text says. Raises ModelError where it is no YAML or no mapping, which `otherwise` tells."""
+    try:
+        content = read_yaml(text)
+    except YAMLError as error:
+        raise ModelError(
+            f"{source} is not valid YAML: {' '.join(str(error).split())}; correct that line"
+        ) from None
+    if not isinstance(content, dict):
+        raise ModelError(f"{source} holds {otherwise}")
+    return content
 
 
 def sentence_for(error: ValidationError, root: type[BaseModel] = Description) -> str:

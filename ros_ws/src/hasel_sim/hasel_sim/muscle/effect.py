@@ -1,8 +1,5 @@
 """What an effect of the muscle on its bench states, the places where one can act, and the catalogue of all."""
 
-import importlib
-import inspect
-import pkgutil
 from dataclasses import dataclass
 from functools import cache
 from types import SimpleNamespace
@@ -12,6 +9,7 @@ import numpy as np
 from hasel_common.names import nearest_name
 
 from hasel_sim.effects.base import EffectParameter
+from hasel_sim.effects.registry import kinds_in
 from hasel_sim.errors import ModelError
 from hasel_sim.muscle import effects
 from hasel_sim.muscle.pouch import Pouch
@@ -74,14 +72,7 @@ class MuscleEffect:
 @cache
 def muscle_catalogue() -> dict[str, MuscleEffect]:
     """The effects by id, in alphabetical order."""
-    found: dict[str, MuscleEffect] = {}
-    for name in sorted(module.name for module in pkgutil.iter_modules(effects.__path__)):
-        module = importlib.import_module(f"{effects.__name__}.{name}")
-        for kind in vars(module).values():
-            own = inspect.isclass(kind) and kind.__module__ == module.__name__
-            if own and issubclass(kind, MuscleEffect):
-                found[kind.id] = kind()
-    return found
+    return {kind.id: kind() for kind in kinds_in(effects, MuscleEffect)}
 
 
 def find_muscle_effects(names: tuple[str, ...]) -> tuple[MuscleEffect, ...]:
