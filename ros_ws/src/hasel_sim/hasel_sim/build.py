@@ -34,7 +34,7 @@ from hasel_sim.mesh.sites import (
 )
 from hasel_sim.model import Model
 from hasel_sim.model.description import Description
-from hasel_sim.model.parameters import REST_CONTRACTION, constants, outline_names
+from hasel_sim.model.model_parameters import REST_CONTRACTION, constants, outline_names
 from hasel_sim.model_mesh import marker_points, model_mesh
 
 

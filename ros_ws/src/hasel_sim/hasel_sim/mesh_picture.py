@@ -3,6 +3,8 @@
 import matplotlib
 
 matplotlib.use("Agg")
+import argparse
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +15,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Patch
 
 from hasel_sim.drive.schedule import DriveSchedule
-from hasel_sim.errors import ModelError
+from hasel_sim.errors import HaselSimError, ModelError
 from hasel_sim.mesh.mesh import Mesh, Region
-from hasel_sim.model import Model
+from hasel_sim.model import Model, load_model
 from hasel_sim.model_mesh import marker_points, model_mesh
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
@@ -198,3 +200,18 @@ def _add_arc(axes, centre: np.ndarray, first: np.ndarray, second: np.ndarray) ->
     middle = np.radians(begin + 0.5 * sweep)
     place = centre + 1.12 * size * np.array([np.cos(middle), np.sin(middle)])
     axes.text(*place, f"θ = {sweep:.0f}°", ha="left", va="center", fontsize=13, bbox=_BEHIND)
+
+
+def run(options: argparse.Namespace) -> int:
+    """`show_mesh`: write the picture; 0, or 1 with a sentence about what is wrong."""
+    try:
+        model = load_model(options.model)
+        if options.density is not None:
+            model = model.with_numerics(mesh_density=options.density)
+        path = options.output or Path(f"{model.name}_mesh.png")
+        save_picture(draw_mesh(model) if options.bent is None else draw_angle(model, options.bent), path)
+    except HaselSimError as error:
+        print(f"show_mesh: {error}", file=sys.stderr)
+        return 1
+    print(f"Drew {path}.")
+    return 0

@@ -13,7 +13,7 @@ from hasel_sim.mesh.body_mesh import StripShape, strip_mesh
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.model import Model
 from hasel_sim.model.description import Description
-from hasel_sim.model.parameters import moved_points
+from hasel_sim.model.model_parameters import moved_points
 from hasel_sim.model.sections import Body
 
 

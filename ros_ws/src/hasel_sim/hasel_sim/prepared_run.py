@@ -13,7 +13,7 @@ from hasel_sim.mechanics.state import State, StateSlopes
 from hasel_sim.mechanics.stepper import Stepper
 from hasel_sim.mechanics.steps import StepPlan, plan_steps
 from hasel_sim.model import Model
-from hasel_sim.model.parameters import constants, response_parameters
+from hasel_sim.model.model_parameters import constants, response_parameters
 from hasel_sim.model_mesh import marker_rows
 from hasel_sim.run import Run
 

@@ -15,7 +15,7 @@ from hasel_sim.mechanics.state import State, StateSlopes
 from hasel_sim.mechanics.stepper import Stepper
 from hasel_sim.mechanics.system import System
 from hasel_sim.model import Model
-from hasel_sim.model.parameters import shape_constants
+from hasel_sim.model.model_parameters import shape_constants
 from hasel_sim.model_mesh import observe
 from hasel_sim.prepared_run import PreparedRun
 from hasel_sim.run import Run, Simulation

@@ -1,6 +1,8 @@
 """What is timed, the default swimmer at 5.5 kV, 2 Hz; how, by processor time of one thread; and the bars beside it."""
 
+import cProfile
 import os
+import pstats
 import subprocess
 import sys
 import tempfile
@@ -17,6 +19,7 @@ from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import Model, load_model
 from hasel_sim.model_mesh import model_mesh
 from hasel_sim.run import Run
+from hasel_sim.simulate import simulate
 
 FRAMES_PER_SECOND = 120.0
 
@@ -106,6 +109,32 @@ def band_solutions(model: Model, times: int) -> Callable[[], None]:
             lapack.dgbsv(half_bandwidth, half_bandwidth, band, right_hand_side)
 
     return work
+
+
+KERNELS = {
+    ("march.py", "march"): "the compiled time loop",
+    ("prepared_run.py", "__init__"): "mesh, matrices, drive (prepared once)",
+    ("prepared_run.py", "start"): "the state it starts from",
+    ("simulate.py", "_observed"): "what the markers see of it",
+}
+REST = "everything else"
+
+
+def shares(model: Model) -> list[tuple[str, float]]:
+    """What is done and its share of the time, largest first."""
+    simulate(model, box_run(0.05))
+    profile = cProfile.Profile()
+    profile.runcall(simulate, model, box_run())
+    rows = pstats.Stats(profile).stats  # type: ignore[attr-defined]
+    total = sum(row[2] for row in rows.values())  # 2: time in the function itself, 3: with what it calls
+    found = {
+        label: sum(
+            row[3] for (path, _, name), row in rows.items() if path.endswith(file) and name == function
+        )
+        for (file, function), label in KERNELS.items()
+    }
+    found[REST] = total - sum(found.values())
+    return sorted(((label, seconds / total) for label, seconds in found.items()), key=lambda pair: -pair[1])
 
 
 @dataclass(frozen=True)

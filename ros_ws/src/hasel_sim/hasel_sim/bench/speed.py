@@ -1,8 +1,8 @@
-"""Cost of a second of motion: forward, with all sensitivities, and by the adjoint; by nodes and by parameters."""
+"""Cost of a second of motion: forward, with all sensitivities, by the adjoint; by nodes and by parameters; of swims."""
 
-import cProfile
 import itertools
-import pstats
+import os
+import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,8 +24,11 @@ from hasel_sim.bench.cases import (
     table_of,
     with_nodes,
 )
-from hasel_sim.model import Model
+from hasel_sim.model import Model, load_model
+from hasel_sim.parallel import executor
 from hasel_sim.simulate import simulate, simulate_many
+from hasel_sim.swimming.boxes import Boxes
+from hasel_sim.swimming.sweep import sweep
 
 REPEATS = 5
 MANY_PARAMETERS = (
@@ -160,32 +163,6 @@ def free_swim_factor(duration: float = 10.0) -> float:
     return duration / seconds
 
 
-KERNELS = {
-    ("march.py", "march"): "the compiled time loop",
-    ("prepared_run.py", "__init__"): "mesh, matrices, drive (prepared once)",
-    ("prepared_run.py", "start"): "the state it starts from",
-    ("simulate.py", "_observed"): "what the markers see of it",
-}
-REST = "everything else"
-
-
-def shares(model: Model) -> list[tuple[str, float]]:
-    """What is done and its share of the time, largest first."""
-    simulate(model, box_run(0.05))
-    profile = cProfile.Profile()
-    profile.runcall(simulate, model, box_run())
-    rows = pstats.Stats(profile).stats  # type: ignore[attr-defined]
-    total = sum(row[2] for row in rows.values())  # 2: time in the function itself, 3: with what it calls
-    found = {
-        label: sum(
-            row[3] for (path, _, name), row in rows.items() if path.endswith(file) and name == function
-        )
-        for (file, function), label in KERNELS.items()
-    }
-    found[REST] = total - sum(found.values())
-    return sorted(((label, seconds / total) for label, seconds in found.items()), key=lambda pair: -pair[1])
-
-
 @dataclass(frozen=True)
 class SpeedReport(BarsReport):
     """All speeds; slope: of log cost against log nodes; parameters: (number, cost over forward).
@@ -270,3 +247,58 @@ class SpeedReport(BarsReport):
             profile,
             bars_table(self.bars()),
         )
+
+
+VOLTAGES = (3500.0, 4500.0, 5500.0)
+FREQUENCIES = tuple(np.arange(1.0, 10.01, 0.5).tolist())
+DURATION_S, JOBS = 10.0, 2
+
+
+@dataclass(frozen=True)
+class SwimmingReport(BarsReport):
+    """free_swim: real-time factor of a swim of 10 s with every force of the fluid, by processor time of one core;
+    sweep: time of `swims` swims by the clock on the wall, in `JOBS` processes [s]; load: processes that wanted a core
+    before it began.
+    """
+
+    free_swim: float
+    swims: int
+    sweep: float
+    load: float
+
+    def bars(self) -> list[MeasuredBar]:
+        """The figures that have a bar."""
+        return [
+            MeasuredBar(
+                f"real-time factor, free swim of {DURATION_S:g} s with every force of the fluid",
+                self.free_swim,
+                5,
+                True,
+            ),
+            MeasuredBar(
+                f"sweep of {self.swims} swims of {DURATION_S:g} s, {JOBS} processes (s)", self.sweep, 300
+            ),
+        ]
+
+    def print(self, console: Console) -> None:
+        """Print the bars, and how busy the machine was with other work."""
+        console.print(bars_table(self.bars()))
+        console.print(
+            f"{self.load:.1f} processes were at work on {os.cpu_count()} cores before the sweep began.",
+            soft_wrap=True,
+        )
+
+
+def measure_swimming(
+    duration: float = DURATION_S,
+    voltages: tuple[float, ...] = VOLTAGES,
+    frequencies: tuple[float, ...] = FREQUENCIES,
+) -> SwimmingReport:
+    """A free swim, and the swims of the model `swimmer_in_oil` at every voltage [V] and frequency [Hz]."""
+    factor = free_swim_factor(duration)
+    model, drives = load_model("swimmer_in_oil"), [Boxes(v, v, f) for v in voltages for f in frequencies]
+    load = os.getloadavg()[0]
+    with executor(JOBS) as pool:
+        start = time.perf_counter()
+        swam = sweep(pool, model, drives, duration)
+    return SwimmingReport(factor, len(swam), time.perf_counter() - start, load)

@@ -7,19 +7,19 @@ import sys
 from rich.console import Console
 from threadpoolctl import threadpool_limits
 
-from hasel_sim.bench.cases import first_run_seconds, fitted_swimmer
+from hasel_sim.bench.cases import first_run_seconds, fitted_swimmer, shares
 from hasel_sim.bench.convergence import ConvergenceReport, mesh_errors, step_errors
 from hasel_sim.bench.effect_costs import EffectsReport, measure_effects
 from hasel_sim.bench.in_turns import InTurns, measure_in_turns
 from hasel_sim.bench.speed import (
     SpeedReport,
+    SwimmingReport,
     by_nodes,
     by_parameters,
     free_swim_factor,
     measure_side_by_side,
-    shares,
+    measure_swimming,
 )
-from hasel_sim.bench.swimming import SwimmingReport, measure_swimming
 from hasel_sim.errors import HaselSimError
 
 SIZES = (180, 275, 700, 1400)

@@ -288,18 +288,18 @@ def optimise_parser() -> argparse.ArgumentParser:
     return options
 
 
-def _executable(name: str, parser: Callable[[], argparse.ArgumentParser]) -> Callable[..., int]:
-    """The command whose `run` is in the module of this name; it takes the arguments of a shell, or a list of them."""
+def _executable(module: str, parser: Callable[[], argparse.ArgumentParser]) -> Callable[..., int]:
+    """The command whose `run` is in this module; it takes the arguments of a shell, or a list of them."""
 
     def main(arguments: Sequence[str] | None = None) -> int:
         options = parser().parse_args(arguments)
-        return import_module(f"hasel_sim.commands.{name}").run(options)
+        return import_module(f"hasel_sim.{module}").run(options)
 
     return command(main)
 
 
-bench = _executable("bench", bench_parser)
-effects = _executable("effects", effects_parser)
-optimise = _executable("optimise", optimise_parser)
-show_mesh = _executable("show_mesh", show_mesh_parser)
-swim = _executable("swim", swim_parser)
+bench = _executable("commands.bench", bench_parser)
+effects = _executable("commands.effects", effects_parser)
+optimise = _executable("commands.optimise", optimise_parser)
+show_mesh = _executable("mesh_picture", show_mesh_parser)
+swim = _executable("commands.swim", swim_parser)

@@ -16,7 +16,7 @@ from hasel_common.names import nearest_name
 
 from hasel_sim import effects
 from hasel_sim.effects.base import DriveEffect, Effect, ForceEffect, MaterialEffect, ObservationEffect
-from hasel_sim.effects.checks import check_effect
+from hasel_sim.effects.check_effect import check_effect
 from hasel_sim.errors import ModelError
 
 _FOLDERS = ("drive", "material", "force", "observation")

@@ -14,7 +14,7 @@ from hasel_sim.effects.base import Effect
 from hasel_sim.effects.registry import find_effects
 from hasel_sim.errors import ModelError
 from hasel_sim.model.description import Description, Numerics, check_together
-from hasel_sim.model.parameters import (
+from hasel_sim.model.model_parameters import (
     amplitude_parameters,
     constants,
     onset_parameters,

@@ -16,9 +16,9 @@ from hasel_sim.effects.base import Effect
 from hasel_sim.errors import ModelError, OwnCodeError
 from hasel_sim.model.description import Description, ParameterEntry
 from hasel_sim.model.model import Model
+from hasel_sim.model.model_parameters import constants, response_parameters, unit_of
 from hasel_sim.model.muscle_file import law_content, load_muscle
 from hasel_sim.model.muscle_law import MuscleLaw
-from hasel_sim.model.parameters import constants, response_parameters, unit_of
 from hasel_sim.model.validation import implausible, names_in, sections_of, sentence_for
 from hasel_sim.parameter import Parameter
 

@@ -13,6 +13,7 @@ from hasel_sim.bench.cases import (
     fitted_swimmer,
     node_count,
     processor_seconds,
+    shares,
     swimmer_with_every_force,
     with_nodes,
 )
@@ -25,9 +26,8 @@ from hasel_sim.bench.speed import (
     free_swim_factor,
     measure_side_by_side,
     measure_speed,
-    shares,
+    measure_swimming,
 )
-from hasel_sim.bench.swimming import measure_swimming
 from hasel_sim.commands import bench, entry
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.mechanics.banded import BandMatrix
