@@ -26,7 +26,7 @@ def check_effect(effect: Effect) -> None:
     _check_declarations(effect)
     null, typical = SimpleNamespace(**effect.null()), SimpleNamespace(**effect.typical())
     checks: dict[type[Effect], Callable] = {
-        DriveEffect: check_drive,
+        DriveEffect: _check_drive,
         ForceEffect: check_force,
         MaterialEffect: check_material,
         ObservationEffect: _check_observation,
@@ -131,7 +131,7 @@ _DRIVEN = (
 )
 
 
-def check_drive(effect: DriveEffect, null: SimpleNamespace, typical: SimpleNamespace) -> None:
+def _check_drive(effect: DriveEffect, null: SimpleNamespace, typical: SimpleNamespace) -> None:
     """Refuse a drive effect that breaks a rule, with a ModelError."""
     must = partial(expect, effect)
     must(
