@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hasel_recording import Recording, write_recording
-from hasel_sim.commands import swim
+from hasel_sim.commands import entry
 from hasel_sim.model import Model, load_model, save_model
 from hasel_sim.simulate import simulate_many
 from hasel_sim.swimming.boxes import Boxes
@@ -44,7 +44,7 @@ def chain(tmp_path_factory, fish):
     fitted = folder / "fit" / fit.MODEL_FILE
     wanted = ["--voltage", "5500", "--frequency", ",".join(f"{f:g}" for f in FREQUENCIES)]
     written = ["--output", str(folder / "swim"), "--json", str(folder / "swim.json"), "--jobs", "1"]
-    assert swim.main(["--model", str(fitted), *wanted, "--duration", f"{SECONDS:g}", *written]) == 0
+    assert entry.swim(["--model", str(fitted), *wanted, "--duration", f"{SECONDS:g}", *written]) == 0
     return load_model(str(fitted)), json.loads((folder / "swim.json").read_text())["optima"]["5500 V"]
 
 

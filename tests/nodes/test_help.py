@@ -29,7 +29,7 @@ def start(entry: str, *arguments: str) -> subprocess.CompletedProcess:
     [
         ("hasel_driver.start_driver:main", "port:="),
         ("hasel_tracker.tracker_commands:tracker_node", "source:="),
-        ("hasel_sim.start_simulator:main", "model:=swimmer"),
+        ("hasel_sim.live.start_simulator:main", "model:=swimmer"),
         ("hasel_sysid.live.start_sysid:main", "window:=5.0"),
         ("hasel_bringup.entry:virtual_rig", "hidden:="),
         ("hasel_bringup.entry:recorder", "folder:=recordings"),
@@ -49,4 +49,4 @@ def test_help_starts_nothing(entry, parameter):
 
 def test_the_node_is_what_starts_without_it():
     """The guard of the tests above does see a node that starts."""
-    assert start("hasel_sim.start_simulator:main").stderr == "started\n"
+    assert start("hasel_sim.live.start_simulator:main").stderr == "started\n"

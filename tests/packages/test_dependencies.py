@@ -45,7 +45,6 @@ ROSDEP_KEYS = {
     "pytest": "python3-pytest",
     "rich": "python3-rich",
     "rosbags": "python3-rosbags-pip",
-    "ruamel": "python3-ruamel.yaml",
     "scipy": "python3-scipy",
     "serial": "python3-serial",
     "skimage": "python3-skimage",

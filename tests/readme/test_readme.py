@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from hasel_common.topics import TOPIC_TYPES
 from hasel_sim.effects.registry import catalogue
-from hasel_sim.simulator_node import PARAMETERS as SIMULATOR
+from hasel_sim.live.simulator_node import PARAMETERS as SIMULATOR
 from hasel_sysid.live.sysid_node import PARAMETERS as SYSID
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -21,7 +21,6 @@ setup(
         "numpy>=1.26",
         "opencv-contrib-python-headless>=4.10",
         "rich",
-        "ruamel.yaml",
         "threadpoolctl",
     ],
     extras_require={"test": ["hypothesis", "pytest", "pytest-timeout", "PyYAML"]},

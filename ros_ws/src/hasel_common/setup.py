@@ -11,7 +11,7 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml", "CHANGELOG.rst"]),
     ],
-    install_requires=["rich", "setuptools"],
+    install_requires=["PyYAML", "rich", "setuptools"],
     extras_require={"test": ["pytest", "pytest-timeout"]},
     zip_safe=False,
     maintainer="HASEL swimmer maintainers",

@@ -18,7 +18,6 @@ setup(
         "numpy>=1.26",
         "pydantic>=2",
         "rich",
-        "ruamel.yaml",
         "scipy>=1.11",
         "threadpoolctl",
     ],
@@ -39,7 +38,7 @@ setup(
             "effects = hasel_sim.commands.entry:effects",
             "optimise = hasel_sim.commands.entry:optimise",
             "show_mesh = hasel_sim.commands.entry:show_mesh",
-            "simulator = hasel_sim.start_simulator:main",
+            "simulator = hasel_sim.live.start_simulator:main",
             "swim = hasel_sim.commands.entry:swim",
         ]
     },

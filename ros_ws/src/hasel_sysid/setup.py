@@ -20,7 +20,6 @@ setup(
         "numpy>=1.26",
         "plotly>=6",
         "rich",
-        "ruamel.yaml",
         "scipy>=1.11",
     ],
     extras_require={

@@ -16,7 +16,6 @@ setup(
         "numpy>=1.26",
         "plotly>=6",
         "pydantic>=2",
-        "ruamel.yaml",
     ],
     extras_require={
         "page": ["nicegui>=3,<4", "fastapi", "websockets"],

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hasel_common.progress import progress_bar
-from hasel_sim.muscle.catalogue import muscle_catalogue
+from hasel_sim.model.muscle_file import muscle_text
+from hasel_sim.muscle.effect import muscle_catalogue
 from hasel_sim.muscle.muscle import Muscle
-from hasel_sim.muscle.muscle_file import muscle_text
 from hasel_sysid.command_line.running import run_command, write_json
 from hasel_sysid.errors import SysidError
 from hasel_sysid.expected_work import plan_of_search

@@ -6,7 +6,7 @@ from typing import cast
 
 import numpy as np
 from hasel_sim.effects.base import Effect
-from hasel_sim.muscle.catalogue import find_muscle_effects, muscle_catalogue
+from hasel_sim.muscle.effect import find_muscle_effects, muscle_catalogue
 from hasel_sim.muscle.muscle import Muscle
 from hasel_sysid.answer.diagnosis import Finding, Verdict, said_beside
 from hasel_sysid.answer.result import Status

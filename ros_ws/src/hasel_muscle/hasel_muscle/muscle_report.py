@@ -4,7 +4,7 @@ import base64
 from importlib import resources
 from pathlib import Path
 
-from hasel_sim.muscle.catalogue import muscle_catalogue
+from hasel_sim.muscle.effect import muscle_catalogue
 from hasel_sysid.report.content import provenance
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from hasel_recording.errors import RecordingError, RecordingWarning
+from hasel_sim.model.muscle_file import load_muscle
 from hasel_sim.muscle.muscle import Muscle
-from hasel_sim.muscle.muscle_file import load_muscle
 from hasel_sysid.errors import SysidError
 
 from hasel_muscle.read_csv import read_bench_csv

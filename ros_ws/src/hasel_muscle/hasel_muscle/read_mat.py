@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 from hasel_recording.errors import RecordingError
+from hasel_sim.model.muscle_file import MuscleDescription, muscle_of
 from hasel_sim.muscle.muscle import Muscle
-from hasel_sim.muscle.muscle_file import MuscleDescription, muscle_of
 
 from hasel_muscle.recording import BenchRecording
 

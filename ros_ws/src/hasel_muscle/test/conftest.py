@@ -6,8 +6,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from hasel_sim.model.muscle_file import load_muscle
 from hasel_sim.muscle.muscle import Muscle
-from hasel_sim.muscle.muscle_file import load_muscle
 
 VOLTAGES = (1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0, 4500.0, 5000.0)
 

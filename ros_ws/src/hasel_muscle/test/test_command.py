@@ -4,7 +4,7 @@ import json
 
 import pytest
 from hasel_muscle.command import main
-from hasel_sim.muscle.muscle_file import load_muscle
+from hasel_sim.model.muscle_file import load_muscle
 
 
 def test_a_hidden_stiffness_is_found_in_the_public_format(bench, tmp_path, capsys):

@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from hasel_muscle.read_csv import QUANTITIES
-from hasel_sim.muscle.catalogue import muscle_catalogue
+from hasel_sim.muscle.effect import muscle_catalogue
 
 DOCS = Path(__file__).resolve().parents[4] / "docs"
 PAGE = (DOCS / "how_to/muscle.md").read_text(encoding="utf-8")

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hasel_recording.errors import RecordingWarning
-from hasel_sim.muscle.muscle_file import load_muscle, muscle_text
+from hasel_sim.model.muscle_file import load_muscle, muscle_text
 from hasel_sim.muscle.swing import GRAVITY, HangingLoad
 
 EXAMPLES = Path(__file__).parents[1] / "docs" / "examples"

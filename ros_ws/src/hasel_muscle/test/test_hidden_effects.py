@@ -7,8 +7,8 @@ from hasel_muscle.muscle_runs import read_bench
 from hasel_muscle.problem import bench_problem
 from hasel_muscle.result import BenchVerdict
 from hasel_muscle.settled import settled
-from hasel_sim.muscle.catalogue import muscle_catalogue
-from hasel_sim.muscle.muscle_file import load_muscle
+from hasel_sim.model.muscle_file import load_muscle
+from hasel_sim.muscle.effect import muscle_catalogue
 
 UNSEEN = {
     "film_elasticity__compliance": 3e-10,

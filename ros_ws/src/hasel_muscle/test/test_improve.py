@@ -9,7 +9,7 @@ from hasel_muscle.result import BenchVerdict
 from hasel_muscle.settled import settled
 from hasel_muscle.shown import sentences
 from hasel_muscle.stroke_table import rival_table
-from hasel_sim.muscle.muscle_file import load_muscle
+from hasel_sim.model.muscle_file import load_muscle
 from hasel_sysid.errors import SysidError
 from numpy.testing import assert_allclose
 

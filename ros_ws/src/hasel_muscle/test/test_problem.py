@@ -5,7 +5,7 @@ import pytest
 from hasel_muscle.muscle_runs import read_bench
 from hasel_muscle.problem import BenchProblem, as_model, bench_problem
 from hasel_muscle.settled import settled
-from hasel_sim.muscle.muscle_file import load_muscle
+from hasel_sim.model.muscle_file import load_muscle
 from hasel_sysid.errors import SysidError
 from hasel_sysid.problem import LowFidelityProblem
 from numpy.testing import assert_allclose

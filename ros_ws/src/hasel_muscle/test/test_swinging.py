@@ -8,7 +8,7 @@ import pytest
 from hasel_muscle.command import main
 from hasel_muscle.recording import BenchRecording
 from hasel_muscle.swinging import swinging
-from hasel_sim.muscle.muscle_file import load_muscle
+from hasel_sim.model.muscle_file import load_muscle
 from hasel_sim.muscle.swing import GRAVITY, HangingLoad
 
 TRUTH = {"damping": 0.6, "slowness": 1.2, "lag": 0.008}

@@ -4,7 +4,7 @@ from hasel_muscle.muscle_runs import read_bench
 from hasel_muscle.problem import bench_problem
 from hasel_muscle.settled import settled
 from hasel_muscle.where_it_fails import where_it_fails
-from hasel_sim.muscle.muscle_file import load_muscle
+from hasel_sim.model.muscle_file import load_muscle
 
 
 def said_of(bench, tmp_path) -> str:

@@ -4,9 +4,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from hasel_sim.compiled_loops import announce_compilation
-from hasel_sim.effects.base import Coefficients, Effect, EffectParameter, ForceEffect, MaterialEffect
-from hasel_sim.effects.guarded import guarded
+from hasel_sim.effects.base import Coefficients, Effect, EffectParameter, ForceEffect, MaterialEffect, guarded
+from hasel_sim.first_run import announce_compilation
 from hasel_sim.mechanics.branches import Branches
 from hasel_sim.mechanics.force_law import ForceLaw
 from hasel_sim.mechanics.inertia import Mass, add_tip_plate, element_masses
@@ -34,8 +33,8 @@ from hasel_sim.mesh.sites import (
     with_point_mass,
 )
 from hasel_sim.model import Model
-from hasel_sim.model.constants import REST_CONTRACTION, constants, outline_names
 from hasel_sim.model.description import Description
+from hasel_sim.model.model_parameters import REST_CONTRACTION, constants, outline_names
 from hasel_sim.model_mesh import marker_points, model_mesh
 
 

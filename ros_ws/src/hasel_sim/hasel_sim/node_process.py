@@ -1,9 +1,11 @@
-"""The process around a node: start, one sentence for what is wrong with its parameters, a quiet end."""
+"""What nodes share: start, one sentence for what is wrong with their parameters, warnings that repeat, a quiet end."""
 
 import os
+import re
 import signal
 import sys
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import rclpy
 from hasel_common.parent import end_with_parent
@@ -51,3 +53,33 @@ def end_at_once(code: int) -> None:
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(code)
+
+
+PERIOD_S = 10.0
+"""Between two warnings that differ by their numbers alone."""
+
+
+@dataclass
+class _Said:
+    at: float
+    unsaid: int = 0
+
+
+class RepeatedWarnings:
+    """Lets the first of like sentences through and then one every `period` [s]; like ones differ by numbers alone."""
+
+    def __init__(self, period: float = PERIOD_S) -> None:
+        self._period = period
+        self._said: dict[str, _Said] = {}
+
+    def to_say(self, sentence: str, now: float) -> str:
+        """What to say of a sentence that came at `now` [s]: itself, with how often it came unsaid, or nothing."""
+        kind = re.sub(r"[-+\d.]+(e[-+]?\d+)?", "#", sentence)
+        said = self._said.get(kind)
+        if said is not None and now - said.at < self._period:
+            said.unsaid += 1
+            return ""
+        self._said[kind] = _Said(now)
+        if said is None or said.unsaid == 0:
+            return sentence
+        return f"{sentence} ({said.unsaid} more like it in the last {now - said.at:.0f} s)"

@@ -5,6 +5,7 @@ import os
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import (
+    BrokenExecutor,
     CancelledError,
     Executor,
     Future,
@@ -12,19 +13,153 @@ from concurrent.futures import (
     ThreadPoolExecutor,
 )
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 from functools import partial
+from itertools import count, pairwise, product
 from numbers import Integral
 from typing import TypeVar
 
 from threadpoolctl import threadpool_limits
 
-from hasel_sim.cluster.executor import cluster
+from hasel_sim.cluster import cluster
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 from hasel_sim.run import Run, Simulation
-from hasel_sim.side_by_side import side_by_side
+from hasel_sim.simd import LANES
 from hasel_sim.simulate import kind_of, simulate_many
-from hasel_sim.turns import Turns
+
+_ASKED = 0
+
+
+@dataclass(eq=False)
+class Turn:
+    """A place in the order of a `Turns`, the first ones first."""
+
+    place: int = _ASKED
+
+
+@dataclass(frozen=True, eq=False)
+class _Task:
+    turn: Turn
+    call: Callable
+    future: Future = field(default_factory=Future)
+
+
+class Turns(Executor):
+    """Hands tasks on as soon as a process is free for them, in the order of their turns.
+
+    What is only foreseen leaves one process free: a task is never broken off, and what is asked for in many small steps
+    would wait for a long one every time.
+    """
+
+    def __init__(self, pool: Executor, workers: int) -> None:
+        """workers: how many tasks the executor works on at once; nothing is foreseen by one."""
+        self.workers, self._pool = workers, pool
+        self._lock, self._of_thread = threading.Lock(), threading.local()
+        self._waiting: list[_Task] = []
+        self._running: list[_Task] = []
+        self._places = count(_ASKED + 1)
+
+    def submit(self, function: Callable, /, *arguments, **keywords) -> Future:
+        """A task in the turn of this thread."""
+        turn = getattr(self._of_thread, "turn", None) or Turn()
+        task = _Task(turn, partial(function, *arguments, **keywords))
+        with self._lock:
+            self._waiting.append(task)
+        self._hand_on()
+        return task.future
+
+    def foreseen(self) -> Turn:
+        """A turn behind all others so far, for what nobody asks for yet."""
+        return Turn(next(self._places))
+
+    @contextmanager
+    def within(self, turn: Turn) -> Iterator[None]:
+        """What this thread submits meanwhile is in that turn."""
+        before = getattr(self._of_thread, "turn", None)
+        self._of_thread.turn = turn
+        try:
+            yield
+        finally:
+            self._of_thread.turn = before
+
+    def ask(self, turn: Turn) -> None:
+        """Somebody waits for it: it goes before all that is only foreseen."""
+        with self._lock:
+            turn.place = _ASKED
+        self._hand_on()
+
+    def resize(self, workers: int) -> None:
+        """The executor works on so many tasks at once from now on."""
+        with self._lock:
+            self.workers = workers
+        self._hand_on()
+
+    def _hand_on(self) -> None:
+        while (task := self._next()) is not None:
+            if not task.future.set_running_or_notify_cancel():
+                self._ended(task)
+                continue
+            try:
+                self._pool.submit(task.call).add_done_callback(partial(self._done, task))
+            except RuntimeError as error:  # what an executor that is broken or shut down raises
+                self._ended(task)
+                task.future.set_exception(error)
+
+    def _next(self) -> _Task | None:
+        """The task that is to be begun now."""
+        with self._lock:
+            foreseen = sum(task.turn.place > _ASKED for task in self._running)
+            able = [t for t in self._waiting if t.turn.place == _ASKED or foreseen < self.workers - 1]
+            if len(self._running) >= self.workers or not able:
+                return None
+            first = min(able, key=lambda task: task.turn.place)
+            self._waiting.remove(first)
+            self._running.append(first)
+            return first
+
+    def _ended(self, task: _Task) -> None:
+        with self._lock:
+            self._running.remove(task)
+
+    def _done(self, task: _Task, result: Future) -> None:
+        self._ended(task)
+        error = CancelledError() if result.cancelled() else result.exception()
+        if isinstance(error, BrokenExecutor):
+            self._fail(error)
+        else:
+            self._hand_on()
+        if error is not None:
+            task.future.set_exception(error)
+        else:
+            task.future.set_result(result.result())
+
+    def _fail(self, error: BaseException) -> None:
+        """End all that waits; an executor that has just broken must not be called by what it calls."""
+        with self._lock:
+            gone, self._waiting = self._waiting, []
+        for task in gone:
+            if task.future.set_running_or_notify_cancel():
+                task.future.set_exception(error)
+
+
+Case = TypeVar("Case")
+
+
+def side_by_side(cases: Sequence[Case], share: int) -> list[Sequence[Case]]:
+    """The cases in batches, in their order: at most a process's share in each and as many as there are lanes.
+
+    Whether the last is by itself follows from how many there are, not from the share: the loops for one lane round
+    otherwise than those for several, and the answer would depend on how many processes there are.
+    """
+    size = min(LANES[-1], max(1, share))
+    beside = len(cases) - (len(cases) % LANES[-1] == 1)
+    count = min(-(-beside // size), beside // 2)
+    ends = [beside * number // count for number in range(1, count + 1)] if count else []
+    if beside < len(cases):
+        ends.append(len(cases))
+    return [cases[first:end] for first, end in pairwise([0, *ends])]
+
 
 Result = TypeVar("Result")
 
@@ -136,29 +271,24 @@ def submit_each(
     """
     futures: list[list[Future[Simulation]]] = [[Future() for _ in runs] for _ in models]
     if ended:
-        for model, of_model in enumerate(futures):
-            for run, future in enumerate(of_model):
-                future.add_done_callback(partial(_tell, ended, model, run))
+        for model, run in product(range(len(models)), range(len(runs))):
+            futures[model][run].add_done_callback(partial(_tell, ended, model, run))
     alike: dict[tuple, list[int]] = {}
     for number, (model, names) in enumerate(zip(models, slopes_by, strict=True)):
         alike.setdefault((kind_of(model), tuple(names)), []).append(number)
     share = -(-len(models) * len(runs) // getattr(pool, "workers", 1))
     for (_, names), numbers in alike.items():
-        for batch in side_by_side(_by_length(numbers, runs), share):
+        # the longest first: those side by side are of like length
+        by_length = sorted(product(numbers, range(len(runs))), key=lambda case: -len(runs[case[1]].time))
+        for batch in side_by_side(by_length, share):
             asked = [futures[model][run] for model, run in batch]
             done = pool.submit(simulate_many, [(models[model], runs[run]) for model, run in batch], names)
             done.add_done_callback(partial(_hand_on, futures=asked))
     return futures
 
 
-def _tell(ended: Callable[[int, int], None], model: int, run: int, _future: Future) -> None:
+def _tell(ended: Callable[[int, int], None], model: int, run: int, _: Future) -> None:
     ended(model, run)
-
-
-def _by_length(models: Sequence[int], runs: Sequence[Run]) -> list[tuple[int, int]]:
-    """Numbers of the models and runs to simulate, the longest first: those side by side are of like length."""
-    cases = [(model, run) for model in models for run in range(len(runs))]
-    return sorted(cases, key=lambda case: -len(runs[case[1]].time))
 
 
 def _hand_on(batch: Future, futures: Sequence[Future]) -> None:

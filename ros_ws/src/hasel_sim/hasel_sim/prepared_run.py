@@ -13,8 +13,7 @@ from hasel_sim.mechanics.state import State, StateSlopes
 from hasel_sim.mechanics.stepper import Stepper
 from hasel_sim.mechanics.steps import StepPlan, plan_steps
 from hasel_sim.model import Model
-from hasel_sim.model.constants import constants
-from hasel_sim.model.start_values import response_parameters
+from hasel_sim.model.model_parameters import constants, response_parameters
 from hasel_sim.model_mesh import marker_rows
 from hasel_sim.run import Run
 
@@ -30,11 +29,7 @@ class PreparedRun:
     """
 
     def __init__(
-        self,
-        model: Model,
-        run: Run,
-        names: tuple[str, ...] = (),
-        like: "PreparedRun | None" = None,
+        self, model: Model, run: Run, names: tuple[str, ...] = (), like: "PreparedRun | None" = None
     ) -> None:
         self.model, self.run, self.names = model, run, names
         self.parameters = [model.parameter(name) for name in names]

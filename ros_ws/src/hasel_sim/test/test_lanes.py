@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from hasel_sim.lanes import columns_of_lanes
 from hasel_sim.model import load_model
 from hasel_sim.prepared_run import PreparedRun
-from hasel_sim.simulate import simulate, simulate_many
+from hasel_sim.simulate import columns_of_lanes, simulate, simulate_many
 
 NAMES = ("amplitude_3500", "amplitude_5500", "slope", "linear_drag.rate")
 

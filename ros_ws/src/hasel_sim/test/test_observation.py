@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sim.build import Builder
-from hasel_sim.model_mesh import marker_points
-from hasel_sim.observation import MarkerRows
+from hasel_sim.model_mesh import MarkerRows, marker_points
 
 
 def test_markers_move_with_the_body_and_fixed_ones_do_not(swimmer):

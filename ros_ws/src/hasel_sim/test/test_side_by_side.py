@@ -1,7 +1,7 @@
 """Batches for the lanes of several processes."""
 
 import pytest
-from hasel_sim.side_by_side import side_by_side
+from hasel_sim.parallel import side_by_side
 from hasel_sim.simd import LANES
 
 

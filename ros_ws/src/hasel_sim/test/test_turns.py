@@ -1,12 +1,11 @@
 """The order in which tasks are handed on to processes."""
 
 from collections.abc import Callable, Iterator
-from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
 from threading import Event, Thread
 
 import pytest
-from hasel_sim.parallel import SerialExecutor, all_at_once
-from hasel_sim.turns import Turn, Turns
+from hasel_sim.parallel import SerialExecutor, Turn, Turns, all_at_once
 
 PATIENCE_S = 20.0
 
@@ -101,20 +100,6 @@ def test_what_is_asked_for_later_goes_before_what_is_still_foreseen(turns, pool)
     assert pool.names == "xy"
     pool.end("x")
     assert pool.names == "xyz"
-
-
-def test_what_is_given_up_is_cancelled(turns, pool):
-    """Also what is submitted afterwards; what has begun ends."""
-    turn = turns.foreseen()
-    begun, waiting = submit(turns, "xy", turn)
-    turns.give_up(turn)
-    (late,) = submit(turns, "z", turn)
-    pool.end("x")
-    assert begun.result() == "x"
-    for gone in (waiting, late):
-        with pytest.raises(CancelledError):
-            gone.result(timeout=PATIENCE_S)
-    assert pool.names == "x"
 
 
 def test_a_turn_is_of_one_thread(turns, pool):

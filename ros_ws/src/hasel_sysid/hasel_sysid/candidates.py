@@ -8,7 +8,7 @@ from hasel_sim.effects.base import Effect, EffectParameter
 from hasel_sim.effects.registry import catalogue, find_effects
 from hasel_sim.errors import ModelError
 from hasel_sim.model import Model
-from hasel_sim.model.constants import constants, unit_of
+from hasel_sim.model.model_parameters import constants, unit_of
 
 _RANGE, _TYPICAL = (0.3, 3.0), 1.2
 """How far a constant may be from what the file says, as the scale of a modulus may, and what one would notice."""

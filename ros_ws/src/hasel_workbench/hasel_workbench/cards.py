@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from hasel_sim.effects.base import Effect
 from hasel_sim.model import Model
-from hasel_sim.model.value_text import value_with_error
+from hasel_sim.parameter import value_with_error
 from hasel_sysid.answer.diagnosis import Diagnosis, Finding
 from hasel_sysid.candidates import candidate_effects
 from hasel_sysid.report.wording import of_effect

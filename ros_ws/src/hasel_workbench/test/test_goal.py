@@ -1,9 +1,9 @@
 """The proposed run as a line for the terminal."""
 
+from hasel_common.yaml_text import read_yaml
 from hasel_recording import DriveChannel
 from hasel_sysid.answer.next_run import Manoeuvre
 from hasel_workbench.goal import goal_line
-from ruamel.yaml import YAML
 
 
 def test_the_line_sends_the_goal_of_the_run():
@@ -11,7 +11,7 @@ def test_the_line_sends_the_goal_of_the_run():
     run = Manoeuvre(4500.0, 1.5, 3, "box", "both")
     line = goal_line(run)
     assert line.startswith("ros2 action send_goal --feedback /hasel/run_experiment ")
-    assert YAML(typ="safe").load(line[line.index('"') :].strip('"')) == run.goal()
+    assert read_yaml(line[line.index('"') :].strip('"')) == run.goal()
 
 
 def test_what_no_rig_can_make_has_no_line():

@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from hasel_common.yaml_text import read_yaml
 from hasel_interfaces.srv import AddEffect, LoadModel
 from hasel_sim.model import load_model
 from rich.console import Console
 from rich.markup import escape
-from ruamel.yaml import YAML
 from std_srvs.srv import SetBool
 
 from hasel_bringup.errors import BringupError
@@ -164,7 +164,7 @@ class Session:
         )
 
     def _goal(self) -> dict[str, Any]:
-        goal = YAML(typ="safe").load(self._goal_file.read_text(encoding="utf-8"))
+        goal = read_yaml(self._goal_file.read_text(encoding="utf-8"))
         return {**goal, "voltage": float(goal["voltage"]), "frequency": float(goal["frequency"])}
 
     def _one_more(self) -> None:

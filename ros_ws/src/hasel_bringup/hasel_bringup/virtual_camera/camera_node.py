@@ -17,8 +17,8 @@ from hasel_common.endpoints import Role, frame_of, publisher, subscription
 from hasel_common.topics import MEASURED, NAMESPACE, STATE
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_sim.errors import HaselSimError
+from hasel_sim.live.simulator_interface import to_nanoseconds, to_time
 from hasel_sim.node_process import run_node
-from hasel_sim.simulator_messages import to_nanoseconds, to_time
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node

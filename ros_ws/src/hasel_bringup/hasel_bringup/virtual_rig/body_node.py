@@ -7,9 +7,9 @@ from hasel_common.declared_parameters import declare, words
 from hasel_common.endpoints import Role, frame_of, publisher, subscription
 from hasel_common.topics import MEASURED, NAMESPACE, STATE
 from hasel_interfaces.msg import BendingAngle, SupplyState
-from hasel_sim.live.live_model import live_model
-from hasel_sim.live.repeated_warnings import RepeatedWarnings
-from hasel_sim.simulator_messages import angle_message, rig_voltage, to_nanoseconds
+from hasel_sim.live.live_simulator import live_model
+from hasel_sim.live.simulator_interface import angle_message, rig_voltage, to_nanoseconds
+from hasel_sim.node_process import RepeatedWarnings
 from rclpy.node import Node
 
 from hasel_bringup.hidden_truth.hidden import hidden_values, with_hidden

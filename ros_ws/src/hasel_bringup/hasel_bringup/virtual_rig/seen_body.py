@@ -1,8 +1,7 @@
 """The simulated body, seen by a camera that has a clock of its own."""
 
 import numpy as np
-from hasel_sim.live.live_simulator import LiveAngle, LiveSimulator
-from hasel_sim.live.stamp_order import Arrival
+from hasel_sim.live.live_simulator import Arrival, LiveAngle, LiveSimulator
 from hasel_sim.model import Model
 
 from hasel_bringup.camera_clock import CameraClock

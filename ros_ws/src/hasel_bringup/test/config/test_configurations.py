@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 import yaml
 from hasel_driver.parameters import PARAMETERS as DRIVER
-from hasel_sim.live.live_model import live_model
-from hasel_sim.simulator_node import PARAMETERS as SIMULATOR
+from hasel_sim.live.live_simulator import live_model
+from hasel_sim.live.simulator_node import PARAMETERS as SIMULATOR
 from hasel_sysid.live.sysid_node import PARAMETERS as SYSID
 from hasel_tracker.tracker_parameters import PARAMETERS as TRACKER
 

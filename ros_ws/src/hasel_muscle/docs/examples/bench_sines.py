@@ -18,8 +18,8 @@ from pathlib import Path
 import numpy as np
 from hasel_muscle.muscle_runs import read_bench
 from hasel_muscle.recording import BenchRecording
+from hasel_sim.model.muscle_file import load_muscle
 from hasel_sim.muscle.muscle import Muscle
-from hasel_sim.muscle.muscle_file import load_muscle
 from hasel_sim.muscle.swing import HangingLoad
 
 WINDOW_S = 1.0

@@ -10,7 +10,7 @@ from hasel_sim.adjoint.trajectory import Trajectory, follow
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
-from hasel_sim.model.constants import outline_names
+from hasel_sim.model.model_parameters import outline_names
 from hasel_sim.prepared_run import PreparedRun
 from hasel_sim.run import Run
 

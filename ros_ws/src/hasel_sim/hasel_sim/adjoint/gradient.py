@@ -12,7 +12,7 @@ from hasel_sim.adjoint.trajectory import Trajectory
 from hasel_sim.adjoint.weights import no_weights
 from hasel_sim.mechanics.residual_columns import ResidualColumns
 from hasel_sim.mechanics.residual_slopes import ResidualSlope
-from hasel_sim.model.constants import outline_names
+from hasel_sim.model.model_parameters import outline_names
 from hasel_sim.simulate import slope_by_observation
 
 

@@ -4,8 +4,7 @@ import numpy as np
 from hasel_recording.marker_angle import sin_theta_from_markers
 
 from hasel_sim.adjoint.trajectory import Trajectory
-from hasel_sim.effects.base import ObservationEffect
-from hasel_sim.effects.guarded import guarded
+from hasel_sim.effects.base import ObservationEffect, guarded
 
 _STEP = 1e-6
 

@@ -7,7 +7,7 @@ import numpy as np
 from hasel_sim.mechanics.initial import initial_state
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.stepper import Part
-from hasel_sim.observation import observe
+from hasel_sim.model_mesh import observe
 from hasel_sim.prepared_run import PreparedRun
 
 

@@ -2,16 +2,13 @@
 
 import itertools
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 import numpy as np
 from hasel_common.measured_bar import MeasuredBar
 from rich.console import Console
-from rich.table import Table
 
-from hasel_sim.bench.cases import box_run, fitted_swimmer
-from hasel_sim.bench.speed_report import bars_table
-from hasel_sim.bench.timing import processor_seconds
+from hasel_sim.bench.cases import BarsReport, bars_table, box_run, fitted_swimmer, processor_seconds, table_of
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
@@ -37,7 +34,7 @@ class EffectCost:
 
 
 @dataclass(frozen=True)
-class EffectsReport:
+class EffectsReport(BarsReport):
     """All effects, and the baseline: seconds of its four runs, and its sensitivities over them."""
 
     baseline_s: float
@@ -54,20 +51,16 @@ class EffectsReport:
             MeasuredBar("all sensitivities / forward, dearest", max(sensitivities), SENSITIVITIES_BAR),
         ]
 
-    def values(self) -> dict:
-        """Everything as plain values, for JSON."""
-        return asdict(self) | {"bars": [asdict(bar) | {"met": bar.met} for bar in self.bars()]}
-
     def print(self, console: Console) -> None:
         """Print the table and the bars."""
-        table = Table(title=f"Four runs of {DURATION_S:g} s side by side, default mesh, processor time")
-        for heading in ("effect", "place", "forward / without", "all sensitivities / forward"):
-            table.add_column(heading, justify="left" if heading in ("effect", "place") else "right")
-        table.add_row("none", "", f"{1e3 * self.baseline_s:.0f} ms", f"{self.baseline_sensitivities:.2f} x")
-        for effect in self.effects:
-            ratios = f"{effect.forward:.2f} x", f"{effect.sensitivities:.2f} x"
-            table.add_row(effect.id, effect.place, *ratios)
-        console.print(table, bars_table(self.bars()))
+        baseline = "none", "", f"{1e3 * self.baseline_s:.0f} ms", f"{self.baseline_sensitivities:.2f} x"
+        rows = [
+            (effect.id, effect.place, f"{effect.forward:.2f} x", f"{effect.sensitivities:.2f} x")
+            for effect in self.effects
+        ]
+        title = f"Four runs of {DURATION_S:g} s side by side, default mesh, processor time"
+        headings = ("effect", "place", "forward / without", "all sensitivities / forward")
+        console.print(table_of(title, headings, [baseline, *rows], words=2), bars_table(self.bars()))
 
 
 def measure_effects(repeats: int = REPEATS, duration: float = DURATION_S) -> EffectsReport:

@@ -1,23 +1,34 @@
-"""Cost of a second of motion: forward, with all sensitivities, and by the adjoint; by nodes and by parameters."""
+"""Cost of a second of motion: forward, with all sensitivities, by the adjoint; by nodes and by parameters; of swims."""
 
 import itertools
+import os
+import time
 from dataclasses import dataclass
 
 import numpy as np
+from hasel_common.measured_bar import MeasuredBar
+from rich.console import Console
+from rich.table import Table
 
 from hasel_sim.adjoint import DifferentiableRun
 from hasel_sim.bench.cases import (
     FRAMES_PER_SECOND,
+    BarsReport,
+    band_solutions,
+    bars_table,
     box_run,
     fitted_swimmer,
     node_count,
+    processor_seconds,
     swimmer_with_every_force,
+    table_of,
     with_nodes,
 )
-from hasel_sim.bench.reference import band_solutions
-from hasel_sim.bench.timing import processor_seconds
-from hasel_sim.model import Model
+from hasel_sim.model import Model, load_model
+from hasel_sim.parallel import executor
 from hasel_sim.simulate import simulate, simulate_many
+from hasel_sim.swimming.boxes import Boxes
+from hasel_sim.swimming.sweep import sweep
 
 REPEATS = 5
 MANY_PARAMETERS = (
@@ -34,7 +45,7 @@ MANY_PARAMETERS = (
 class Speed:
     """Processor seconds per second of motion on a mesh.
 
-    adjoint: the sweep back alone; band_solutions: LAPACK solving one linear system per time step (`bench.reference`).
+    adjoint: the sweep back alone; band_solutions: LAPACK solving one linear system per time step (`band_solutions`).
     """
 
     nodes: int
@@ -150,3 +161,144 @@ def free_swim_factor(duration: float = 10.0) -> float:
     run = box_run(duration)
     (seconds,) = processor_seconds([lambda: simulate(model, run)], 1)
     return duration / seconds
+
+
+@dataclass(frozen=True)
+class SpeedReport(BarsReport):
+    """All speeds; slope: of log cost against log nodes; parameters: (number, cost over forward).
+
+    free_swim: real-time factor of a free swim of 10 s with every force of the fluid.
+    """
+
+    first_run: float
+    sizes: list[Speed]
+    default: Speed
+    large: Speed
+    slope: float
+    parameters: list[tuple[int, float]]
+    lanes: SideBySide
+    profile: list[tuple[str, float]]
+    free_swim: float
+
+    def bars(self) -> list[MeasuredBar]:
+        """The figures that have a bar."""
+        named = (("default mesh", self.default), (f"{self.large.nodes} nodes", self.large))
+        swim = "real-time factor, free swim of 10 s with every force of the fluid"
+        lanes = f"{self.lanes.runs} runs side by side / one after the other"
+        return [
+            *(
+                MeasuredBar(f"real-time factor, {name}", speed.real_time_factor, bar, at_least=True)
+                for (name, speed), bar in zip(named, (5, 2), strict=True)
+            ),
+            MeasuredBar(swim, self.free_swim, 5, at_least=True),
+            *(
+                MeasuredBar(f"all sensitivities / forward, {name}", s.sensitivities / s.forward, 2)
+                for name, s in named
+            ),
+            *(MeasuredBar(f"adjoint sweep / forward, {name}", s.adjoint / s.forward, 2) for name, s in named),
+            MeasuredBar(lanes, self.lanes.forward_ratio, 4, at_least=True),
+            MeasuredBar("first run, compiling (s)", self.first_run, 30),
+        ]
+
+    def print(self, console: Console) -> None:
+        """Print the tables."""
+        headings = ("nodes", "ms/frame", "x real time", "all sensitivities", "adjoint sweep", "LAPACK/step")
+        sizes = [
+            (
+                str(speed.nodes),
+                f"{speed.milliseconds(speed.forward):.2f}",
+                f"{speed.real_time_factor:.1f}",
+                *(f"{part / speed.forward:.2f} x" for part in (speed.sensitivities, speed.adjoint)),
+                f"{speed.solutions_per_step:.1f}",
+            )
+            for speed in self.sizes
+        ]
+        cost = f"Processor time on one core, 240 steps/s; cost grows as nodes^{self.slope:.2f}"
+        counts = [str(count) for count, _ in self.parameters]
+        ratios = [f"{ratio:.2f} x" for _, ratio in self.parameters]
+        lanes = self.lanes
+        forward = lanes.after_the_other, lanes.side_by_side, lanes.forward_ratio
+        with_slopes = (
+            lanes.sensitivities_after_the_other,
+            lanes.sensitivities_side_by_side,
+            lanes.sensitivities_ratio,
+        )
+        beside = [
+            (name, f"{1e3 * alone:.0f} ms", f"{1e3 * together:.0f} ms", f"{ratio:.2f} x")
+            for name, (alone, together, ratio) in (
+                ("forward", forward),
+                ("with all sensitivities", with_slopes),
+            )
+        ]
+        profile = Table("where the time goes", "share", title="Default mesh, forward")
+        for label, share in self.profile:
+            profile.add_row(label, f"{100 * share:.0f} %")
+        console.print(
+            table_of(cost, headings, sizes),
+            table_of(
+                "Forward cost with sensitivities, by number of parameters (six effects)", counts, [ratios]
+            ),
+            table_of(
+                f"{lanes.runs} runs of 0.5 s, default mesh, processor time",
+                ("", "one after the other", "side by side", "ratio"),
+                beside,
+                words=1,
+            ),
+            profile,
+            bars_table(self.bars()),
+        )
+
+
+VOLTAGES = (3500.0, 4500.0, 5500.0)
+FREQUENCIES = tuple(np.arange(1.0, 10.01, 0.5).tolist())
+DURATION_S, JOBS = 10.0, 2
+
+
+@dataclass(frozen=True)
+class SwimmingReport(BarsReport):
+    """free_swim: real-time factor of a swim of 10 s with every force of the fluid, by processor time of one core;
+    sweep: time of `swims` swims by the clock on the wall, in `JOBS` processes [s]; load: processes that wanted a core
+    before it began.
+    """
+
+    free_swim: float
+    swims: int
+    sweep: float
+    load: float
+
+    def bars(self) -> list[MeasuredBar]:
+        """The figures that have a bar."""
+        return [
+            MeasuredBar(
+                f"real-time factor, free swim of {DURATION_S:g} s with every force of the fluid",
+                self.free_swim,
+                5,
+                True,
+            ),
+            MeasuredBar(
+                f"sweep of {self.swims} swims of {DURATION_S:g} s, {JOBS} processes (s)", self.sweep, 300
+            ),
+        ]
+
+    def print(self, console: Console) -> None:
+        """Print the bars, and how busy the machine was with other work."""
+        console.print(bars_table(self.bars()))
+        console.print(
+            f"{self.load:.1f} processes were at work on {os.cpu_count()} cores before the sweep began.",
+            soft_wrap=True,
+        )
+
+
+def measure_swimming(
+    duration: float = DURATION_S,
+    voltages: tuple[float, ...] = VOLTAGES,
+    frequencies: tuple[float, ...] = FREQUENCIES,
+) -> SwimmingReport:
+    """A free swim, and the swims of the model `swimmer_in_oil` at every voltage [V] and frequency [Hz]."""
+    factor = free_swim_factor(duration)
+    model, drives = load_model("swimmer_in_oil"), [Boxes(v, v, f) for v in voltages for f in frequencies]
+    load = os.getloadavg()[0]
+    with executor(JOBS) as pool:
+        start = time.perf_counter()
+        swam = sweep(pool, model, drives, duration)
+    return SwimmingReport(factor, len(swam), time.perf_counter() - start, load)

@@ -3,21 +3,23 @@
 import argparse
 import json
 import sys
-from collections.abc import Sequence
 
 from rich.console import Console
 from threadpoolctl import threadpool_limits
 
-from hasel_sim.bench.cases import fitted_swimmer
-from hasel_sim.bench.convergence import mesh_errors, step_errors
+from hasel_sim.bench.cases import first_run_seconds, fitted_swimmer, shares
+from hasel_sim.bench.convergence import ConvergenceReport, mesh_errors, step_errors
 from hasel_sim.bench.effect_costs import EffectsReport, measure_effects
 from hasel_sim.bench.in_turns import InTurns, measure_in_turns
-from hasel_sim.bench.speed import by_nodes, by_parameters, free_swim_factor, measure_side_by_side
-from hasel_sim.bench.speed_report import ConvergenceReport, SpeedReport
-from hasel_sim.bench.swimming import SwimmingReport, measure_swimming
-from hasel_sim.bench.timing import first_run_seconds
-from hasel_sim.bench.where_time_goes import shares
-from hasel_sim.commands.parsers import bench_parser
+from hasel_sim.bench.speed import (
+    SpeedReport,
+    SwimmingReport,
+    by_nodes,
+    by_parameters,
+    free_swim_factor,
+    measure_side_by_side,
+    measure_swimming,
+)
 from hasel_sim.errors import HaselSimError
 
 SIZES = (180, 275, 700, 1400)
@@ -39,11 +41,6 @@ def measure_speeds(console: Console) -> SpeedReport:
     return SpeedReport(
         first_run, sizes, sizes[1], sizes[-1], slope, parameters, lanes, shares(fitted_swimmer()), swim
     )
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return run(bench_parser().parse_args(arguments))
 
 
 def run(options: argparse.Namespace) -> int:
@@ -74,7 +71,3 @@ def run(options: argparse.Namespace) -> int:
     return int(
         not isinstance(report, ConvergenceReport | InTurns) and not all(bar.met for bar in report.bars())
     )
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -4,27 +4,20 @@ import argparse
 import importlib.util
 import json
 import sys
-from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.console import Console
 
-from hasel_sim.commands.parsers import optimise_parser
 from hasel_sim.errors import HaselSimError, SimulationError
 from hasel_sim.model import Model, load_model
-from hasel_sim.model.read import save_model
+from hasel_sim.model.model_file import save_model
 from hasel_sim.swimming.boxes import Boxes, waveform_rows
 from hasel_sim.swimming.free_swim import FreeSwim, check_swimmer, free_swim
 
 if TYPE_CHECKING:
     from hasel_sim.swimming.tried import BestSwim
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return run(optimise_parser().parse_args(arguments))
 
 
 def run(options: argparse.Namespace) -> int:
@@ -105,11 +98,4 @@ def _confirmed(model: Model, drive: Boxes, duration: float) -> FreeSwim:
 
 def _numbers(swim: FreeSwim, frequency: float) -> dict[str, float]:
     names = ("speed", "turning", "power", "distance", "heading", "cost_of_transport", "mass")
-    return {
-        **{name: getattr(swim, name) for name in names},
-        "mean_heading": swim.mean_heading(frequency),
-    }
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    return {**{name: getattr(swim, name) for name in names}, "mean_heading": swim.mean_heading(frequency)}

@@ -3,15 +3,13 @@
 import argparse
 import json
 import sys
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from hasel_common.progress import counted
 from rich.console import Console
-from rich.table import Table
+from rich.table import Column, Table
 
-from hasel_sim.commands.parsers import swim_parser
 from hasel_sim.errors import HaselSimError
 from hasel_sim.mesh_picture import save_picture
 from hasel_sim.model import Model, load_model
@@ -29,11 +27,6 @@ class Swept:
     model: Model
     curves: dict[str, list[Swam]]
     optima: dict[str, Optimum | None]
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return run(swim_parser().parse_args(arguments))
 
 
 def run(options: argparse.Namespace) -> int:
@@ -60,7 +53,8 @@ def _run(options: argparse.Namespace) -> int:
         varied = {name: _vary(pool, model, name, values, options) for name, values in options.free}
     for name, sweeps in varied.items():
         _print_varied(console, name, sweeps)
-    _draw(swept, options.output / "swim.png")
+    picture = draw_speeds(swept.model.name, swept.curves, swept.optima)
+    save_picture(picture, options.output / "swim.png")
     for name, sweeps in varied.items():
         _draw_varied(name, sweeps, options.output / f"{_file_name(name)}.png")
     if options.json:
@@ -125,10 +119,7 @@ def _file_name(name: str) -> str:
 
 def _print(console: Console, swept: Swept) -> None:
     console.print(f"{swept.model.name}: swimming speed in mm/s (work in J/(kg m))", soft_wrap=True)
-    table = Table()
-    table.add_column("Hz", justify="right")
-    for label in swept.curves:
-        table.add_column(label, justify="right")
+    table = _right("Hz", *swept.curves)
     for row in zip(*swept.curves.values(), strict=True):
         cells = [f"{1e3 * s.speed_m_per_s:.2f}  ({s.cost_of_transport_j_per_kg_m:.3g})" for s in row]
         table.add_row(f"{row[0].frequency_hz:g}", *cells)
@@ -147,13 +138,9 @@ def _print(console: Console, swept: Swept) -> None:
 def _print_varied(console: Console, name: str, sweeps: dict[float, Swept]) -> None:
     unit = next(iter(sweeps.values())).model.parameters[name].unit
     console.print(f"What {name} does to the optimum", soft_wrap=True)
-    table = Table()
-    table.add_column(f"{name}, {unit}", justify="right")
-    labels = list(next(iter(sweeps.values())).optima)
-    for label in labels:
-        table.add_column(label, justify="right")
+    table = _right(f"{name}, {unit}", *next(iter(sweeps.values())).optima)
     for value, swept in sweeps.items():
-        table.add_row(f"{value:g}", *[_short(swept.optima[label]) for label in labels])
+        table.add_row(f"{value:g}", *map(_short, swept.optima.values()))
     console.print(table)
 
 
@@ -163,8 +150,8 @@ def _short(top: Optimum | None) -> str:
     return f"{'at the edge, ' if top.at_edge else ''}{top.frequency:.2f} Hz, {1e3 * top.speed:.3g} mm/s"
 
 
-def _draw(swept: Swept, path: Path) -> None:
-    save_picture(draw_speeds(swept.model.name, swept.curves, swept.optima), path)
+def _right(*headings: str) -> Table:
+    return Table(*[Column(heading, justify="right") for heading in headings])
 
 
 def _draw_varied(name: str, sweeps: dict[float, Swept], path: Path) -> None:
@@ -191,4 +178,6 @@ def _values(swept: Swept, varied: dict[str, dict[float, Swept]]) -> dict:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    from hasel_sim.commands import entry
+
+    sys.exit(entry.swim())

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hasel_sim.model.actuation import Channel
+from hasel_sim.model.sections import Channel
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,8 @@ from hasel_sim.drive.onset import crossings, secants, soon_after_switches, with_
 from hasel_sim.drive.peano_hasel import PeanoHaselDrive
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.drive.sloped_box import limit_rate, target_contraction
-from hasel_sim.effects.base import DriveEffect, DriveStage
+from hasel_sim.effects.base import DriveEffect, DriveStage, guarded
 from hasel_sim.effects.first_order_lag import first_order_lag
-from hasel_sim.effects.guarded import guarded
 from hasel_sim.model import Model
 
 _SECANTS = 3

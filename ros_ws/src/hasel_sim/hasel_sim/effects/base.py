@@ -1,4 +1,4 @@
-"""What every physical effect states, and the four places where one can act.
+"""What every physical effect states, the four places where one can act, and what it finds there.
 
 An effect is one class in one file. It holds no state: its parameter values come as the argument `p`, with one attribute
 per parameter. At the parameters' null values the model is exactly the one without the effect. No effect writes a
@@ -8,29 +8,150 @@ central differences where that cannot be.
 
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 from types import SimpleNamespace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
-from hasel_sim.effects.material_points import Coefficients, MaterialPoints
-from hasel_sim.effects.site_state import SiteState, Surroundings, normal
+from hasel_sim.errors import HaselSimError, ModelError
 from hasel_sim.mesh.mesh import Region
 
-__all__ = [
-    "Coefficients",
-    "DriveEffect",
-    "DriveStage",
-    "Effect",
-    "EffectParameter",
-    "ForceEffect",
-    "MaterialEffect",
-    "MaterialPoints",
-    "ObservationEffect",
-    "SiteState",
-    "Surroundings",
-    "normal",
-]
+
+@dataclass
+class Coefficients:
+    """Material constants per element, shape [elements]; an effect changes them in place.
+
+    shear, lame: elastic constants [Pa]; equilibrium: share of them that acts for ever [1] (viscosity and branches keep
+    the whole); retardation: Kelvin-Voigt time [s]; fibre: fibre stiffness [Pa]; region: `Region` of each element;
+    rest_stretch: stretch along the body of the stress-free shape [elements, points];
+    height: reference y of the Gauss points [m] [elements, points].
+    """
+
+    shear: np.ndarray
+    lame: np.ndarray
+    equilibrium: np.ndarray
+    retardation: np.ndarray
+    fibre: np.ndarray
+    region: np.ndarray
+    rest_stretch: np.ndarray
+    height: np.ndarray
+
+
+@dataclass(frozen=True)
+class MaterialPoints:
+    """Strain and drive at n material points.
+
+    deformation: gradient F [n, 2, 2] with the first axis along the body at rest, rate: dF/dt [1/s] [n, 2, 2];
+    contraction [1] and voltage (drive [V], [Pa] ...): of the muscle here [n] (0 in none); fibre: stiffness of its
+    fibres [Pa], [n] or one number; time [s]; shear: shear modulus of the soft solid here [Pa], [n] or one number.
+    """
+
+    deformation: np.ndarray
+    rate: np.ndarray
+    contraction: np.ndarray
+    voltage: np.ndarray
+    fibre: np.ndarray
+    time: float
+    shear: np.ndarray | float = 0.0
+
+    @cached_property
+    def volume_ratio(self) -> np.ndarray:
+        """Determinant J of the deformation gradient [1], [n]."""
+        F = self.deformation
+        return F[:, 0, 0] * F[:, 1, 1] - F[:, 0, 1] * F[:, 1, 0]
+
+    @property
+    def distortion(self) -> np.ndarray:
+        """F - F^-T, the first Piola stress per shear modulus of a neo-Hookean solid [n, 2, 2]."""
+        F = self.deformation
+        cofactor = np.empty_like(F)
+        cofactor[:, 0, 0], cofactor[:, 0, 1] = F[:, 1, 1], -F[:, 1, 0]
+        cofactor[:, 1, 0], cofactor[:, 1, 1] = -F[:, 0, 1], F[:, 0, 0]
+        return F - cofactor / self.volume_ratio[:, None, None]
+
+    @cached_property
+    def stretch(self) -> np.ndarray:
+        """Stretch of the fibres [1], [n]."""
+        along, across = self.deformation[:, 0, 0], self.deformation[:, 1, 0]
+        return np.sqrt(along * along + across * across)  # hypot guards against overflow, at twice the time
+
+    def along_fibre(self, tension: np.ndarray) -> np.ndarray:
+        """First Piola stress [Pa] [n, 2, 2] of a tension [Pa] [n] along the fibres."""
+        stress = np.zeros_like(self.deformation)
+        stress[:, :, 0] = (tension / self.stretch)[:, None] * self.deformation[:, :, 0]
+        return stress
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """The fluid around a body and what of the body it meets.
+
+    density [kg/m^3]; viscosity: dynamic [Pa s]; depth: of the body, out of the plane [m]; length: nose to tail [m].
+    """
+
+    density: float
+    viscosity: float
+    depth: float
+    length: float
+
+    @property
+    def kinematic_viscosity(self) -> float:
+        """Viscosity over density [m^2/s]."""
+        return self.viscosity / self.density
+
+
+@dataclass(frozen=True)
+class SiteState:
+    """Motion and drive at n places; arrays are [n, 2] unless said.
+
+    position [m], velocity [m/s], acceleration [m/s^2], tangent: derivative of the position along the skin, or along the
+    centre line towards the tail [1]; tangent_rate: the same of the velocity [1/s];
+    reference: position at rest [m]; rest_normal: outward unit normal of the skin at rest; measure [n]: mass [kg per m
+    depth], skin length [m] or 1; voltage (drive [V], [Pa] ...) and contraction [1]: of every muscle, [muscles];
+    time [s]; gravity [m/s^2], shape [2]; surroundings: the fluid, None for a model without `medium`.
+    """
+
+    position: np.ndarray
+    velocity: np.ndarray
+    acceleration: np.ndarray
+    tangent: np.ndarray
+    tangent_rate: np.ndarray
+    reference: np.ndarray
+    rest_normal: np.ndarray
+    measure: np.ndarray
+    voltage: np.ndarray
+    contraction: np.ndarray
+    time: float
+    gravity: np.ndarray
+    surroundings: Surroundings | None = None
+
+    @property
+    def normal(self) -> np.ndarray:
+        """Unit normal as it is now, outward from the skin or to the right of the centre line, [n, 2].
+
+        A force that uses it depends on the tangent.
+        """
+        return normal(self.tangent)
+
+    @property
+    def fluid(self) -> Surroundings:
+        """The fluid around the body, for an effect that needs a medium. Raises ModelError where there is none."""
+        if self.surroundings is None:
+            raise ModelError(
+                "the model says nothing of the fluid around the body; expected a section medium: add one, and set "
+                "needs_medium = True in the effect"
+            )
+        return self.surroundings
+
+
+def normal(tangent: np.ndarray) -> np.ndarray:
+    """Unit normal [n, 2] to the right of these tangents [n, 2], which is outward from the skin."""
+    along, across = tangent[:, 0], tangent[:, 1]
+    length = np.sqrt(along * along + across * across)  # hypot guards against overflow, at twice the time
+    out = np.empty_like(tangent)
+    out[:, 0], out[:, 1] = across / length, -along / length
+    return out
 
 
 @dataclass(frozen=True)
@@ -225,3 +346,16 @@ class ObservationEffect(Effect):
     def angle(self, time: np.ndarray, sin_theta: np.ndarray, p: SimpleNamespace) -> np.ndarray:
         """The measured series [n] from the series at times [s] [n]."""
         return sin_theta
+
+
+def guarded(effect: Effect, method: str, *arguments: Any) -> Any:
+    """What a method returns; any failure of it becomes a ModelError that names effect and method."""
+    try:
+        return getattr(effect, method)(*arguments)
+    except HaselSimError:
+        raise
+    except Exception as error:
+        raise ModelError(
+            f"effect '{effect.source or effect.id}' fails in {method} ({type(error).__name__}: {error}): "
+            "correct that method"
+        ) from error

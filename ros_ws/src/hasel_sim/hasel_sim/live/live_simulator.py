@@ -1,23 +1,131 @@
-"""A simulation that is fed with the supply's state as it comes in."""
+"""A simulation that is fed with the supply's state as it comes in: its model, the order of the messages, the motion."""
 
 from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
 
 import numpy as np
+from hasel_common.inside_folder import inside_folder
 
 from hasel_sim.build import Builder
-from hasel_sim.errors import SimulationError
-from hasel_sim.live.angle_history import AngleHistory
-from hasel_sim.live.drive_history import DriveHistory
-from hasel_sim.live.live_model import rig_columns
-from hasel_sim.live.stamp_order import Arrival, StampOrder
+from hasel_sim.drive.schedule import HASEL_CHANNELS
+from hasel_sim.errors import ModelError, SimulationError
+from hasel_sim.live.histories import AngleHistory, DriveHistory
 from hasel_sim.mechanics.initial import initial_state
 from hasel_sim.mechanics.motion import DriveState
 from hasel_sim.mechanics.state import State
 from hasel_sim.mechanics.stepper import Stepper
 from hasel_sim.mechanics.steps import plan_steps
 from hasel_sim.mesh.mesh import Mesh
-from hasel_sim.model import Model
+from hasel_sim.model import Model, load_model
 from hasel_sim.model_mesh import marker_rows
+
+
+def within(folder: str, name: str) -> str:
+    """`name` of a model or an effect, where it is no file or one below `folder`. Raises ModelError for any other."""
+    path, colon, kind = name.partition(":")
+    if not colon and not Path(name).suffix and "/" not in name:
+        return name
+    if not folder:
+        raise ModelError(
+            f"'{name}' is a file, and a request may name the catalogue's only: start the node with own_files set to the"
+            " folder in which yours are"
+        )
+    try:
+        return f"{inside_folder(folder, path)}{colon}{kind}"
+    except ValueError as error:
+        raise ModelError(f"{error}: name one there; the folder was given as own_files") from None
+
+
+_LEVEL_WITHOUT_FIT = 5500.0
+
+
+def live_model(name: str, effects: tuple[str, ...] = ()) -> tuple[Model, str]:
+    """A model by name or file, with further effects, and a warning (else empty).
+
+    A model with muscles that was never fitted has no amplitudes: it gets one, so that it moves. Raises ModelError, also
+    for a body that is driven by something else than the rig's voltages.
+    """
+    model, warning = load_model(name), ""
+    rig_columns(model)
+    if model.has_muscles and len(model.levels) == 0 and model.description.muscle is None:
+        model = model.with_levels(np.array([_LEVEL_WITHOUT_FIT]))
+        start = model.parameters[f"amplitude_{_LEVEL_WITHOUT_FIT:g}"].value
+        warning = (
+            f"model '{name}' was never fitted: its contraction is taken as {start:g} at {_LEVEL_WITHOUT_FIT:g} V, "
+            "in proportion to the voltage; fit it, or load a fitted model file"
+        )
+    return model.with_effects(*effects), warning
+
+
+def rig_columns(model: Model) -> list[int]:
+    """Which of the supply's two voltages drives each channel. Raises ModelError where a channel is not one of them."""
+    for channel in model.description.channels:
+        if channel.quantity != "voltage" or channel.name not in HASEL_CHANNELS:
+            raise ModelError(
+                f"model '{model.name}' is driven by the {channel.quantity} '{channel.name}', and the supply reports "
+                f"the voltages {' and '.join(HASEL_CHANNELS)} only: simulate its recordings with compare, or choose "
+                "a model with these channels"
+            )
+    return [HASEL_CHANNELS.index(name) for name in model.channels]
+
+
+class Arrival(Enum):
+    """What a message's stamp means for the simulation."""
+
+    START = "start"
+    NEXT = "next"
+    GAP = "gap"
+    HELD = "held"
+    RESTART = "restart"
+
+
+@dataclass(frozen=True)
+class StampVerdict:
+    """What to do with a message, and a sentence when that is out of the ordinary (else empty)."""
+
+    arrival: Arrival
+    sentence: str = ""
+
+
+class StampOrder:
+    """Compares each stamp [ns] with the newest one accepted.
+
+    gap: messages further apart [s] than this count as missing; the body moves on under the voltage held.
+    reset: a longer gap [s] begins a new run; late: so does a message older than the newest by more than this [s].
+    """
+
+    def __init__(self, gap: float, reset: float, late: float) -> None:
+        self.gap, self.reset, self.late = gap, reset, late
+        self._newest: int | None = None
+
+    def forget(self) -> None:
+        """Let the next message begin a new run."""
+        self._newest = None
+
+    def judge(self, stamp_ns: int) -> StampVerdict:
+        """Accept a stamp, or hold on to the newest one."""
+        newest = self._newest
+        if newest is None:
+            self._newest = stamp_ns
+            return StampVerdict(Arrival.START)
+        step = (stamp_ns - newest) * 1e-9
+        if not -self.late <= step <= self.reset:
+            self._newest = stamp_ns
+            return StampVerdict(
+                Arrival.RESTART, f"the stamps jumped by {step:+.3g} s: a new run starts from rest"
+            )
+        if step <= 0:
+            what = "came twice" if step == 0 else f"is {-step:.3g} s older than the newest"
+            return StampVerdict(Arrival.HELD, f"a state message {what}: it is ignored and the body held")
+        self._newest = stamp_ns
+        if step > self.gap:
+            return StampVerdict(
+                Arrival.GAP,
+                f"no state message for {step:.3g} s, expected one every {self.gap:g} s: the last voltage was held",
+            )
+        return StampVerdict(Arrival.NEXT)
+
 
 _SHORTEST = 1e-3
 """Of a usual step: the body is not moved on by less, since in so short a time nothing but rounding accelerates it."""

@@ -8,8 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from hasel_sim.effects.base import ForceEffect, SiteState, Surroundings, normal
-from hasel_sim.effects.guarded import guarded
+from hasel_sim.effects.base import ForceEffect, SiteState, Surroundings, guarded, normal
 from hasel_sim.mechanics.copies import ALONE, Copies
 from hasel_sim.mechanics.laws import (
     OF_THE_DRIVE,

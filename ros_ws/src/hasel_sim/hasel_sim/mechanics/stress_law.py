@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from hasel_sim.effects.base import MaterialEffect, MaterialPoints
-from hasel_sim.effects.guarded import guarded
+from hasel_sim.effects.base import MaterialEffect, MaterialPoints, guarded
 from hasel_sim.mechanics import strain
 from hasel_sim.mechanics.copies import ALONE, Copies
 from hasel_sim.mechanics.laws import (

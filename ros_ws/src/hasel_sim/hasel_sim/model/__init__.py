@@ -1,7 +1,7 @@
 """A model: body, material, numerics, effects and parameter values; read from and written to one YAML file."""
 
 from hasel_sim.model.model import Model
-from hasel_sim.model.parameter import Parameter
-from hasel_sim.model.read import load_model, model_names, save_model
+from hasel_sim.model.model_file import load_model, model_names, save_model
+from hasel_sim.parameter import Parameter
 
 __all__ = ["Model", "Parameter", "load_model", "model_names", "save_model"]

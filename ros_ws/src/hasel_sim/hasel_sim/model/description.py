@@ -1,70 +1,34 @@
-"""What a model file may say: every key with its unit in its name, validated when read, and what must fit together."""
+"""A whole model file: what must fit together in it, and which effects can stand side by side on its body."""
 
 from collections.abc import Iterator, Sequence
 from itertools import combinations
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 from hasel_common.names import nearest_name
 from pydantic import Field, model_validator
 
-from hasel_sim.effects.base import Surroundings
-from hasel_sim.model.actuation import Channel, MuscleRegion
-from hasel_sim.model.body import Body, BodyRegion, Material
-from hasel_sim.model.medium import Medium
+from hasel_sim.effects.base import Effect, Surroundings
+from hasel_sim.errors import ModelError
 from hasel_sim.model.muscle_law import MuscleLaw
-from hasel_sim.model.section import Finite, Name, NotNegative, Positive, Section
+from hasel_sim.model.sections import (
+    Body,
+    BodyRegion,
+    Channel,
+    Marker,
+    Materials,
+    Medium,
+    MuscleRegion,
+    Name,
+    Numerics,
+    ParameterEntry,
+    Section,
+)
 
 ANGLE_MARKERS = ("head", "middle", "tail")
 """The markers whose positions give the angle."""
 
 _SLACK = 1e-9
 """Lengths [m] are compared with this."""
-
-
-class Materials(Section):
-    """The soft material and, for a body with a spine, the spine's."""
-
-    soft: Material
-    spine: Material | None = None
-    plane: Literal["strain", "stress"] = "strain"
-    gravity_m_per_s2: tuple[Finite, Finite] = (0.0, 0.0)
-
-
-class Marker(Section):
-    """A marker at a place on the body at rest; a fixed one belongs to the rig and does not move."""
-
-    x_m: Finite
-    y_m: Finite = 0.0
-    fixed: bool = False
-
-
-class Numerics(Section):
-    """Mesh density 1 is the default mesh; a time step is at most 1 / steps_per_second.
-
-    mesh_density scales the number of elements along the body, layers is the number through each soft half;
-    quadrature_order: Gauss points per direction of an element; 2 is softer and converges faster, 3 is full.
-    amplitude_curve: how a muscle contracts between levels whose amplitudes are known, cubic or a power of the level.
-    """
-
-    mesh_density: Positive = 1.0
-    layers: Annotated[int, Field(ge=1)] = 1
-    quadrature_order: Literal[2, 3] = 2
-    steps_per_second: Positive = 240.0
-    spectral_radius: Annotated[float, Field(gt=0, le=1)] = 0.9
-    tolerance_m: Positive = 1e-8
-    amplitude_curve: Literal["cubic", "power"] = "cubic"
-
-
-class ParameterEntry(Section):
-    """One entry of the file's parameters; a constant of the file that is freed needs no value and no unit."""
-
-    value: Finite | None = None
-    unit: str | None = None
-    lower: Finite | None = None
-    upper: Finite | None = None
-    free: bool = True
-    standard_error: NotNegative | None = None
-    correlations: dict[str, Annotated[float, Field(ge=-1, le=1)]] = Field(default_factory=dict)
 
 
 class Description(Section):
@@ -185,7 +149,7 @@ def _law(d: Description) -> Iterator[str]:
 
 
 def _markers(d: Description) -> Iterator[str]:
-    for name in ("head", "middle", "tail"):
+    for name in ANGLE_MARKERS:
         if name not in d.markers:
             yield f"markers has no '{name}'; expected head, middle and tail, which give the angle: add it"
     for name, marker in d.markers.items():
@@ -202,3 +166,36 @@ def _markers(d: Description) -> Iterator[str]:
                 f"markers.{name}.y_m is {marker.y_m:g}; expected at most {d.body.half_height_at(marker.x_m):.4g} m "
                 "from the centre line there, a place on the body: correct it or set fixed: true"
             )
+
+
+def check_together(effects: tuple[Effect, ...], body: Description) -> None:
+    """Refuse effects that cannot stand side by side, or not on this body, with a ModelError."""
+    seen: dict[str, str] = {}
+    for effect in effects:
+        for word in filter(None, (effect.id, effect.exclusive)):
+            if word in seen:
+                reason = "is there twice" if seen[word] == effect.id else f"does the same as '{seen[word]}'"
+                raise ModelError(
+                    f"effect '{effect.id}' {reason}; expected one of each kind: remove one of the two"
+                )
+            seen[word] = effect.id
+        count, quantities = len(body.muscles), sorted({channel.quantity for channel in body.channels})
+        on = f"and model '{body.name}'"
+        wrong = {
+            f"acts on the muscles, {on} has none; remove it or use a model with muscles": (
+                effect.needs_muscles and not count
+            ),
+            f"acts on the spine, {on} has none; remove it or use a model whose body has a spine": (
+                effect.needs_spine and body.body.spine is None
+            ),
+            f"compares two muscles, {on} has {count}; remove it or use a model with two": (
+                effect.needs_antagonists and count != 2
+            ),
+            f"is a force of the fluid around the body, {on} names none; remove it or add a section medium": (
+                effect.needs_medium and body.medium is None
+            ),
+            f"acts on a {effect.quantity}, {on} is driven by {', '.join(quantities) or 'nothing'}; remove it or use a "
+            "model with such a channel": effect.quantity and effect.quantity not in quantities,
+        }
+        for sentence in (sentence for sentence, found in wrong.items() if found):
+            raise ModelError(f"effect '{effect.id}' {sentence}")

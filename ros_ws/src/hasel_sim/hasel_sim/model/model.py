@@ -13,18 +13,26 @@ from hasel_sim.drive.amplitudes import AmplitudeTable, amplitude_tables
 from hasel_sim.effects.base import Effect
 from hasel_sim.effects.registry import find_effects
 from hasel_sim.errors import ModelError
-from hasel_sim.model.constants import constants, unit_of, with_constants
-from hasel_sim.model.covariance import covariance_of, uncorrelated, with_covariance
-from hasel_sim.model.description import Description, Numerics
-from hasel_sim.model.effects_together import check_together
-from hasel_sim.model.onsets import onset_parameters, sweeps
-from hasel_sim.model.parameter import Parameter
-from hasel_sim.model.start_values import amplitude_parameters
+from hasel_sim.model.description import Description, Numerics, check_together
+from hasel_sim.model.model_parameters import (
+    amplitude_parameters,
+    constants,
+    onset_parameters,
+    sweeps,
+    unit_of,
+    with_constants,
+)
 from hasel_sim.model.validation import sentence_for
+from hasel_sim.parameter import (
+    Parameter,
+    Parametrised,
+    parameters_of,
+    values_of,
+)
 
 
 @dataclass(frozen=True)
-class Model:
+class Model(Parametrised):
     """description: what the file says; effects: in the file's order; parameters: by name.
 
     Baseline parameters are `slope` [1/s] (or `rise_time` and `fall_time` [s]) and one `amplitude_<level>` [1] per level
@@ -92,28 +100,15 @@ class Model:
         return with_constants(self.description, freed) if freed else self.description
 
     @property
-    def values(self) -> dict[str, float]:
-        """Value of every parameter."""
-        return {name: parameter.value for name, parameter in self.parameters.items()}
-
-    @property
     def drive_unit(self) -> str:
         """Unit of everything that drives the body; empty where units differ or nothing does."""
         units = {channel.unit for channel in self.description.channels}
         return units.pop() if len(units) == 1 else ""
 
-    @property
-    def free(self) -> tuple[str, ...]:
-        """Names of the parameters that a fit may change."""
-        return tuple(name for name, parameter in self.parameters.items() if parameter.free)
-
     def effect_values(self, values: dict[str, float] | None = None) -> dict[str, SimpleNamespace]:
         """One namespace of parameter values per effect id."""
         values = values or self.values
-        return {
-            effect.id: SimpleNamespace(**{p.name: values[f"{effect.id}.{p.name}"] for p in effect.parameters})
-            for effect in self.effects
-        }
+        return {effect.id: values_of(effect, values) for effect in self.effects}
 
     def parameter(self, name: str) -> Parameter:
         """One parameter. Raises ModelError for an unknown name."""
@@ -123,33 +118,11 @@ class Model:
             )
         return self.parameters[name]
 
-    def with_values(
-        self, values: dict[str, float], standard_errors: dict[str, float | None] | None = None
-    ) -> "Model":
-        """A copy with other parameter values. Raises ModelError for an unknown name.
-
-        standard_errors: None for a parameter that is not determined; those not named keep theirs and its correlations.
-        """
-        parameters = dict(self.parameters)
-        for name, value in values.items():
-            error = (standard_errors or {}).get(name, self.parameter(name).standard_error)
-            parameters[name] = replace(self.parameter(name), value=float(value), standard_error=error)
-        return replace(self, parameters=uncorrelated(parameters, standard_errors or ()))
-
     def with_amplitudes_times(self, share: float) -> "Model":
         """The model with all its amplitudes times a share."""
         return self.with_values(
             {name: share * v for name, v in self.values.items() if self.is_amplitude(name)}
         )
-
-    def with_covariance(self, names: Sequence[str], covariance: np.ndarray) -> "Model":
-        """A copy in which the errors of these parameters have this covariance [n, n], infinite where not determined."""
-        checked = [self.parameter(name).name for name in names]
-        return replace(self, parameters=with_covariance(self.parameters, checked, covariance))
-
-    def covariance(self, names: Sequence[str]) -> np.ndarray:
-        """Covariance [n, n] of the errors of these parameters; infinite where one has none."""
-        return covariance_of([self.parameter(name) for name in names])
 
     def with_freed(self, *names: str) -> "Model":
         """A copy in which these constants of the file are parameters, at the file's values.
@@ -165,13 +138,8 @@ class Model:
                     f"'{name}' is neither a parameter nor a constant of model '{self.name}'; "
                     f"{nearest_name(name, {*freed, *known})}"
                 )
-            freed[name] = Parameter(name, known[name], unit_of(name), -float("inf"), float("inf"))
+            freed[name] = Parameter(name, known[name], unit_of(name))
         return replace(self, parameters=freed)
-
-    def with_held(self, *names: str) -> "Model":
-        """A copy in which these parameters are not fitted. Raises ModelError for an unknown name."""
-        held = {name: replace(self.parameter(name), free=False) for name in names}
-        return replace(self, parameters={**self.parameters, **held})
 
     def with_constants_settled(self, *names: str) -> "Model":
         """A copy whose file itself has these constants at their values, which are then no parameters any more.
@@ -179,10 +147,7 @@ class Model:
         Its mesh is made for its shape as it is then. Raises ModelError where that does not fit together.
         """
         settled = with_constants(self.description, {name: self.parameter(name).value for name in names})
-        try:
-            description = Description.model_validate(settled.model_dump())
-        except ValidationError as error:
-            raise ModelError(sentence_for(error)) from None
+        description = _validated(settled.model_dump())
         parameters = {name: p for name, p in self.parameters.items() if name not in names}
         return replace(self, description=description, parameters=parameters)
 
@@ -228,11 +193,7 @@ class Model:
         check_together(effects, self.description)
         parameters = dict(self.parameters)
         for effect in effects[len(self.effects) :]:
-            for p in effect.parameters:
-                start = p.scan[len(p.scan) // 2] if p.scan else p.null
-                parameters[f"{effect.id}.{p.name}"] = Parameter(
-                    f"{effect.id}.{p.name}", start, p.unit, p.lower, p.upper
-                )
+            parameters |= parameters_of(effect)
         return replace(self, effects=effects, parameters=parameters).with_onsets()
 
     def without_effects(self, *names: str) -> "Model":
@@ -256,11 +217,7 @@ class Model:
         content = self.description.model_dump()
         content["medium"] = fluid if isinstance(fluid, str) else dict(fluid)
         content["body"]["depth_m"] = depth_m
-        try:
-            changed = Description.model_validate(content)
-        except ValidationError as error:
-            raise ModelError(sentence_for(error)) from None
-        return replace(self, description=changed)
+        return replace(self, description=_validated(content))
 
     def with_numerics(self, **changes: float | str) -> "Model":
         """A copy with other numerics, such as mesh_density=2 or steps_per_second=960.
@@ -291,3 +248,10 @@ class Model:
     def __repr__(self) -> str:
         named = " + ".join([self.name, *(effect.id for effect in self.effects)])
         return f"<Model {named}, {len(self.parameters)} parameters>"
+
+
+def _validated(content: dict) -> Description:
+    try:
+        return Description.model_validate(content)
+    except ValidationError as error:
+        raise ModelError(sentence_for(error)) from None

@@ -1,19 +1,37 @@
 """The muscle section of a model file: a law of how far a voltage contracts, in place of a table of amplitudes."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
 from hasel_sim.errors import ModelError
-from hasel_sim.model.parameter import Parameter
-from hasel_sim.model.pouch_section import PouchSection
-from hasel_sim.model.section import Finite, Name, Section
-from hasel_sim.muscle.catalogue import find_muscle_effects
+from hasel_sim.model.sections import Finite, Name, Positive, Section
+from hasel_sim.muscle.effect import find_muscle_effects
+from hasel_sim.muscle.muscle import Muscle
+from hasel_sim.muscle.pouch import Pouch
+from hasel_sim.parameter import Parameter
 
-if TYPE_CHECKING:
-    from hasel_sim.muscle.muscle import Muscle
+
+class PouchSection(Section):
+    """`count` pouches in series, each `width_m` across; lengths along the muscle are those of the flat film.
+
+    fill: liquid by that with which the free part is just a cylinder when the whole electrode is zipped.
+    """
+
+    count: Annotated[int, Field(ge=1)]
+    film_length_m: Positive
+    electrode_length_m: Positive
+    width_m: Positive
+    film_thickness_m: Positive
+    relative_permittivity: Annotated[float, Field(ge=1.0, le=100.0)]
+    fill: Positive = 1.0
+
+    @property
+    def pouch(self) -> Pouch:
+        """One of them. Raises ModelError where the lengths do not fit together."""
+        keys = [key for key in type(self).model_fields if key != "count"]
+        return Pouch(**{key.removesuffix("_m"): getattr(self, key) for key in keys})
+
 
 STIFFNESS, PRELOAD, GAIN = "muscle.stiffness", "muscle.preload", "muscle.gain"
 
@@ -31,7 +49,7 @@ class MuscleLaw(Section):
     file: str | None = None
 
     @model_validator(mode="after")
-    def _whole(self) -> MuscleLaw:
+    def _whole(self) -> "MuscleLaw":
         if (self.pouch is None) == (self.file is None):
             raise ValueError("expected either pouch or file, a muscle file: give one of the two")
         if self.file is not None and self.effects:
@@ -49,10 +67,6 @@ class MuscleLaw(Section):
             raise ModelError(
                 f"muscle.file is still '{self.file}'; expected its pouch: read the model with load_model"
             )
-        from hasel_sim.muscle.muscle import (
-            Muscle,
-        )  # which is a reader of parameters, and so comes after the model
-
         find_muscle_effects(tuple(self.effects))
         muscle = Muscle("muscle", self.pouch.pouch, self.pouch.count).with_effects(*self.effects)
         given = {f"{effect}.{key}": v for effect, values in self.effects.items() for key, v in values.items()}

@@ -1,12 +1,17 @@
-"""What an effect of the muscle on its bench states, and the places where one can act."""
+"""What an effect of the muscle on its bench states, the places where one can act, and the catalogue of all."""
 
 from dataclasses import dataclass
+from functools import cache
 from types import SimpleNamespace
 from typing import ClassVar
 
 import numpy as np
+from hasel_common.names import nearest_name
 
 from hasel_sim.effects.base import EffectParameter
+from hasel_sim.effects.registry import kinds_in
+from hasel_sim.errors import ModelError
+from hasel_sim.muscle import effects
 from hasel_sim.muscle.pouch import Pouch
 
 
@@ -62,3 +67,20 @@ class MuscleEffect:
     def before(self, time: np.ndarray, contraction: np.ndarray, p: SimpleNamespace) -> np.ndarray:
         """The inverse of `follow`: what is in balance when the contraction [m] [n] is held by the bench."""
         return contraction
+
+
+@cache
+def muscle_catalogue() -> dict[str, MuscleEffect]:
+    """The effects by id, in alphabetical order."""
+    return {kind.id: kind() for kind in kinds_in(effects, MuscleEffect)}
+
+
+def find_muscle_effects(names: tuple[str, ...]) -> tuple[MuscleEffect, ...]:
+    """Effects by id. Raises ModelError with the nearest known one."""
+    known = muscle_catalogue()
+    for name in names:
+        if name not in known:
+            raise ModelError(
+                f"unknown effect of a muscle '{name}'; {nearest_name(name, known)}: correct the name"
+            )
+    return tuple(known[name] for name in names)

@@ -1,6 +1,5 @@
 """A Peano-HASEL muscle: pouches in series, what acts on them, and its numbers; changed only by copying."""
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import SimpleNamespace
@@ -9,18 +8,16 @@ import numpy as np
 from hasel_common.names import nearest_name
 
 from hasel_sim.errors import ModelError
-from hasel_sim.model.covariance import covariance_of, with_covariance
-from hasel_sim.model.parameter import Parameter
-from hasel_sim.muscle.catalogue import find_muscle_effects
-from hasel_sim.muscle.effect import Held, MuscleEffect
+from hasel_sim.muscle.effect import Held, MuscleEffect, find_muscle_effects
 from hasel_sim.muscle.pouch import Pouch, bisect
+from hasel_sim.parameter import Parameter, Parametrised, parameters_of, values_of
 
 POUCH = "pouch."
 """How the names of the pouch's constants begin that are free, such as `pouch.fill`."""
 
 
 @dataclass(frozen=True)
-class Muscle:
+class Muscle(Parametrised):
     """count: pouches in series; mass [kg]: of the muscle, half of which hangs from its middle beside the load.
 
     parameters: what may be fitted, `pouch.<constant>` and `<effect>.<parameter>`.
@@ -33,42 +30,13 @@ class Muscle:
     effects: tuple[MuscleEffect, ...] = ()
     parameters: dict[str, Parameter] = field(default_factory=dict)
 
-    @property
-    def values(self) -> dict[str, float]:
-        """Value of every parameter."""
-        return {name: parameter.value for name, parameter in self.parameters.items()}
-
-    @property
-    def free(self) -> tuple[str, ...]:
-        """Names of the parameters that a fit may change."""
-        return tuple(name for name, parameter in self.parameters.items() if parameter.free)
-
-    def with_values(
-        self, values: Mapping[str, float], standard_errors: Mapping[str, float | None] | None = None
-    ) -> "Muscle":
-        """A copy with other values. Raises ModelError for an unknown name."""
-        parameters = dict(self.parameters)
-        for name, value in values.items():
-            if name not in parameters:
-                raise ModelError(
-                    f"'{name}' is no parameter of muscle '{self.name}'; {nearest_name(name, parameters)}"
-                )
-            error = (standard_errors or {}).get(name, parameters[name].standard_error)
-            parameters[name] = replace(parameters[name], value=float(value), standard_error=error)
-        return replace(self, parameters=parameters)
-
-    def with_covariance(self, names: Sequence[str], covariance: np.ndarray) -> "Muscle":
-        """A copy in which the errors of these parameters have this covariance [n, n], infinite where not determined."""
-        return replace(self, parameters=with_covariance(self.parameters, names, covariance))
-
-    def covariance(self, names: Sequence[str]) -> np.ndarray:
-        """Covariance [n, n] of the errors of these parameters; infinite where one has none."""
-        return covariance_of([self.parameters[name] for name in names])
-
-    def with_held(self, *names: str) -> "Muscle":
-        """A copy in which these parameters are not fitted."""
-        held = {name: replace(self.parameters[name], free=False) for name in names}
-        return replace(self, parameters={**self.parameters, **held})
+    def parameter(self, name: str) -> Parameter:
+        """One parameter. Raises ModelError for an unknown name."""
+        if name not in self.parameters:
+            raise ModelError(
+                f"'{name}' is no parameter of muscle '{self.name}'; {nearest_name(name, self.parameters)}"
+            )
+        return self.parameters[name]
 
     def is_amplitude(self, name: str) -> bool:
         """Whether a parameter is a contraction at one voltage: a law has none."""
@@ -88,10 +56,7 @@ class Muscle:
                 raise ModelError(
                     f"effect '{effect.id}' is in muscle '{self.name}' already: remove one of the two"
                 )
-            for p in effect.parameters:
-                name = f"{effect.id}.{p.name}"
-                start = p.scan[len(p.scan) // 2] if p.scan else p.null
-                parameters[name] = Parameter(name, start, p.unit, p.lower, p.upper)
+            parameters |= parameters_of(effect)
         return replace(self, effects=(*self.effects, *effects), parameters=parameters)
 
     def without_effects(self, *names: str) -> "Muscle":
@@ -146,11 +111,7 @@ class Muscle:
         return found[back.ravel()]
 
     def _acting(self) -> list[tuple[MuscleEffect, SimpleNamespace]]:
-        values = self.values
-        return [
-            (effect, SimpleNamespace(**{p.name: values[f"{effect.id}.{p.name}"] for p in effect.parameters}))
-            for effect in self.effects
-        ]
+        return [(effect, values_of(effect, self.values)) for effect in self.effects]
 
     def _pulling(self, time: np.ndarray, voltage: np.ndarray) -> np.ndarray:
         for effect, p in self._acting():

@@ -95,12 +95,6 @@ class Pouch:
         """Free stroke [m]."""
         return float(self.contraction(np.array(self.largest_angle)))
 
-    def angle_at(self, contraction: np.ndarray) -> np.ndarray:
-        """Half angle [rad] at a contraction [m], kept within what the pouch can do."""
-        low = np.full(np.shape(contraction), self.relaxed_angle)
-        high = np.full(np.shape(contraction), self.largest_angle)
-        return bisect(lambda angle: self.contraction(angle) - contraction, low, high)
-
     @property
     def capacitance_per_zipped_length(self) -> float:
         """dC/dl_e [F/m]: two films in series."""

@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from ruamel.yaml import YAML
+from hasel_common.yaml_text import read_yaml
 from scipy.optimize import brentq
 
 from hasel_sim.effects.base import ForceEffect, Surroundings
@@ -89,7 +89,7 @@ def swimmer(fish: Fish, beat: Beat, form_drag: float, points: int = 32) -> Swimm
 @cache
 def _coefficients() -> tuple[tuple[ForceEffect, dict[str, float | str]], ...]:
     """The forces of the water and their coefficients, "fitted" for the one that is."""
-    values = YAML(typ="safe").load(_FORCES)["effects"]
+    values = read_yaml(_FORCES.read_text(encoding="utf-8"))["effects"]
     found = zip(find_effects(tuple(values)), values.values(), strict=True)
     return tuple((effect, own) for effect, own in found if isinstance(effect, ForceEffect))
 

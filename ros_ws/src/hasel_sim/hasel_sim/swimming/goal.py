@@ -9,7 +9,7 @@ from hasel_sim.adjoint import DifferentiableRun
 from hasel_sim.build import Builder, constant_parameter
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
-from hasel_sim.model.constants import constants
+from hasel_sim.model.model_parameters import constants
 from hasel_sim.run import Run
 from hasel_sim.swimming.free_swim import check_swimmer
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from hasel_sim.errors import HaselSimError, ModelError
 from hasel_sim.model import Model
-from hasel_sim.model.read import model_text
-from hasel_sim.side_by_side import side_by_side
+from hasel_sim.model.model_file import model_text
+from hasel_sim.parallel import side_by_side
 from hasel_sim.simulate import simulate_many
 from hasel_sim.swimming.boxes import Boxes
 from hasel_sim.swimming.free_swim import check_swimmer, measured

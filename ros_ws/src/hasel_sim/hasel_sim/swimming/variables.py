@@ -10,7 +10,7 @@ from hasel_common.names import nearest_name
 from hasel_sim.errors import SimulationError
 from hasel_sim.mesh.outline import half_height
 from hasel_sim.model import Model
-from hasel_sim.model.constants import REST_CONTRACTION, constants, outline_names
+from hasel_sim.model.model_parameters import REST_CONTRACTION, constants, outline_names
 from hasel_sim.swimming.boxes import Boxes
 
 Range = tuple[float, float]

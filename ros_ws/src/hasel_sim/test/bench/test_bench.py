@@ -6,11 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hasel_common.measured_bar import MeasuredBar
-from hasel_sim.bench import reference
+from hasel_sim.bench import cases
 from hasel_sim.bench.cases import (
     box_run,
+    first_run_seconds,
     fitted_swimmer,
     node_count,
+    processor_seconds,
+    shares,
     swimmer_with_every_force,
     with_nodes,
 )
@@ -19,15 +22,13 @@ from hasel_sim.bench.effect_costs import measure_effects
 from hasel_sim.bench.speed import (
     SideBySide,
     Speed,
+    SpeedReport,
     free_swim_factor,
     measure_side_by_side,
     measure_speed,
+    measure_swimming,
 )
-from hasel_sim.bench.speed_report import SpeedReport
-from hasel_sim.bench.swimming import measure_swimming
-from hasel_sim.bench.timing import first_run_seconds, processor_seconds
-from hasel_sim.bench.where_time_goes import shares
-from hasel_sim.commands import bench
+from hasel_sim.commands import bench, entry
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.mechanics.banded import BandMatrix
 from hasel_sim.model_mesh import model_mesh
@@ -57,7 +58,7 @@ def test_a_step_costs_few_solutions_of_its_linear_system(monkeypatch):
 
     def counted(model, times):
         asked.append(times)
-        return reference.band_solutions(model, times)
+        return cases.band_solutions(model, times)
 
     monkeypatch.setattr("hasel_sim.bench.speed.band_solutions", counted)
     with threadpool_limits(1):
@@ -101,8 +102,8 @@ def test_the_first_call_is_not_counted():
 def test_the_reference_solves_as_large_and_wide_a_system(monkeypatch):
     """As many unknowns and diagonals as the default mesh's matrix, so many times."""
     seen = []
-    monkeypatch.setattr(reference.lapack, "dgbsv", lambda *arguments: seen.append(arguments))
-    reference.band_solutions(fitted_swimmer(), 3)()
+    monkeypatch.setattr(cases.lapack, "dgbsv", lambda *arguments: seen.append(arguments))
+    cases.band_solutions(fitted_swimmer(), 3)()
     below, above, band, right_hand_side = seen[0]
     matrix = BandMatrix(model_mesh(fitted_swimmer()).reach)
     assert len(seen) == 3
@@ -152,7 +153,7 @@ def test_the_command_prints_tables_and_writes_json(tmp_path, monkeypatch, capsys
     report = SpeedReport(40.0, [speed], speed, speed, 1.0, [(0, 1.0)], lanes, [("all", 1.0)], 6.0)
     monkeypatch.setattr(bench, "measure_speeds", lambda console: report)
     path = tmp_path / "bench.json"
-    assert bench.main(["--json", str(path)]) == 1
+    assert entry.bench(["--json", str(path)]) == 1
     values = json.loads(path.read_text())
     assert values["bars"][-1] == {
         "what": "first run, compiling (s)",
@@ -174,7 +175,7 @@ def test_swims_alone_are_timed_on_request(tmp_path, monkeypatch, capsys):
     for sweep, missed in ((100.0, 0), (301.0, 1)):
         slow = replace(report, sweep=sweep, free_swim=6.0)
         monkeypatch.setattr(bench, "measure_swimming", lambda slow=slow: slow)
-        assert bench.main(["--swimming", "--json", str(tmp_path / "bench.json")]) == missed
+        assert entry.bench(["--swimming", "--json", str(tmp_path / "bench.json")]) == missed
     assert [b["met"] for b in json.loads((tmp_path / "bench.json").read_text())["bars"]] == [True, False]
     assert "processes were at work" in capsys.readouterr().out
 

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from hasel_sim.commands import bench
+from hasel_sim.commands import entry
 
 OTHER = """
 import types, sys
@@ -32,7 +32,7 @@ def clone(tmp_path):
 def test_the_other_version_is_timed_in_its_own_process(clone, tmp_path, capsys):
     """Its four runs cost four times one, for it has no lanes; this version's cost less than that."""
     path = tmp_path / "ratios.json"
-    assert bench.main(["--against", str(clone), "--json", str(path)]) == 0
+    assert entry.bench(["--against", str(clone), "--json", str(path)]) == 0
     assert "336 nodes there, 275 here" in capsys.readouterr().out
     content = json.loads(path.read_text(encoding="utf-8"))
     there, here = content["other_s"], content["own_s"]
@@ -43,7 +43,7 @@ def test_the_other_version_is_timed_in_its_own_process(clone, tmp_path, capsys):
 
 def test_what_is_no_checkout_is_said(tmp_path, capsys):
     """One sentence, with what to give."""
-    assert bench.main(["--against", str(tmp_path)]) == 1
+    assert entry.bench(["--against", str(tmp_path)]) == 1
     assert "There is no simulator in" in capsys.readouterr().err
 
 
@@ -52,5 +52,5 @@ def test_a_version_that_cannot_be_timed_is_said(clone, capsys):
     (clone / "ros_ws/src/hasel_sim/hasel_sim/__init__.py").write_text(
         "raise ImportError('no torch')", encoding="utf-8"
     )
-    assert bench.main(["--against", str(clone)]) == 1
+    assert entry.bench(["--against", str(clone)]) == 1
     assert "could not be timed" in capsys.readouterr().err

@@ -8,9 +8,8 @@ import time
 
 import numpy as np
 import pytest
-from hasel_sim.cluster import executor as executing
-from hasel_sim.cluster import members
-from hasel_sim.cluster.executor import cluster
+from hasel_sim import cluster as clusters
+from hasel_sim.cluster import cluster
 from hasel_sim.errors import ClusterError
 from hasel_sim.parallel import PACKAGES, executor, simulate_all
 
@@ -33,8 +32,7 @@ def hurried(monkeypatch):
     """So long a worker may take to join, or to come back."""
 
     def to(seconds: float) -> None:
-        monkeypatch.setattr(members, "JOIN_S", seconds)
-        monkeypatch.setattr(executing, "JOIN_S", seconds)
+        monkeypatch.setattr(clusters, "JOIN_S", seconds)
 
     return to
 
@@ -71,7 +69,7 @@ def _until(reached) -> None:
 
 def test_what_takes_calls_and_says_nothing_is_no_scheduler(monkeypatch):
     """Another program at the address, after a time limit."""
-    monkeypatch.setattr(executing, "ANSWER_S", 0.5)
+    monkeypatch.setattr(clusters, "ANSWER_S", 0.5)
     with socket.socket() as silent:
         silent.bind(("127.0.0.1", 0))
         silent.listen()
@@ -152,7 +150,7 @@ def test_lost_workers_are_one_sentence_after_a_time_limit(processes, hurried, tm
 
 def test_a_task_that_kills_its_workers_is_one_sentence(processes, monkeypatch):
     """Instead of killing all that come after them."""
-    monkeypatch.setattr(executing, "LOSSES", 0)
+    monkeypatch.setattr(clusters, "LOSSES", 0)
     processes.worker()
     with cluster(processes.address, PACKAGES) as pool:
         future = pool.submit(os._exit, 1)
@@ -165,7 +163,7 @@ def test_a_task_that_kills_its_workers_is_one_sentence(processes, monkeypatch):
 @pytest.mark.parametrize("ends_by", [signal.SIGKILL, signal.SIGSTOP])
 def test_a_lost_scheduler_is_one_sentence(processes, monkeypatch, tmp_path, ends_by):
     """Whether its process has ended or is silent."""
-    monkeypatch.setattr(members, "SILENCE_S", 1.0)
+    monkeypatch.setattr(clusters, "SILENCE_S", 1.0)
     processes.worker()
     with cluster(processes.address, PACKAGES) as pool:
         future = pool.submit(exec, _BEGIN, {"marker": str(tmp_path / "begun")})

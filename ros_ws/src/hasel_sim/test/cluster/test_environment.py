@@ -2,8 +2,8 @@
 
 import sys
 
-from hasel_sim.cluster.environment import LIBRARIES, MISSING, environment
-from hasel_sim.cluster.members import difference
+from hasel_sim.cluster import difference
+from hasel_sim.cluster_environment import LIBRARIES, MISSING, environment
 
 
 def test_a_changed_source_is_another_environment(tmp_path, monkeypatch):

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
-from hasel_sim.commands.optimise import main
+from hasel_sim.commands.entry import optimise as main
 from hasel_sim.model import load_model
 from hasel_sim.swimming.boxes import Boxes
 from hasel_sim.swimming.free_swim import free_swim

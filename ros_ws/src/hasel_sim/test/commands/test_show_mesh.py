@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from hasel_sim.angle_picture import draw_angle
-from hasel_sim.commands.show_mesh import main
+from hasel_sim.commands.entry import show_mesh as main
 from hasel_sim.drive.schedule import DriveSchedule
+from hasel_sim.mesh_picture import draw_angle
 from hasel_sim.model import load_model
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate

@@ -3,9 +3,8 @@
 import json
 
 import pytest
-from hasel_sim.commands import parsers
-from hasel_sim.commands.argument_types import numbers
-from hasel_sim.commands.swim import main
+from hasel_sim.commands.entry import numbers, swim_parser
+from hasel_sim.commands.entry import swim as main
 from hasel_sim.model import load_model, save_model
 
 
@@ -94,7 +93,7 @@ def test_what_cannot_swim_is_one_sentence(tmp_path, capsys, arguments, said):
 def test_options_that_make_no_sense_are_refused(capsys, option, value):
     """With what was expected."""
     with pytest.raises(SystemExit):
-        parsers.swim_parser().parse_args([option, value])
+        swim_parser().parse_args([option, value])
     assert "expected" in capsys.readouterr().err
 
 

@@ -7,7 +7,7 @@ from hasel_sim.drive.peano_hasel import PeanoHaselDrive
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.errors import ModelError
 from hasel_sim.model import load_model, save_model
-from hasel_sim.muscle.muscle_file import load_muscle, muscle_text
+from hasel_sim.model.muscle_file import load_muscle, muscle_text
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 from numpy.testing import assert_allclose

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import pytest
-from hasel_sim.commands.effects import main
-from hasel_sim.effects.card import document
+from hasel_sim.commands.effects import document
+from hasel_sim.commands.entry import effects as main
 from hasel_sim.effects.registry import catalogue
 
 DOCS = Path(__file__).parents[2] / "docs"

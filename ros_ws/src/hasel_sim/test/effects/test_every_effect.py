@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hasel_sim import effects
 from hasel_sim.effects.base import ForceEffect
-from hasel_sim.effects.checks import check_effect
+from hasel_sim.effects.check_effect import check_effect
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.errors import ModelError
 from hasel_sim.model import load_model, save_model

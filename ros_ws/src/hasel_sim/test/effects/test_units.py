@@ -1,8 +1,8 @@
 """Which words are units."""
 
 import pytest
+from hasel_sim.effects.check_tools import is_unit
 from hasel_sim.effects.registry import catalogue
-from hasel_sim.effects.units import is_unit
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 import pytest
 from hasel_sim.errors import ModelError
-from hasel_sim.live.live_model import live_model
+from hasel_sim.live.live_simulator import live_model
 from hasel_sim.model import save_model
 
 

@@ -5,8 +5,7 @@ import pytest
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.base import DriveEffect, EffectParameter, ObservationEffect
 from hasel_sim.effects.registry import catalogue
-from hasel_sim.live.live_simulator import LiveSimulator
-from hasel_sim.live.stamp_order import Arrival
+from hasel_sim.live.live_simulator import Arrival, LiveSimulator
 from hasel_sim.model import Model, Parameter
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate

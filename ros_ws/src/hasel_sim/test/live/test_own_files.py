@@ -2,7 +2,7 @@
 
 import pytest
 from hasel_sim.errors import ModelError
-from hasel_sim.live.own_files import within
+from hasel_sim.live.live_simulator import within
 
 
 def test_a_file_of_the_folder_is_given_by_its_full_path(tmp_path):

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hasel_sim.live.pace import Pace
+from hasel_sim.live.simulator_node import Pace
 
 
 def test_the_report_sums_up_what_came_since_the_last():

@@ -10,8 +10,8 @@ from hasel_common.endpoints import Role
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_interfaces.srv import AddEffect, LoadModel, RemoveEffect
 from hasel_sim.live.live_simulator import LiveSimulator
-from hasel_sim.simulator_messages import to_nanoseconds, to_time
-from hasel_sim.simulator_node import SimulatorNode
+from hasel_sim.live.simulator_interface import to_nanoseconds, to_time
+from hasel_sim.live.simulator_node import SimulatorNode
 from lifecycle_msgs.msg import Transition
 from lifecycle_msgs.srv import ChangeState
 from rcl_interfaces.srv import SetParameters

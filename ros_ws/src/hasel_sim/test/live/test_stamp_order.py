@@ -1,7 +1,7 @@
 """Messages late, twice, missing, or of a new run."""
 
 import pytest
-from hasel_sim.live.stamp_order import Arrival, StampOrder
+from hasel_sim.live.live_simulator import Arrival, StampOrder
 
 _FRAME = 8_333_333
 

@@ -3,9 +3,9 @@
 from importlib import resources
 
 import pytest
+from hasel_common.yaml_text import read_yaml, yaml_text
 from hasel_sim.errors import ModelError
 from hasel_sim.model import load_model
-from ruamel.yaml import YAML
 
 
 @pytest.fixture
@@ -13,12 +13,10 @@ def refused(tmp_path):
     """The sentence with which the default swimmer is refused after a change of its file's content."""
 
     def read(change) -> str:
-        content = YAML(typ="safe").load(
-            (resources.files("hasel_sim") / "models" / "swimmer.yaml").read_text()
-        )
+        content = read_yaml((resources.files("hasel_sim") / "models" / "swimmer.yaml").read_text())
         change(content)
         path = tmp_path / "model.yaml"
-        YAML(typ="safe").dump(content, path)
+        path.write_text(yaml_text(content))
         with pytest.raises(ModelError) as error:
             load_model(path)
         return str(error.value)

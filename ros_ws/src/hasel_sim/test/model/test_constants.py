@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import load_model, save_model
-from hasel_sim.model.constants import constants, shared_constants
+from hasel_sim.model.model_parameters import constants, shared_constants
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from hasel_sim.errors import ModelError
+from hasel_sim.model.muscle_file import load_muscle
 from hasel_sim.muscle.muscle import Muscle
-from hasel_sim.muscle.muscle_file import load_muscle
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 

@@ -2,7 +2,7 @@
 
 import pytest
 from hasel_sim.errors import ModelError
-from hasel_sim.muscle.muscle_file import load_muscle, muscle_names, muscle_text
+from hasel_sim.model.muscle_file import load_muscle, muscle_names, muscle_text
 
 POUCH = (
     "pouch: {count: 3, film_length_m: 0.02, electrode_length_m: 0.01, width_m: 0.05, film_thickness_m: 1.0e-5, "

@@ -106,12 +106,6 @@ def test_too_heavy_a_load_is_not_lifted(pouch):
     assert_allclose(pouch.contraction(angle), 0.0, atol=1e-12)
 
 
-def test_angle_is_found_from_the_contraction(pouch):
-    """angle_at is the inverse of contraction."""
-    at = angles(pouch)
-    assert_allclose(pouch.angle_at(pouch.contraction(at)), at, rtol=1e-8)
-
-
 def test_impossible_pouches_are_refused():
     """Electrodes longer than the film, and a pouch that is full before it zips, are refused with a sentence."""
     with pytest.raises(ModelError, match="less than the film's length"):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from hasel_sim.errors import SimulationError
-from hasel_sim.muscle.muscle_file import load_muscle
+from hasel_sim.model.muscle_file import load_muscle
 from hasel_sim.muscle.swing import GRAVITY, HangingLoad, force_table
 
 LOAD = 0.06 * GRAVITY

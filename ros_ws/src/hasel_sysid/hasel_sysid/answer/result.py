@@ -7,7 +7,7 @@ from enum import Enum
 import numpy as np
 from hasel_sim.effects.base import Effect
 from hasel_sim.model import Model, Parameter
-from hasel_sim.model.value_text import value_with_error
+from hasel_sim.parameter import value_with_error
 
 from hasel_sysid.answer.diagnosis import Diagnosis, diagnosis_json
 from hasel_sysid.answer.set_up import SetUpFault

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from functools import partial
 
 from hasel_common.progress import progress_bar
+from hasel_common.yaml_text import yaml_text
 from hasel_recording import HASEL_PAIR
 from hasel_sim.model import Model
-from ruamel.yaml import YAML
 
 from hasel_sysid.answer.next_run import Suggestion, fitted_briefly, rivals, suggest
 from hasel_sysid.candidates import effects_of
@@ -73,10 +73,7 @@ def _write(best: Suggestion, options: argparse.Namespace) -> None:
         return
     options.output.mkdir(parents=True, exist_ok=True)
     path = options.output / GOAL_FILE
-    yaml = YAML(typ="safe")
-    yaml.default_flow_style = False
-    with path.open("w") as file:
-        yaml.dump(best.manoeuvre.goal(), file)
+    path.write_text(yaml_text(dict(sorted(best.manoeuvre.goal().items()))), encoding="utf-8")
     action = ", a goal for the RunExperiment action" if best.manoeuvre.channels == HASEL_PAIR else ""
     print(f"Wrote {path}{action}.")
 

@@ -8,9 +8,9 @@ from pathlib import Path
 from hasel_common.workload import Workload
 from hasel_interfaces import msg
 from hasel_recording import Recording, read_recordings
+from hasel_sim.live.simulator_interface import to_time
 from hasel_sim.model import Model
 from hasel_sim.parallel import executor
-from hasel_sim.simulator_messages import to_time
 from std_msgs.msg import Header
 
 from hasel_sysid.answer.diagnosis import Diagnosis, Finding, Verdict

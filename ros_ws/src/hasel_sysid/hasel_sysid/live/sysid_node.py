@@ -17,11 +17,10 @@ from hasel_interfaces.msg import BendingAngle, Diagnosis, Fit, RunningError, Sup
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import RecordingError
 from hasel_sim.errors import HaselSimError
-from hasel_sim.live.live_model import live_model
-from hasel_sim.live.own_files import within
+from hasel_sim.live.live_simulator import live_model, within
+from hasel_sim.live.simulator_interface import rig_voltage, to_nanoseconds
 from hasel_sim.model import Model, save_model
 from hasel_sim.node_process import end_at_once, run_node
-from hasel_sim.simulator_messages import rig_voltage, to_nanoseconds
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
 from std_msgs.msg import Header

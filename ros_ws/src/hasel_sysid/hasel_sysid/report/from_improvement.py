@@ -7,7 +7,7 @@ from hasel_sim.effects.base import Effect
 from hasel_sim.effects.registry import catalogue, find_effects
 from hasel_sim.errors import ModelError
 from hasel_sim.model import Model
-from hasel_sim.model.value_text import value_with_error
+from hasel_sim.parameter import value_with_error
 
 from hasel_sysid.answer.diagnosis import Diagnosis, Finding, Verdict
 from hasel_sysid.answer.next_run import Suggestion

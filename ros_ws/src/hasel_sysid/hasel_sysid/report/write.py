@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 import plotly.graph_objects as go
-from hasel_sim.model.value_text import value_with_error
+from hasel_sim.parameter import value_with_error
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from plotly.offline import get_plotlyjs, get_plotlyjs_version
 

@@ -11,7 +11,7 @@ from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.base import Effect
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model, load_model
-from hasel_sim.model.constants import constants
+from hasel_sim.model.model_parameters import constants
 from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run, Simulation
 from hasel_sim.simulate import simulate

@@ -2,8 +2,8 @@
 
 import json
 
+from hasel_common.yaml_text import read_yaml
 from hasel_sysid.command_line import suggest
-from ruamel.yaml import YAML
 
 
 def test_two_named_effects_are_compared_though_one_explains_all(with_drag, tmp_path, capsys):
@@ -13,7 +13,7 @@ def test_two_named_effects_are_compared_though_one_explains_all(with_drag, tmp_p
     content = json.loads((tmp_path / "s.json").read_text())
     assert [pair["effects"] for pair in content["pairs"]] == [["muscle_asymmetry", "quadratic_drag"]]
     assert content["difference"] > 1.0
-    goal = YAML(typ="safe").load(tmp_path / "suggested_run.yaml")
+    goal = read_yaml((tmp_path / "suggested_run.yaml").read_text())
     assert goal == content["run"]
     assert goal["voltage"] <= 5000.0
     assert "muscle_asymmetry, quadratic_drag would differ by" in capsys.readouterr().out

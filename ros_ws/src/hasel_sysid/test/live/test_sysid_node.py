@@ -19,11 +19,11 @@ from hasel_interfaces.msg import BendingAngle, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import Recording
 from hasel_sim.drive.schedule import DriveSchedule
+from hasel_sim.live.simulator_interface import angle_message, to_nanoseconds, to_time
 from hasel_sim.model import load_model, save_model
 from hasel_sim.node_process import run_node
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
-from hasel_sim.simulator_messages import angle_message, to_nanoseconds, to_time
 from hasel_sysid.errors import SysidError
 from hasel_sysid.live import sysid_node
 from hasel_sysid.live.sysid_node import SysidNode

@@ -12,7 +12,7 @@ from hasel_common.topics import MEASURED, SIMULATED, STATE
 from hasel_interfaces.action import RunExperiment
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_interfaces.srv import LoadModel
-from hasel_sim.simulator_messages import rig_voltage, to_nanoseconds
+from hasel_sim.live.simulator_interface import rig_voltage, to_nanoseconds
 from hasel_sysid.errors import SysidError
 from rclpy.action import ActionClient
 from std_srvs.srv import Trigger

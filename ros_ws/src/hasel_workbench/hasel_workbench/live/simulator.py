@@ -27,7 +27,7 @@ class OwnSimulator:
         given = ("-r", f"__ns:={self._namespace}", "-p", f"model:={file}", "-p", f"own_files:={file.parent}")
         with self._log.open("w") as output:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "hasel_sim.start_simulator", "--ros-args", *given],
+                [sys.executable, "-m", "hasel_sim.live.start_simulator", "--ros-args", *given],
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=subprocess.STDOUT,

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from html import escape
 
 import numpy as np
-from hasel_sim.model.value_text import value_with_error
+from hasel_sim.parameter import value_with_error
 from hasel_sysid.comparison import RunComparison
 from hasel_sysid.report.wording import error_text
 

@@ -27,15 +27,7 @@ class DriveCreep(DriveEffect):
             usual=(0.05, 0.25),
         ),
         EffectParameter(
-            "time",
-            "tau",
-            "s",
-            1.0,
-            0.05,
-            60.0,
-            1.0,
-            "0.1-30 s (estimate)",
-            scan=(0.2, 1.0, 5.0, 20.0),
+            "time", "tau", "s", 1.0, 0.05, 60.0, 1.0, "0.1-30 s (estimate)", scan=(0.2, 1.0, 5.0, 20.0)
         ),
     )
     signature = (

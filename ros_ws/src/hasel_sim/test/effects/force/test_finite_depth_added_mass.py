@@ -9,7 +9,7 @@ from hasel_sim.effects.base import Surroundings
 from hasel_sim.effects.slender import finite_length_factor
 from hasel_sim.mechanics.motion import DriveState, Motion
 from hasel_sim.model import load_model
-from hasel_sim.model.medium import FLUIDS
+from hasel_sim.model.sections import FLUIDS
 from hasel_sim.simulate import simulate
 from hasel_sim.swimming.boxes import Boxes
 from scipy.special import ellipe

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_sim.model.medium import FLUIDS
+from hasel_sim.model.sections import FLUIDS
 
 DEPTH = 0.05
 

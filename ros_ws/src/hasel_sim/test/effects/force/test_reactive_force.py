@@ -5,7 +5,7 @@ import pytest
 from hasel_sim.build import Builder
 from hasel_sim.effects.registry import find_effects
 from hasel_sim.mechanics.motion import DriveState, Motion
-from hasel_sim.model.medium import FLUIDS
+from hasel_sim.model.sections import FLUIDS
 
 DEPTH = 0.05
 STILL = DriveState.single(np.zeros(2), np.zeros(2), 0.0)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_sim.muscle.catalogue import muscle_catalogue
+from hasel_sim.muscle.effect import muscle_catalogue
 from hasel_sim.muscle.muscle import Muscle
 from numpy.testing import assert_array_equal
 
