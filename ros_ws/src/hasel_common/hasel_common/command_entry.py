@@ -1,10 +1,14 @@
-"""Where every command begins: the machine as it is, and no stack trace on the way out."""
+"""Where every command begins and how it ends: the machine as it is, no stack trace, not later than its parent."""
 
+import ctypes
 import errno
 import os
 import platform
+import signal
 import sys
 import tempfile
+import threading
+import time
 import traceback
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor
@@ -144,3 +148,31 @@ def _unforeseen(error: Exception) -> str:
 def _refuse(sentence: str, code: int) -> int:
     print(f"error: {sentence}", file=sys.stderr)
     return code
+
+
+_PERIOD_S = 0.5
+_PR_SET_PDEATHSIG = 1
+
+
+def end_with_parent() -> None:
+    """From here on SIGTERM comes soon after the parent has ended, however; not to what was started with `nohup`."""
+    if signal.getsignal(signal.SIGHUP) == signal.SIG_IGN:
+        return
+    parent = os.getppid()
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(_PERIOD_S)
+        os.kill(os.getpid(), signal.SIGTERM)
+
+    threading.Thread(target=watch, name="parent", daemon=True).start()
+
+
+def end_at_once_with_parent() -> None:
+    """The same at once, `nohup` or not, for what may be armed; also where only the parent's thread ends. Linux only."""
+    if not sys.platform.startswith("linux"):
+        return
+    parent = os.getppid()
+    ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+    if os.getppid() != parent:  # it has ended just now
+        os.kill(os.getpid(), signal.SIGTERM)

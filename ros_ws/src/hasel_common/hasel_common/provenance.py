@@ -1,11 +1,25 @@
-"""Who made a recording: the software and its versions, and the parameters of what took part."""
+"""Which software, in which version: `__version__` of every package, and who made a recording."""
 
 import os
 import platform
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from datetime import datetime, timezone
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
+
+
+def lazy_version(package: str) -> Callable[[str], str]:
+    """What a package takes as its `__getattr__`; of a package that was not installed the version is "unknown"."""
+
+    def attribute(name: str) -> str:
+        if name != "__version__":
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        from hasel_common.provenance import installed_version  # the while that it takes
+
+        return installed_version(package)
+
+    return attribute
+
 
 PREFIX = "recorded_by."  # of the header lines; what an experiment is about has none
 

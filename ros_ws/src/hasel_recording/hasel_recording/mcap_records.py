@@ -47,7 +47,8 @@ class _Exact(ReadDataStream):
 @dataclass
 class Damage:
     """What could not be read. lost: (first, last) log time [ns] of chunks; unread: bytes between records; nameless:
-    messages whose topic was lost; checksum: whether that of the whole file does not fit; cut: whether it has no end.
+    messages whose topic was lost; checksum: whether that of the whole file does not fit; cut: whether it has no end;
+    rest: bytes of a record that was not finished.
     """
 
     lost: list[tuple[int, int]] = field(default_factory=list)
@@ -55,6 +56,7 @@ class Damage:
     nameless: int = 0
     checksum: bool = False
     cut: bool = False
+    rest: int = 0
 
     def sentences(self) -> list[str]:
         """What to tell, after the file's name."""
@@ -83,7 +85,7 @@ def whole_records(data: Bytes, damage: Damage) -> Iterator[McapRecord]:
         if record is None:
             found = _next_record(data, place)
             if found is None:
-                damage.cut = True
+                damage.cut, damage.rest = True, len(data) - place
                 return
             damage.unread += found - place
             place = found

@@ -4,7 +4,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import numpy as np
-from hasel_recording.marker_angle import turn_between
+from hasel_recording.recording import turn_between
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Patch

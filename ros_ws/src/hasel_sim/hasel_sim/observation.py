@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 import numpy as np
-from hasel_recording.marker_angle import sin_theta_from_markers
+from hasel_recording.recording import sin_theta_from_markers
 
 from hasel_sim.effects.base import ObservationEffect
 from hasel_sim.effects.guarded import guarded

@@ -6,7 +6,7 @@ import numpy as np
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import Point
 from hasel_interfaces.msg import BendingAngle, SupplyState
-from hasel_recording.mcap_drive import muscles
+from hasel_recording.mcap_run import muscles
 from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
 

@@ -8,7 +8,7 @@ more of the long searches, which take three to six times as long as the others.
 from collections.abc import Sequence
 from dataclasses import replace
 
-from hasel_common.workload import Stage
+from hasel_common.progress import Stage
 from hasel_sim.model import Model
 from hasel_sim.run import Run
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
-from hasel_common.workload import Stage
+from hasel_common.progress import Stage
 from hasel_sim.model import Model
 
 from hasel_sysid.estimation.fit import FittedModel, fitted_model

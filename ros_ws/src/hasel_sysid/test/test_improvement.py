@@ -4,7 +4,7 @@ import json
 import math
 
 import pytest
-from hasel_common.workload import Workload
+from hasel_common.progress import Workload
 from hasel_sysid.diagnosis import Verdict
 from hasel_sysid.improvement import improve
 from hasel_sysid.ledger import Ledger

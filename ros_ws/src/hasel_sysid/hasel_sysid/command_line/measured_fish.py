@@ -4,7 +4,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from hasel_recording.csv_writer import write_csv
+from hasel_recording.csv_run import write_csv
 from rich.console import Console
 from rich.table import Table
 

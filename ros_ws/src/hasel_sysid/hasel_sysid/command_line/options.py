@@ -4,7 +4,7 @@ import argparse
 import math
 from pathlib import Path
 
-from hasel_recording.reading_options import RecordingsParser, add_reading_options
+from hasel_recording.command_line import RecordingsParser, add_reading_options
 
 DEFAULT_MODEL = "swimmer"
 

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from hasel_recording.reading_options import RecordingsParser, add_reading_options
+from hasel_recording.command_line import RecordingsParser, add_reading_options
 
 from hasel_sysid.command_line.options import DEFAULT_MODEL, add_time_limit, recording_options
 

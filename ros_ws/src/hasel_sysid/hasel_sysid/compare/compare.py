@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from concurrent.futures import Executor, as_completed
 
-from hasel_common.workload import Workload
+from hasel_common.progress import Workload
 from hasel_sim.model import Model
 from hasel_sim.parallel import submit_all
 from hasel_sim.run import Simulation

@@ -2,7 +2,7 @@
 
 from hasel_common.names import nearest
 from hasel_recording import Recording
-from hasel_recording.header_keys import KNOWN_KEYS
+from hasel_recording.recording import KNOWN_KEYS
 
 from hasel_sysid.data_gate.finding import DataFinding, error, warning
 

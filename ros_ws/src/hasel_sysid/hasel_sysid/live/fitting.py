@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from hasel_common.workload import Workload
+from hasel_common.progress import Workload
 from hasel_recording import Recording, read_recordings
 from hasel_sim.model import Model
 from hasel_sim.parallel import executor

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
-from hasel_common.workload import Workload
+from hasel_common.progress import Workload
 from hasel_recording import HASEL_PAIR
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from hasel_recording import DriveChannel
-from hasel_recording.zero_order_hold import row_in_force
+from hasel_recording.recording import row_in_force
 
 from hasel_sysid.where_it_fails.noise import high_frequency_noise
 
