@@ -6,7 +6,6 @@ MCAP files are read here, also those whose writer was killed; SQLite, and what i
 import mmap
 import os
 import struct
-import warnings
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,7 +21,7 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.interfaces import MessageDefinitionFormat
 from rosbags.rosbag2 import Reader, ReaderError
 
-from hasel_recording.errors import RecordingError, RecordingWarning
+from hasel_recording.errors import RecordingError, warn
 from hasel_recording.mcap_records import MAGIC, Damage, whole_records
 from hasel_recording.ros_messages import schema_text
 
@@ -49,7 +48,7 @@ class McapFile:
         A topic of hasel_common.topics is found in whatever namespace it was recorded. Raises RecordingError when the
         messages are not of this type, or two rigs have such a topic; a RecordingWarning says how many are damaged.
         """
-        topic = self.name_of(topic)
+        topic = self._name_of(topic)
         if topic not in self.messages:
             return []
         encoding, schema = self.kinds[topic]
@@ -74,14 +73,12 @@ class McapFile:
             with suppress(*UNREADABLE):
                 decoded.append(decode(message.data))
         if damaged := len(self.messages[topic]) - len(decoded):
-            warnings.warn(
-                f"{self.path}: {damaged} damaged messages on {topic} were left out; restore the file from a copy.",
-                RecordingWarning,
-                stacklevel=4,
+            warn(
+                f"{self.path}: {damaged} damaged messages on {topic} were left out; restore the file from a copy."
             )
         return decoded
 
-    def name_of(self, topic: str) -> str:
+    def _name_of(self, topic: str) -> str:
         """Return what a topic is called here: its name, or the same in another namespace where there is only that."""
         if topic in self.messages or topic not in TOPIC_TYPES:
             return topic
@@ -147,7 +144,7 @@ def read_file(path: Path) -> McapFile:
         raise RecordingError(f"{path} is not an MCAP file: give a recording in MCAP or CSV.")
     damage.cut &= bool(content.messages or damage.rest)
     for sentence in damage.sentences():
-        warnings.warn(f"{path} {sentence}", RecordingWarning, stacklevel=5)
+        warn(f"{path} {sentence}")
     return content
 
 

@@ -63,7 +63,7 @@ def marker_columns(names: Iterable[str], unit: str) -> list[str]:
 def understand(names: list[str], meant: Mapping[str, str], source: str, angle: bool = True) -> Columns:
     """Return what the columns mean; one that is mapped counts before one that has the name itself.
 
-    names: as in the file; meant: for some of them what to read them as (see column_map); source: where they were
+    names: as in the file; meant: for some of them what to read them as (see meant_names); source: where they were
     found; angle: whether an angle or markers must be there. Raises RecordingError for what is missing, twice,
     misspelt or in a unit that is not known.
     """
@@ -247,20 +247,19 @@ def _found(column: str, columns: Sequence[str]) -> str | None:
 
 
 def _full_name(meant: str, column: str) -> str:
+    quantity, unit = (meant.lower().split("_")[end] for end in (0, -1))
     if meant == SIN_THETA:
         unit = unit_at_the_end(column, THETA_UNITS)
         return f"theta_{unit}" if unit else SIN_THETA
-    if meant == "theta":
-        return f"theta_{unit_at_the_end(column, THETA_UNITS) or 'rad'}"
-    if meant == "time":
-        return f"time_{unit_at_the_end(column, TIME_UNITS) or 's'}"
-    if re.fullmatch(r".+_[xy]", meant):
-        return f"{meant}_{unit_at_the_end(column, MARKER_UNITS) or 'm'}"
-    if is_drive_column(meant):
-        quantity = meant.lower().split("_")[0]
-        if meant.lower().rsplit("_", 1)[-1] not in UNITS[quantity]:
-            return f"{meant}_{unit_at_the_end(column, UNITS[quantity]) or SI_UNITS[quantity].lower()}"
-    return meant
+    if meant in ("theta", "time"):
+        known, usual = (THETA_UNITS, "rad") if meant == "theta" else (TIME_UNITS, "s")
+    elif re.fullmatch(r".+_[xy]", meant):
+        known, usual = MARKER_UNITS, "m"
+    elif is_drive_column(meant) and unit not in UNITS[quantity]:
+        known, usual = UNITS[quantity], SI_UNITS[quantity].lower()
+    else:
+        return meant
+    return f"{meant}_{unit_at_the_end(column, known) or usual}"
 
 
 def unit_at_the_end(column: str, units: Iterable[str]) -> str | None:

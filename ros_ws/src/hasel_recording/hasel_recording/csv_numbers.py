@@ -2,7 +2,6 @@
 
 import math
 import re
-import warnings
 from collections.abc import Sequence
 from datetime import datetime, timezone
 from functools import cached_property
@@ -12,7 +11,7 @@ import numpy as np
 
 from hasel_recording.csv_columns import Column
 from hasel_recording.csv_text import CsvText
-from hasel_recording.errors import RecordingError, RecordingWarning
+from hasel_recording.errors import RecordingError, warn
 
 COUNTERS = {2**16: "a counter of 16 bits", 2**31: "a counter of 31 bits", 2**32: "a counter of 32 bits"}
 CLOCKS_S = {60.0: "a clock without minutes", 3600.0: "a clock without hours", 86400.0: "midnight"}
@@ -20,7 +19,7 @@ CLOCKS_S = {60.0: "a clock without minutes", 3600.0: "a clock without hours", 86
 FEW_STEPS = 5.0
 
 
-def counted_on(times: np.ndarray, name: str, factor: float, text: CsvText) -> np.ndarray:
+def _counted_on(times: np.ndarray, name: str, factor: float, text: CsvText) -> np.ndarray:
     """Times [s] [n] that increase: a clock that wraps is counted on, with a RecordingWarning.
 
     factor: the column's unit in s. Raises RecordingError with the line where rows share a time, the clock starts anew
@@ -37,21 +36,18 @@ def counted_on(times: np.ndarray, name: str, factor: float, text: CsvText) -> np
         for span, what in wraps.items():
             if -FEW_STEPS * usual < back - span < 1e-6 * span:
                 times[row:] += span
-                warnings.warn(
+                warn(
                     f"{text.path}, line {text.lines[row]}: {name} starts again after {span:.10g} s ({what}); it is "
-                    "counted on.",
-                    RecordingWarning,
-                    stacklevel=5,
+                    "counted on."
                 )
                 break
     late = np.flatnonzero(np.diff(times) <= 0)
     if late.size == 0:
         return times
     row = int(late[0]) + 1
-    shown = [f"{time / factor:.12g}" for time in (times[row], times[row - 1])]
     raise RecordingError(
-        f"{text.path}, line {text.lines[row]}: {name} {shown[0]} does not come after {shown[1]}; "
-        f"{_advice(times, row, usual)}."
+        f"{text.path}, line {text.lines[row]}: {name} {times[row] / factor:.12g} does not come after "
+        f"{times[row - 1] / factor:.12g}; {_advice(times, row, usual)}."
     )
 
 
@@ -69,15 +65,9 @@ def _advice(times: np.ndarray, row: int, usual: float) -> str:
 
 
 NOT_MEASURED = {"", "nan", "na", "n/a", "null", "none", "-"}
-BLANKS, APOSTROPHES = "[ \u00a0\u2009\u202f]", "['\u2019]"
+BLANKS, QUOTES = "[ \u00a0\u2009\u202f]", "['\u2019]"
 POINT = r"\."
-NOTATIONS = (
-    ("", POINT),
-    ("", ","),
-    (",", POINT),
-    (POINT, ","),
-    *product((BLANKS, APOSTROPHES), (POINT, ",")),
-)
+NOTATIONS = (("", POINT), ("", ","), (",", POINT), (POINT, ","), *product((BLANKS, QUOTES), (POINT, ",")))
 """How numbers are written: the sign between groups of three digits, and the decimal one."""
 CLOCK = re.compile(r"(?:\d+:)?\d{1,2}:\d{2}(?:[.,]\d*)?")
 
@@ -123,19 +113,18 @@ class CsvNumbers:
 
         Seconds, or a time of day, or date and time, as text.
         """
-        cells = self._text.column(column.name)
-        read = _clock(cells)
-        times = self.column(column) if read is None else read
-        return counted_on(times, column.name, 1.0 if read is not None else column.factor, self._text)
+        read = _clock(self._text.column(column.name))
+        if read is not None:
+            return _counted_on(read, column.name, 1.0, self._text)
+        return _counted_on(self.column(column), column.name, column.factor, self._text)
 
     @cached_property
     def _notations(self) -> list[tuple[str, str]]:
         """The notations that fit every column of numbers; points between groups only where some cell has a comma."""
         comma = any("," in cell for row in self._text.cells for cell in row)
         possible = [notation for notation in NOTATIONS if comma or "," not in notation]
-        for cells in map(list, zip(*self._text.cells, strict=True)):
-            fit = _fitting(cells, possible)
-            possible = fit or possible
+        for cells in zip(*self._text.cells, strict=True):
+            possible = _fitting(cells, possible) or possible
         return possible
 
     def _notation(self, name: str, cells: list[str]) -> tuple[str, str]:
@@ -156,7 +145,7 @@ class CsvNumbers:
         return fit[0]
 
 
-def _fitting(cells: list[str], notations: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+def _fitting(cells: Sequence[str], notations: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
     """The notations in which every measured cell is a number."""
     measured = [cell.replace("\u2212", "-") for cell in cells if cell.lower() not in NOT_MEASURED]
     return [each for each in notations if all(map(GRAMMARS[each].fullmatch, measured))]

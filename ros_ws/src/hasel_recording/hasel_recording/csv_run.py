@@ -2,7 +2,6 @@
 
 import csv
 import math
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -13,7 +12,7 @@ from hasel_recording.csv_columns import SIN_THETA, Columns, marker_columns, mean
 from hasel_recording.csv_numbers import NOT_MEASURED, CsvNumbers
 from hasel_recording.csv_text import CsvText, read_text
 from hasel_recording.drive_channel import HASEL_PAIR, DriveChannel, as_meant
-from hasel_recording.errors import RecordingError, RecordingWarning
+from hasel_recording.errors import RecordingError, warn
 from hasel_recording.recording import DRIVE_KEY, MARKER_NAMES, Recording, sin_theta_from_markers
 
 SEPARATED_BY = {";": "semicolons", "\t": "tabs", " ": "blanks"}
@@ -28,7 +27,7 @@ def read_csv(path: Path, mapping: Mapping[str, str] | None = None, own_drive: bo
     text = read_text(path)
     columns = understand(text.names, meant_names(mapping or {}, text.names, str(path), own_drive), str(path))
     for name in columns.unused:
-        _warn(f"{path}: column {name!r} is not used; --map says what a column is.")
+        warn(f"{path}: column {name!r} is not used; --map says what a column is.")
     text = _until_drive_ends(text, columns)
     numbers = CsvNumbers(text)
     time_s = numbers.times(columns.time)
@@ -119,7 +118,7 @@ def _until_drive_ends(text: CsvText, columns: Columns) -> CsvText:
     left_out = len(text.cells) - known[-1] if known else 0
     if not left_out:
         return text
-    _warn(
+    warn(
         f"{text.path}: {left_out} frames after the drive's end were left out: what drove the body then is not known."
     )
     return replace(text, lines=text.lines[:-left_out], cells=text.cells[:-left_out])
@@ -149,7 +148,7 @@ def write_csv(recording: Recording, path: Path) -> None:
         _write(own, {}, drive_names, [recording.drive_time_s, *recording.drive_values.T], recording.name)
     _write(path, metadata, [*names, SIN_THETA], [*columns, recording.sin_theta], recording.name)
     if recording.simulated_time_s is not None:
-        _warn(f"{path}: the simulated angle was left out, a CSV recording holds the measured one.")
+        warn(f"{path}: the simulated angle was left out, a CSV recording holds the measured one.")
 
 
 def drive_path(path: Path) -> Path:
@@ -172,7 +171,3 @@ def _write(
 
 def _digits(number: float) -> str:
     return "" if math.isnan(number) else repr(number).removesuffix(".0")
-
-
-def _warn(sentence: str) -> None:
-    warnings.warn(sentence, RecordingWarning, stacklevel=4)

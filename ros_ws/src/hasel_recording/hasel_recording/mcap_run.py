@@ -2,7 +2,6 @@
 
 import heapq
 import math
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import compress
@@ -15,7 +14,7 @@ from hasel_common.topics import DRIVE, MARKERS, MEASURED, SIMULATED, STATE, TOPI
 
 from hasel_recording.bag import McapFile, read_bag
 from hasel_recording.drive_channel import HASEL_PAIR, DriveChannel, as_meant, parse_column
-from hasel_recording.errors import RecordingError, RecordingWarning
+from hasel_recording.errors import RecordingError, warn
 from hasel_recording.mcap_recorder import HEADER_RECORD, TIME_RECORD, McapRecorder
 from hasel_recording.recording import MARKER_NAMES, Recording, row_in_force
 from hasel_recording.ros_messages import bending_angle_message, nanoseconds
@@ -173,11 +172,9 @@ def _driven(path: Path, frame_ns: np.ndarray, drive: StampedDrive | None) -> np.
         )
     for left_out, where in ((early, f"before the first {drive.topic}"), (late, "after the drive's end")):
         if left_out.any():
-            warnings.warn(
+            warn(
                 f"{path}: {np.count_nonzero(left_out)} frames {where} were left out: what drove the body then is not "
-                "known.",
-                RecordingWarning,
-                stacklevel=4,
+                "known."
             )
     return ~(early | late)
 

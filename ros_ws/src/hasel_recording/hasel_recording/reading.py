@@ -1,6 +1,5 @@
 """A path in, recordings out, and back: of either kind, with the drive as a file of its own."""
 
-import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,7 +13,7 @@ from hasel_recording.csv_numbers import CsvNumbers
 from hasel_recording.csv_run import drive_columns, read_csv, write_csv
 from hasel_recording.csv_text import TEXT_SUFFIXES, read_text
 from hasel_recording.drive_channel import DriveChannel, as_meant
-from hasel_recording.errors import RecordingError, RecordingWarning
+from hasel_recording.errors import RecordingError, warn
 from hasel_recording.mcap_run import read_mcap, seconds, stamped_drive, time_origin, write_mcap
 from hasel_recording.recording import DRIVE_KEY, Recording, held, row_in_force
 from hasel_recording.switch_times import with_placed_switches
@@ -104,19 +103,17 @@ def _check_cover(recording: Recording, path: Path, drive: RecordedDrive) -> None
             f"({last:g} s): give both the same time."
         )
     if begin > first:
-        _warn(recording, f"the drive in {path} begins at {begin:g} s; before, nothing is taken to drive")
+        warn(
+            f"{recording.name}: the drive in {path} begins at {begin:g} s; before, nothing is taken to drive."
+        )
     pause = max(np.diff(drive.time_s).max(initial=0.0), 1.0)
     if drive.values[-1].any() and last - end > 2 * pause:
         pairs = zip(drive.channels, drive.values[-1], strict=True)
         on = ", ".join(channel.shown(value) for channel, value in pairs if value)
-        _warn(
-            recording,
-            f"the drive in {path} ends at {end:g} s with {on}, which is taken to hold until {last:g} s",
+        warn(
+            f"{recording.name}: the drive in {path} ends at {end:g} s with {on}, which is taken to hold until "
+            f"{last:g} s."
         )
-
-
-def _warn(recording: Recording, sentence: str) -> None:
-    warnings.warn(f"{recording.name}: {sentence}.", RecordingWarning, stacklevel=4)
 
 
 SUFFIXES = (*TEXT_SUFFIXES, ".mcap", ".db3")
@@ -188,7 +185,7 @@ def read_recordings(
             " ".join(errors) or "No recording was given: name at least one .mcap or .csv file."
         )
     for error in errors:
-        warnings.warn(f"Skipped: {error}", RecordingWarning, stacklevel=2)
+        warn(f"Skipped: {error}")
     return recordings
 
 

@@ -1,11 +1,10 @@
 """When a drive switched of which a recording knows the rows only: between two of them, or where some are missing."""
 
-import warnings
 from dataclasses import replace
 
 import numpy as np
 
-from hasel_recording.errors import RecordingWarning
+from hasel_recording.errors import warn
 from hasel_recording.recording import Recording
 
 LOST_ROW = 1.5
@@ -81,7 +80,7 @@ def _in_gaps(
                     f"{gap}; the switch is placed at {due:.6g} s by the drive's period of {found[0]:.6g} s."
                 )
                 break
-        warnings.warn(f"{recording.path or recording.name}: {said}", RecordingWarning, stacklevel=4)
+        warn(f"{recording.path or recording.name}: {said}")
     return placed
 
 
