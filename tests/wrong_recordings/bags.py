@@ -62,7 +62,7 @@ MESSAGES: list[list[tuple]] = [
 def _damaged(content: bytes, path: Path) -> Iterator[bytes]:
     """A whole file with each kind of damage."""
     with path.open("rb") as file:
-        chunk = [each for each in StreamReader(file, emit_chunks=True).records if isinstance(each, Chunk)][1]
+        chunk = [each for each in StreamReader(file, emit_chunks=True).records if isinstance(each, Chunk)][2]
     middle = content.index(chunk.data) + len(chunk.data) // 2
     yield content[: len(content) // 2]
     yield content[:middle] + bytes([content[middle] ^ 0xFF]) + content[middle + 1 :]

@@ -14,6 +14,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from hasel_common.node_parameter import AUTOSTART
 
+Return = TransitionCallbackReturn
 TRANSITION_WORDS = "lifecycle state machine transition"
 PATIENCE_S = 5.0
 
@@ -37,7 +38,7 @@ class BackgroundSpin:
     def end(self) -> None:
         """End the thread, once a callback that runs is over; an executor that is shut down while it spins breaks."""
         if self._thread.is_alive():
-            self._executor.create_task(self._end)
+            self._executor.create_task(lambda: setattr(self, "_ending", True))
             self._thread.join(timeout=PATIENCE_S)
         self._executor.shutdown()
 
@@ -48,17 +49,12 @@ class BackgroundSpin:
         if self._owns_context:
             rclpy.try_shutdown(context=self._node.context)
 
-    def _end(self) -> None:
-        self._ending = True
-
     def _spin(self) -> None:
         if self._begin is not None:
             self._begin()
         with quiet_at_shutdown(self._node.context):
             while not self._ending and self._node.context.ok():
-                with suppress(
-                    InvalidHandle
-                ):  # another thread has just destroyed a publisher: without it, then
+                with suppress(InvalidHandle):  # of a publisher that another thread has just destroyed
                     self._executor.spin_once()
 
 
@@ -94,9 +90,6 @@ def spin(executor: Executor, on_illegal_transition: Callable[[Exception], None])
             if TRANSITION_WORDS not in str(error):
                 raise
             on_illegal_transition(error)
-
-
-Return = TransitionCallbackReturn
 
 
 class ManagedNode(LifecycleNode):
@@ -148,7 +141,8 @@ class ManagedNode(LifecycleNode):
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """See `deactivate`."""
-        self._rest()
+        self.active = False
+        self.deactivate()
         return super().on_deactivate(state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -158,17 +152,14 @@ class ManagedNode(LifecycleNode):
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop working and close everything, from whatever state."""
-        self._rest()
+        self.active = False
+        self.deactivate()
         self.cleanup()
         return Return.SUCCESS
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Close everything; the node may be configured again."""
         return self.on_shutdown(state)
-
-    def _rest(self) -> None:
-        self.active = False
-        self.deactivate()
 
     def _attempt(self, work) -> TransitionCallbackReturn:
         try:

@@ -36,13 +36,10 @@ class NodeParameter:
 
 def user_arguments(arguments: Sequence[str]) -> list[str]:
     """The arguments that are not meant for ROS: all but those from `--ros-args` to `--` or the end."""
-    kept: list[str] = []
-    for_ros = False
+    kept, for_ros = [], False
     for argument in arguments:
-        if argument == "--ros-args":
-            for_ros = True
-        elif for_ros and argument == "--":
-            for_ros = False
+        if argument == "--ros-args" or (for_ros and argument == "--"):
+            for_ros = argument == "--ros-args"
         elif not for_ros:
             kept.append(argument)
     return kept
@@ -70,13 +67,13 @@ def answer_help(
 
 def parameter_list(parameters: Iterable[tuple[str, object, str]]) -> str:
     """A node's parameters, one a line: name with default, meaning."""
-    rows = [(f"{key}:={_written(default)}", meaning) for key, default, meaning in parameters]
+
+    def written(default: object) -> str:
+        if isinstance(default, (list, tuple)):
+            return "[" + ", ".join(str(item) for item in default if item != "") + "]"
+        return str(default).lower() if isinstance(default, bool) else str(default)
+
+    rows = [(f"{key}:={written(default)}", meaning) for key, default, meaning in parameters]
     width = min(36, max((len(row[0]) for row in rows), default=0))
     listed = "\n".join(f"  {given:{width}}  {meaning}" for given, meaning in rows)
     return f"parameters and their defaults:\n{listed}"
-
-
-def _written(default: object) -> str:
-    if isinstance(default, (list, tuple)):
-        return "[" + ", ".join(str(item) for item in default if item != "") + "]"
-    return str(default).lower() if isinstance(default, bool) else str(default)

@@ -8,12 +8,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import timedelta
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
-
-Show = Callable[[str, float], None]
-"""Called with a line of text and the share done, 0 to 1."""
-
 _MEASURED_S = 1.0
 """What the usual speed counts beside the one that is measured: as much as so long a time of work."""
 _STILL = 0.25
@@ -22,6 +16,12 @@ _TOO_RARE = 1 / 3
 """A stage is expected of a work only where more than this share of such works reach it: the few that take several times
 as long would make all others look long.
 """
+_LINE_EVERY_S = 10.0
+"""In a log a line says that it goes on, also where no new stage begins."""
+_FIRST_LINE_S = 4.0
+"""The first one comes sooner: who has just begun wants to know whether to wait."""
+_LOOK_EVERY_S = 0.5
+"""So that no line is late by more, and a bar moves."""
 
 
 @dataclass(frozen=True)
@@ -70,11 +70,12 @@ class Workload:
         plan: Sequence[Stage] = (),
         units: str = "simulations",
         usual_speed: float | None = None,
-        tell: Show | None = None,
+        tell: Callable[[str, float], None] | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """plan: the stages in their order; units: what is counted; usual_speed: work per second before any is measured;
-        tell: called by `check`, and may raise there to break the work off; clock: tells the time [s].
+        tell: called by `check` with a line of text and the share done (0 to 1), and may raise there to break the work
+        off; clock: tells the time [s].
         """
         self._plan, self._units, self._usual_speed, self._tell = tuple(plan), units, usual_speed, tell
         self._clock, self._lock = clock, threading.Lock()
@@ -143,19 +144,15 @@ class Workload:
     def now(self) -> HowFar:
         """How far it is; the share never goes back, the time left follows what turns out."""
         with self._lock:
-            stage, rest = self._text, self._rest()
             if not self._plan:
-                return HowFar(stage, self._done, 0, False, self._units, 0.0, None)
+                return HowFar(self._text, self._done, 0, False, self._units, 0.0, None)
+            usual, done = self._here.work, self._work - self._before
+            rest = max(usual - done, 0.0 if self._here.known else _STILL * usual) + self._after
             whole = self._work + rest
             self._share = max(self._share, self._work / whole if whole else 0.0)
             of = round(self._done * whole / self._work) if self._work else 0
             certain = self._here.known and not self._after
-            return HowFar(stage, self._done, of, certain, self._units, self._share, self._left(rest))
-
-    def _rest(self) -> float:
-        """Work that is still expected."""
-        usual, done = self._here.work, self._work - self._before
-        return max(usual - done, 0.0 if self._here.known else _STILL * usual) + self._after
+            return HowFar(self._text, self._done, of, certain, self._units, self._share, self._left(rest))
 
     def _left(self, rest: float) -> float | None:
         """Seconds for the rest, at the speed since the first piece was done."""
@@ -168,14 +165,6 @@ class Workload:
         return rest * seconds / work if work else None
 
 
-_LINE_EVERY_S = 10.0
-"""In a log a line says that it goes on, also where no new stage begins."""
-_FIRST_LINE_S = 4.0
-"""The first one comes sooner: who has just begun wants to know whether to wait."""
-_LOOK_EVERY_S = 0.5
-"""So that no line is late by more, and a bar moves."""
-
-
 @contextmanager
 def progress_bar(
     title: str, plan: Sequence[Stage] = (), units: str = "simulations", usual_speed: float | None = None
@@ -184,6 +173,9 @@ def progress_bar(
 
     Where stderr is no terminal, it is lines; see `LogLines`.
     """
+    from rich.console import Console  # takes a while, and who only counts shows nothing
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+
     work = Workload(plan, units, usual_speed)
     console = Console(stderr=True)
     if not console.is_terminal:

@@ -4,6 +4,7 @@ import io
 import time
 
 import pytest
+import rich.console
 from hasel_common import progress
 from hasel_common.progress import HowFar, LogLines, Stage, Workload, counted, progress_bar
 
@@ -192,9 +193,9 @@ def test_a_log_hears_of_a_stage_that_says_nothing(capsys, monkeypatch):
 def test_a_terminal_has_a_bar_with_what_is_counted(monkeypatch):
     """Stage, how many of how many, and the time left."""
     shown = io.StringIO()
-    console = progress.Console
+    console = rich.console.Console
     monkeypatch.setattr(
-        progress, "Console", lambda stderr: console(file=shown, force_terminal=True, width=120)
+        rich.console, "Console", lambda stderr: console(file=shown, force_terminal=True, width=120)
     )
     stage = Stage("fit", 10.0)
     with progress_bar("improve", [stage]) as work, work.stage(stage):
