@@ -18,6 +18,11 @@ from mcap_ros2._dynamic import serialize_dynamic  # the package's own writer has
 from hasel_recording.errors import RecordingError
 from hasel_recording.ros_messages import has_header, plain_fields, schema_text, stamp, type_hash, type_of
 
+HEADER_RECORD = "hasel_recording"  # metadata record with the header lines
+TIME_RECORD = "hasel_time"  # metadata record with the stamp that is time 0
+CHUNK_BYTES = 16 * 1024
+FLUSH_PERIOD_S = 0.4
+_LATEST_NS = 2**63 - 1
 _INFINITE = {"sec": 9223372036, "nsec": 854775807}
 _RELIABLE_QOS = {
     "history": "keep_last",
@@ -57,47 +62,37 @@ def _bag_metadata(
     file_name: str, topics: dict[str, _Topic], first_ns: int, last_ns: int, custom: dict[str, str]
 ) -> dict[str, str]:
     """Return the content of the record `rosbag2`: what `metadata.yaml` says of a bag of this one file."""
-    count = sum(topic.count for topic in topics.values())
     start = {"nanoseconds_since_epoch": first_ns}
     duration = {"nanoseconds": last_ns - first_ns}
-    file = {"path": file_name, "starting_time": start, "duration": duration, "message_count": count}
-    return {
-        "serialized_metadata": _yaml_text(
-            {
-                "version": 9,
-                "storage_identifier": "mcap",
-                "duration": duration,
-                "starting_time": start,
-                "message_count": count,
-                "topics_with_message_count": [
-                    {
-                        "topic_metadata": {
-                            "name": name,
-                            "type": topic.type_name,
-                            "serialization_format": "cdr",
-                            "offered_qos_profiles": [_RELIABLE_QOS],
-                            "type_description_hash": type_hash(topic.type_name),
-                        },
-                        "message_count": topic.count,
-                    }
-                    for name, topic in topics.items()
-                ],
-                "compression_format": "",
-                "compression_mode": "",
-                "relative_file_paths": [file_name],
-                "files": [file],
-                "custom_data": custom or None,
-                "ros_distro": "jazzy",
-            }
-        )
+    count = {"message_count": sum(topic.count for topic in topics.values())}
+    told = [
+        {
+            "topic_metadata": {
+                "name": name,
+                "type": topic.type_name,
+                "serialization_format": "cdr",
+                "offered_qos_profiles": [_RELIABLE_QOS],
+                "type_description_hash": type_hash(topic.type_name),
+            },
+            "message_count": topic.count,
+        }
+        for name, topic in topics.items()
+    ]
+    bag = {
+        "version": 9,
+        "storage_identifier": "mcap",
+        "duration": duration,
+        "starting_time": start,
+        **count,
+        "topics_with_message_count": told,
+        "compression_format": "",
+        "compression_mode": "",
+        "relative_file_paths": [file_name],
+        "files": [{"path": file_name, "starting_time": start, "duration": duration, **count}],
+        "custom_data": custom or None,
+        "ros_distro": "jazzy",
     }
-
-
-HEADER_RECORD = "hasel_recording"  # metadata record with the header lines
-TIME_RECORD = "hasel_time"  # metadata record with the stamp that is time 0
-CHUNK_BYTES = 16 * 1024
-_LATEST_NS = 2**63 - 1
-FLUSH_PERIOD_S = 0.4
+    return {"serialized_metadata": _yaml_text(bag)}
 
 
 class McapRecorder:
@@ -117,16 +112,19 @@ class McapRecorder:
         self._failure: OSError | None = None
         try:
             self._file = self.path.open("wb")
-            self._writer = Writer(self._file, chunk_size=CHUNK_BYTES)
-            self._writer.start("ros2", library=f"hasel_recording {installed_version('hasel_recording')}")
-            self._writer.add_metadata(HEADER_RECORD, self._metadata)
-            if time_origin_ns is not None:
-                self._writer.add_metadata(TIME_RECORD, {"time_origin_ns": str(time_origin_ns)})
-            self._writer.flush()  # killed from here on, it is an empty recording
         except OSError as error:
             raise RecordingError(
                 f"{self.path} cannot be written ({error.strerror}): choose another place."
             ) from None
+        self._writer = Writer(self._file, chunk_size=CHUNK_BYTES)
+        self._writer.start("ros2", library=f"hasel_recording {installed_version('hasel_recording')}")
+        self._writer.add_metadata(HEADER_RECORD, self._metadata)
+        if time_origin_ns is not None:
+            self._writer.add_metadata(TIME_RECORD, {"time_origin_ns": str(time_origin_ns)})
+        try:
+            self._writer.flush()  # killed from here on, it is an empty recording
+        except OSError as error:
+            self._failure = error
         self._lock = threading.Lock()
         self._closing = threading.Event()
         self._flusher = threading.Thread(target=self._flush_until_closed, name="recording flush", daemon=True)

@@ -40,8 +40,28 @@ def read_drive(
     """
     if not path.exists():
         raise RecordingError(f"There is no drive file {path}: check the name.")
-    read = _read_csv if path.suffix.lower() in TEXT_SUFFIXES else _read_bag
-    return read(path, mapping or {}, metadata or {})
+    if path.suffix.lower() not in TEXT_SUFFIXES:
+        file = read_bag(path)
+        drive = stamped_drive(file)
+        if drive is None:
+            raise RecordingError(
+                f"{path} has neither /hasel/state nor /hasel/drive: give the drive's recording."
+            )
+        channels, values, stand_in = as_meant(drive.channels, drive.values, metadata or {}, str(path))
+        origin = time_origin(file, drive.stamps)
+        return RecordedDrive(channels, seconds(drive.stamps, origin), values, origin or None, stand_in)
+    text = read_text(path)
+    text = replace(text, metadata={**(metadata or {}), **text.metadata})
+    meant = meant_names(mapping or {}, text.names, str(path), all_here=False, of_drive=True)
+    columns, numbers = understand(text.names, meant, str(path), angle=False), CsvNumbers(text)
+    time_s = numbers.times(columns.time)
+    channels, values, stand_in = drive_columns(columns, numbers, text)
+    if values is None:
+        raise RecordingError(
+            f"{path} has no drive, only {', '.join(text.names)}: expected columns such as voltage_upper_v or "
+            "pressure_chamber_kpa, or say which they are with --map."
+        )
+    return RecordedDrive(channels, time_s, values, stand_in=stand_in)
 
 
 def with_drive(recording: Recording, path: Path, mapping: Mapping[str, str] | None = None) -> Recording:
@@ -67,32 +87,6 @@ def with_drive(recording: Recording, path: Path, mapping: Mapping[str, str] | No
         drive_values=drive.values[first:],
         understood=(*recording.understood, *filter(None, [said, drive.stand_in])),
     )
-
-
-def _read_csv(path: Path, mapping: Mapping[str, str], metadata: Mapping[str, str]) -> RecordedDrive:
-    text = read_text(path)
-    text = replace(text, metadata={**metadata, **text.metadata})
-    meant = meant_names(mapping, text.names, str(path), all_here=False, of_drive=True)
-    columns = understand(text.names, meant, str(path), angle=False)
-    numbers = CsvNumbers(text)
-    time_s = numbers.times(columns.time)
-    channels, values, stand_in = drive_columns(columns, numbers, text)
-    if values is None:
-        raise RecordingError(
-            f"{path} has no drive, only {', '.join(text.names)}: expected columns such as voltage_upper_v or "
-            "pressure_chamber_kpa, or say which they are with --map."
-        )
-    return RecordedDrive(channels, time_s, values, stand_in=stand_in)
-
-
-def _read_bag(path: Path, mapping: Mapping[str, str], metadata: Mapping[str, str]) -> RecordedDrive:
-    file = read_bag(path)
-    drive = stamped_drive(file)
-    if drive is None:
-        raise RecordingError(f"{path} has neither /hasel/state nor /hasel/drive: give the drive's recording.")
-    channels, values, stand_in = as_meant(drive.channels, drive.values, metadata, str(path))
-    origin = time_origin(file, drive.stamps)
-    return RecordedDrive(channels, seconds(drive.stamps, origin), values, origin or None, stand_in)
 
 
 def _check_cover(recording: Recording, path: Path, drive: RecordedDrive) -> None:

@@ -90,10 +90,13 @@ def test_the_first_message_of_every_topic_is_on_the_disk_at_once(tmp_path):
         assert list(message.voltage) == [1.0, 2.0]
 
 
-def test_a_disk_that_is_full_from_the_beginning_is_reported(tmp_path):
-    """No recording begins that cannot hold its header."""
-    with pytest.raises(RecordingError, match="cannot be written"):
-        McapRecorder("/dev/full")
+def test_a_disk_that_is_full_from_the_beginning_is_reported_at_the_first_message():
+    """Whoever begins a recording may have a supply to watch: no error until something is lost."""
+    recorder = McapRecorder("/dev/full")
+    with pytest.raises(RecordingError, match=r"cannot be written on \(No space left on device\)"):
+        recorder.write(COMMAND, {"voltage": [1.0, 2.0]}, 1)
+    with pytest.raises(RecordingError, match="could not be finished"):
+        recorder.close()
 
 
 def test_header_lines_may_be_told_later(tmp_path):
