@@ -18,8 +18,8 @@ import pytest
 from hasel_common.declared_parameters import _fitting
 from hasel_common.node_parameter import NodeParameter
 from hasel_recording import Recording, RecordingError, read_recording, write_recording
-from hasel_recording.column_map import parse_map
-from hasel_recording.mcap_file import read_file
+from hasel_recording.bag import read_file
+from hasel_recording.csv_columns import parse_map
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.sources.video_source import VideoSource
 from hypothesis import HealthCheck, given, settings
@@ -146,15 +146,13 @@ def mcap_files() -> list[bytes]:
         file = io.BytesIO()
         writer = Writer(file, **options)
         writer.start(profile="ros2")
-        schemas = {n: writer.register_schema(s.name, s.encoding, s.data) for n, s in source.schemas.items()}
-        channels = {
-            n: writer.register_channel(c.topic, c.message_encoding, schemas[c.schema_id])
-            for n, c in source.channels.items()
-        }
-        for message in sorted((m for ms in source.messages.values() for m in ms), key=lambda m: m.log_time):
-            writer.add_message(
-                channels[message.channel_id], message.log_time, message.data, message.publish_time
-            )
+        channels = {}
+        for topic, (encoding, schema) in source.kinds.items():
+            number = writer.register_schema(schema.name, schema.encoding, schema.data)
+            channels[topic] = writer.register_channel(topic, encoding, number)
+        messages = [(topic, each) for topic, every in source.messages.items() for each in every]
+        for topic, message in sorted(messages, key=lambda pair: pair[1].log_time):
+            writer.add_message(channels[topic], message.log_time, message.data, message.publish_time)
         writer.finish()
         found.append(file.getvalue())
     return found

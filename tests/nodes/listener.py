@@ -6,7 +6,7 @@ from collections.abc import Callable
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_common.endpoints import Role
-from hasel_common.spinning import node_alone
+from hasel_common.managed_node import node_alone
 from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
 from rclpy.executors import SingleThreadedExecutor
 from std_srvs.srv import Trigger

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from hasel_common.topics import DRIVE, MEASURED, STATE
 from hasel_recording import McapRecorder, Recording, read_recording, write_recording
-from hasel_recording.bending_angle_message import bending_angle_message
+from hasel_recording.ros_messages import bending_angle_message
 from mcap.records import Chunk
 from mcap.stream_reader import StreamReader
 from mcap.writer import Writer
@@ -39,6 +39,7 @@ def _drive(**values: float) -> dict:
 
 
 MESSAGES: list[list[tuple]] = [
+    [],
     [("/hasel/bending/measurd", ANGLE, 1, KIND)],
     [(MEASURED, ANGLE, 1), ("/hasel/states", _state(0, 0), 1, "hasel_interfaces/msg/SupplyState")],
     [(MEASURED, {"data": 0.1}, 1, "std_msgs/msg/Float64")],
@@ -61,7 +62,7 @@ MESSAGES: list[list[tuple]] = [
 def _damaged(content: bytes, path: Path) -> Iterator[bytes]:
     """A whole file with each kind of damage."""
     with path.open("rb") as file:
-        chunk = [each for each in StreamReader(file, emit_chunks=True).records if isinstance(each, Chunk)][1]
+        chunk = [each for each in StreamReader(file, emit_chunks=True).records if isinstance(each, Chunk)][2]
     middle = content.index(chunk.data) + len(chunk.data) // 2
     yield content[: len(content) // 2]
     yield content[:middle] + bytes([content[middle] ^ 0xFF]) + content[middle + 1 :]

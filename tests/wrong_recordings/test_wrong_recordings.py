@@ -20,8 +20,9 @@ def _modules(package: str, *patterns: str) -> list[Path]:
 
 
 READERS = [
-    *_modules("hasel_recording", "bag.py", "column_map.py", "csv_*.py", "drive_*.py", "mcap_*.py"),
-    *_modules("hasel_recording", "plateaus.py", "reading.py", "stand_in.py"),
+    *_modules(
+        "hasel_recording", "bag.py", "csv_*.py", "drive_*.py", "mcap_*.py", "plateaus.py", "reading.py"
+    ),
     *_modules("hasel_tracker", "sources/*.py", "offline/drive*.py"),
     *_modules("hasel_sysid", "dataset.py", "experiment.py"),
 ]

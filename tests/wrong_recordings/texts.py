@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from hasel_recording import read_recording, read_recordings
-from hasel_recording.column_map import parse_map
+from hasel_recording.csv_columns import parse_map
 
 Files = dict[str, str | bytes]
 

@@ -13,7 +13,6 @@ setup(
     ],
     install_requires=[
         "setuptools",
-        "h5py",
         "jinja2",
         "matplotlib",
         "numpy>=1.26",
@@ -21,7 +20,8 @@ setup(
         "scipy>=1.11",
     ],
     extras_require={
-        "test": ["pytest", "pytest-timeout"],
+        "mat": ["h5py"],
+        "test": ["h5py", "pytest", "pytest-timeout"],
     },
     zip_safe=False,
     maintainer="HASEL swimmer maintainers",

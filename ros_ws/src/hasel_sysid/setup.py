@@ -13,7 +13,6 @@ setup(
     ],
     install_requires=[
         "setuptools",
-        "h5py",
         "jinja2",
         "matplotlib",
         "numba>=0.60",

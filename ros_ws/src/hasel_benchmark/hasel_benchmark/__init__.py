@@ -1,5 +1,5 @@
 """The naming benchmark: how often `improve` names what was hidden from it."""
 
-from hasel_common.lazy_version import lazy_version
+from hasel_common.provenance import lazy_version
 
 __getattr__ = lazy_version(__name__)

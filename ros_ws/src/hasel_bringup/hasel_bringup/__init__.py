@@ -1,5 +1,5 @@
 """Launch files, configurations and the demonstration of the HASEL swimmer stack."""
 
-from hasel_common.lazy_version import lazy_version
+from hasel_common.provenance import lazy_version
 
 __getattr__ = lazy_version(__name__)

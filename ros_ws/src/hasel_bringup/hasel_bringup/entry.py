@@ -7,7 +7,7 @@ import sys
 from importlib import import_module
 
 from hasel_common.command_entry import command
-from hasel_common.node_usage import answer_help, user_arguments
+from hasel_common.node_parameter import answer_help, user_arguments
 
 
 @command

@@ -1,10 +1,13 @@
-"""Where every command begins: the machine as it is, and no stack trace on the way out."""
+"""Where every command begins and how it ends: the machine as it is, no stack trace, not later than its parent."""
 
 import errno
 import os
 import platform
+import signal
 import sys
 import tempfile
+import threading
+import time
 import traceback
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor
@@ -15,15 +18,14 @@ from itertools import takewhile
 from pathlib import Path
 
 BAD_INPUT, UNEXPECTED, INTERRUPTED = 2, 70, 130
+_PERIOD_S = 0.5
+_PR_SET_PDEATHSIG = 1
 REMEDIES = {
-    errno.ENOSPC: "free some space, or write elsewhere",
-    errno.EDQUOT: "free some space, or write elsewhere",
-    errno.EACCES: "choose another place, or ask for the permission",
-    errno.EPERM: "choose another place, or ask for the permission",
+    **dict.fromkeys((errno.ENOSPC, errno.EDQUOT), "free some space, or write elsewhere"),
+    **dict.fromkeys((errno.EACCES, errno.EPERM), "choose another place, or ask for the permission"),
     errno.EROFS: "choose another place to write to",
     errno.ENOENT: "check the name",
-    errno.EEXIST: "a folder is expected there: choose another name",
-    errno.ENOTDIR: "a folder is expected there: choose another name",
+    **dict.fromkeys((errno.EEXIST, errno.ENOTDIR), "a folder is expected there: choose another name"),
     errno.EMFILE: "close other programs, or raise the limit with `ulimit -n`",
     errno.ENOMEM: "close other programs, or try again with --jobs 1",
     errno.EADDRINUSE: "choose another port",
@@ -96,7 +98,8 @@ def prepare_machine() -> None:
         "1"  # a lab's own signal.py beside the data is none of ours, in workers too
     )
     sys.path[:] = [each for each in sys.path if each]
-    if not _writable(Path("~").expanduser()):
+    own = Path("~").expanduser()
+    if not (own.is_absolute() and own.is_dir() and os.access(own, os.W_OK | os.X_OK)):
         home = Path(tempfile.gettempdir()) / f"hasel-home-{os.getuid()}"
         home.mkdir(mode=0o700, exist_ok=True)
         if home.stat().st_uid == os.getuid():
@@ -114,21 +117,11 @@ def of_system(error: OSError) -> str:
     return f"{about}: {what}: {REMEDIES.get(error.errno or 0, 'check it and try again')}"
 
 
-def _writable(folder: Path) -> bool:
-    return folder.is_absolute() and folder.is_dir() and os.access(folder, os.W_OK | os.X_OK)
-
-
 def _unforeseen(error: Exception) -> str:
     name = f"hasel_error_{datetime.now():%Y%m%d_%H%M%S}_{os.getpid()}.txt"
     said = "".join(traceback.format_exception_only(error)).strip().splitlines()[-1]
-    text = "\n".join(
-        [
-            f"command: {sys.argv}",
-            f"Python {sys.version} on {platform.platform()}",
-            "",
-            *traceback.format_exception(error),
-        ]
-    )
+    machine = f"command: {sys.argv}\nPython {sys.version} on {platform.platform()}\n\n"
+    text = machine + "\n".join(traceback.format_exception(error))
     for folder in (Path.cwd(), Path(tempfile.gettempdir())):
         try:
             (folder / name).write_text(text, encoding="utf-8")
@@ -144,3 +137,29 @@ def _unforeseen(error: Exception) -> str:
 def _refuse(sentence: str, code: int) -> int:
     print(f"error: {sentence}", file=sys.stderr)
     return code
+
+
+def end_with_parent() -> None:
+    """From here on SIGTERM comes soon after the parent has ended, however; not to what was started with `nohup`."""
+    if signal.getsignal(signal.SIGHUP) == signal.SIG_IGN:
+        return
+    parent = os.getppid()
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(_PERIOD_S)
+        os.kill(os.getpid(), signal.SIGTERM)
+
+    threading.Thread(target=watch, name="parent", daemon=True).start()
+
+
+def end_at_once_with_parent() -> None:
+    """The same at once, `nohup` or not, for what may be armed; also where only the parent's thread ends. Linux only."""
+    if not sys.platform.startswith("linux"):
+        return
+    import ctypes  # takes a while, and few commands need it
+
+    parent = os.getppid()
+    ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+    if os.getppid() != parent:  # it has ended just now
+        os.kill(os.getpid(), signal.SIGTERM)

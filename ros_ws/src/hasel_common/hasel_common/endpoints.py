@@ -18,6 +18,7 @@ from rclpy.subscription import Subscription
 
 from hasel_common.topics import relative
 
+_OVERRIDABLE: dict[str, Any] = {"qos_overriding_options": QoSOverridingOptions.with_default_policies()}
 STEADY = Clock(clock_type=ClockType.STEADY_TIME)  # goes on while a replay's /clock stands still
 
 
@@ -45,27 +46,14 @@ class Role(Enum):
 
 def publisher(node: Node, kind: type, topic: str, role: Role, **options: Any) -> Publisher:
     """Publish on a topic of `hasel_common.topics` in the node's namespace."""
-    return node.create_publisher(
-        kind,
-        relative(topic),
-        role.value,
-        qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-        **options,
-    )
+    return node.create_publisher(kind, relative(topic), role.value, **_OVERRIDABLE, **options)
 
 
 def subscription(
     node: Node, kind: type, topic: str, heard: Callable[..., Any], role: Role, **options: Any
 ) -> Subscription:
     """Hear a topic of `hasel_common.topics` in the node's namespace."""
-    return node.create_subscription(
-        kind,
-        relative(topic),
-        heard,
-        role.value,
-        qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-        **options,
-    )
+    return node.create_subscription(kind, relative(topic), heard, role.value, **_OVERRIDABLE, **options)
 
 
 def frame_of(node: Node, name: str) -> str:

@@ -1,24 +1,33 @@
-"""Who made a recording: the software and its versions, and the parameters of what took part."""
+"""Which software, in which version: `__version__` of every package, and who made a recording."""
 
 import os
 import platform
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from datetime import datetime, timezone
-from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 PREFIX = "recorded_by."  # of the header lines; what an experiment is about has none
 
 
+def lazy_version(package: str) -> Callable[[str], str]:
+    """What a package takes as its `__getattr__`; of a package that was not installed the version is "unknown"."""
+
+    def attribute(name: str) -> str:
+        if name != "__version__":
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        return installed_version(package)
+
+    return attribute
+
+
 def provenance(recorder: str, packages: Iterable[str], parameters: Mapping[str, Any]) -> dict[str, str]:
     """Return header lines: the recorder and packages with their versions, the time, and each parameter's value."""
-    versions = {name: installed_version(name) for name in packages}
     lines = {
         "node": recorder,
         "time": datetime.now(timezone.utc).isoformat(timespec="seconds"),
         "ros_distro": os.environ.get("ROS_DISTRO", "jazzy"),
         "python": platform.python_version(),
-        **{f"version.{name}": each for name, each in versions.items()},
+        **{f"version.{name}": installed_version(name) for name in packages},
         **{f"parameter.{name}": value for name, value in parameters.items()},
     }
     return {f"{PREFIX}{key}": str(value) for key, value in lines.items()}
@@ -36,6 +45,8 @@ def without_provenance(header: Mapping[str, str]) -> tuple[dict[str, str], str]:
 
 def installed_version(package: str) -> str:
     """Return a package's version, or "unknown" where it runs without having been installed."""
+    from importlib.metadata import PackageNotFoundError, version  # takes as long to import as a whole package
+
     try:
         return version(package)
     except PackageNotFoundError:

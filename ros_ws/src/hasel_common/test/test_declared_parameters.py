@@ -8,8 +8,8 @@ pytest.importorskip("rclpy", reason="ROS 2 is not there")
 
 import rclpy
 from hasel_common.declared_parameters import declare, descriptor, words
+from hasel_common.managed_node import node_alone
 from hasel_common.node_parameter import NodeParameter
-from hasel_common.spinning import node_alone
 from rclpy.context import Context
 from rclpy.exceptions import InvalidParameterValueException
 from rclpy.parameter import Parameter

@@ -1,5 +1,5 @@
 """High-voltage supply on a serial port: protocol, limits, watchdog, waveforms, virtual supply, ROS 2 node."""
 
-from hasel_common.lazy_version import lazy_version
+from hasel_common.provenance import lazy_version
 
 __getattr__ = lazy_version(__name__)

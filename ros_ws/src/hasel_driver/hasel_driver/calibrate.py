@@ -15,7 +15,7 @@ from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 
 from hasel_common.command_entry import command
-from hasel_common.node_usage import user_arguments
+from hasel_common.node_parameter import user_arguments
 
 from hasel_driver import protocol
 from hasel_driver.board_handshake import BoardHandshake

@@ -8,7 +8,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 
-from hasel_common.node_usage import user_arguments
+from hasel_common.node_parameter import user_arguments
 from hasel_interfaces.msg import SupplyState
 from rclpy._rclpy_pybind11 import RCLError
 

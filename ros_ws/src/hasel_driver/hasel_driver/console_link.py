@@ -9,7 +9,7 @@ from typing import Any
 
 import rclpy
 from hasel_common.endpoints import Role, frame_of, publisher, subscription
-from hasel_common.spinning import BackgroundSpin
+from hasel_common.managed_node import BackgroundSpin
 from hasel_common.topics import COMMAND, NAMESPACE, STATE
 from hasel_interfaces.msg import Actuation, SupplyState
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue

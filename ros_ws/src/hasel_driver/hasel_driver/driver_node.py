@@ -8,10 +8,10 @@ import threading
 import time
 
 import rclpy
+from hasel_common.command_entry import end_at_once_with_parent
 from hasel_common.diagnostics import Diagnostics, Part
 from hasel_common.endpoints import Role, frame_of, publisher
-from hasel_common.parent import end_at_once_with_parent
-from hasel_common.spinning import quiet_at_shutdown, spin
+from hasel_common.managed_node import quiet_at_shutdown, spin
 from hasel_common.topics import NAMESPACE, STATE
 from hasel_interfaces.msg import SupplyState
 from rclpy._rclpy_pybind11 import RCLError, RCLInvalidROSArgsError

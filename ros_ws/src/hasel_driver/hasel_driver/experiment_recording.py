@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 from hasel_common.topics import STATE, TOPIC_TYPES
+from hasel_recording.bag import McapFile, read_file
 from hasel_recording.errors import RecordingError
-from hasel_recording.mcap_file import McapFile, read_file
 from hasel_recording.mcap_recorder import McapRecorder
 
 from hasel_driver.experiment import ExperimentPlan

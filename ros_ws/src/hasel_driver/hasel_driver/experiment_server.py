@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from hasel_common.endpoints import Role
+from hasel_common.managed_node import quiet_at_shutdown
 from hasel_common.provenance import provenance
-from hasel_common.spinning import quiet_at_shutdown
 from hasel_common.topics import STATE, TOPIC_TYPES, known_as, relative
 from hasel_interfaces.action import RunExperiment
 from hasel_interfaces.msg import SupplyState

@@ -3,7 +3,7 @@
 import sys
 
 from hasel_common.command_entry import command
-from hasel_common.node_usage import user_arguments
+from hasel_common.node_parameter import user_arguments
 
 from hasel_driver.console_options import parser
 

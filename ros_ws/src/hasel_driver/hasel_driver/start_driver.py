@@ -4,7 +4,7 @@ import signal
 import sys
 
 from hasel_common.command_entry import command
-from hasel_common.node_usage import answer_help
+from hasel_common.node_parameter import answer_help
 
 from hasel_driver.parameters import PARAMETERS
 

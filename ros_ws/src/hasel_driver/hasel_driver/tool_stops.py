@@ -19,7 +19,7 @@ def stops_of_ros(stop: Callable[[str], None]) -> Iterator[None]:
         print("ROS 2 is not there: only the keyboard and the interlock stop.", file=sys.stderr)
         yield
         return
-    from hasel_common.spinning import BackgroundSpin, node_alone
+    from hasel_common.managed_node import BackgroundSpin, node_alone
     from hasel_common.topics import EMERGENCY_STOP, NAMESPACE, relative
     from std_srvs.srv import Trigger
 

@@ -6,7 +6,7 @@ from functools import partial
 
 import rclpy
 from hasel_common.endpoints import Role
-from hasel_common.spinning import BackgroundSpin
+from hasel_common.managed_node import BackgroundSpin
 from hasel_common.topics import COMMAND, relative
 from hasel_interfaces.msg import Actuation
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from hasel_common.command_entry import command
-from hasel_common.node_usage import user_arguments
+from hasel_common.node_parameter import user_arguments
 
 from hasel_driver.errors import PortError
 from hasel_driver.pseudo_terminal import PseudoTerminal

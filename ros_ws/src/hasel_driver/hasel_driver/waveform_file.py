@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from hasel_recording.csv_columns import understand
 from hasel_recording.csv_numbers import CsvNumbers
-from hasel_recording.csv_reader import drive_columns
+from hasel_recording.csv_run import drive_columns
 from hasel_recording.csv_text import read_text
 from hasel_recording.drive_channel import HASEL_PAIR
 from hasel_recording.errors import RecordingError

@@ -83,7 +83,7 @@ def test_ended_node(start_driver, virtual_rig, ros, grounded_in_time, numbers, r
 def test_ended_during_an_experiment(start_driver, virtual_rig, ros, tmp_path, grounded_in_time, rounds):
     """Ctrl-C in the middle of a run grounds, and what was recorded can be read."""
     from hasel_interfaces.action import RunExperiment
-    from hasel_recording.mcap_file import read_file
+    from hasel_recording.bag import read_file
     from rclpy.action import ActionClient
 
     client = ActionClient(ros.node, RunExperiment, "/hasel/run_experiment")

@@ -4,7 +4,7 @@ import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
 
-from hasel_common.spinning import node_alone
+from hasel_common.managed_node import node_alone
 from hasel_driver.node_parameters import declare
 from rclpy.parameter import Parameter
 

@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
 pytest.importorskip("hasel_interfaces", reason="the workspace is not built")
 
-from hasel_common.spinning import node_alone
+from hasel_common.managed_node import node_alone
 from hasel_driver.rivals import Rivals
 from hasel_interfaces.msg import SupplyState
 from std_srvs.srv import Trigger

@@ -17,7 +17,7 @@ import pytest
 from hasel_driver.faults import FaultCode
 from hasel_interfaces.action import RunExperiment
 from hasel_interfaces.msg import BendingAngle
-from hasel_recording.mcap_file import read_file
+from hasel_recording.bag import read_file
 from rclpy.action import ActionClient
 
 STANDBY, ARMED, ACTIVE, FAULT = range(4)

@@ -1,5 +1,5 @@
 """One muscle on its bench: compare stroke and force with the law, see where it fails, learn what is missing, add it."""
 
-from hasel_common.lazy_version import lazy_version
+from hasel_common.provenance import lazy_version
 
 __getattr__ = lazy_version(__name__)

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from hasel_recording.reading_options import RecordingsParser, add_map_option
+from hasel_recording.command_line import RecordingsParser, add_map_option
 from hasel_sysid.command_line.options import names, numbers
 
 

@@ -5,8 +5,7 @@ from pathlib import Path
 
 import numpy as np
 from hasel_common.names import nearest
-from hasel_recording.column_map import own_column, unit_at_the_end
-from hasel_recording.csv_columns import TIME_UNITS, Column
+from hasel_recording.csv_columns import TIME_UNITS, Column, own_column, unit_at_the_end
 from hasel_recording.csv_numbers import CsvNumbers
 from hasel_recording.csv_text import CsvText, read_text
 from hasel_recording.drive_channel import UNITS
@@ -30,7 +29,7 @@ HELD = "held"
 def read_bench_csv(path: Path, mapping: Mapping[str, str] | None = None) -> BenchRecording:
     """Read one recording; a load that never changes may stand in the header, as `#load_n: 0.59`.
 
-    mapping: {name that is known here: the file's own column}, as of hasel_recording.column_map.parse_map.
+    mapping: {name that is known here: the file's own column}, as of hasel_recording.csv_columns.parse_map.
     Raises RecordingError that names the column or line of what is wrong.
     """
     text = read_text(path)

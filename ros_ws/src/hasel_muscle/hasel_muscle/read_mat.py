@@ -51,8 +51,12 @@ def read_bench_mat(path: Path) -> BenchRecording:
 
 
 def _table(path: Path) -> np.ndarray:
-    import h5py
-
+    try:
+        import h5py
+    except ImportError:
+        raise RecordingError(
+            f"{path}: h5py, which reads MATLAB 7.3 files, is not installed: pip install h5py, or export CSV."
+        ) from None
     try:
         with h5py.File(path) as file:
             table = np.asarray(file["data"], dtype=float)

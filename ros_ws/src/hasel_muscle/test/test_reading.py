@@ -1,5 +1,7 @@
 """Files of a bench: the lab's CSV, the public repository's MATLAB files, and what is wrong with them."""
 
+import sys
+
 import h5py
 import numpy as np
 import pytest
@@ -144,3 +146,11 @@ def test_other_files_are_refused(tmp_path):
     (tmp_path / "a.xlsx").write_text("")
     with pytest.raises(RecordingError, match=r"not '\.xlsx'"):
         read_bench(tmp_path / "a.xlsx")
+
+
+def test_matlab_files_need_h5py(bench, tmp_path, monkeypatch):
+    """It is an extra: where it is missing, a sentence says what to do."""
+    path = bench.write_mat(tmp_path)
+    monkeypatch.setitem(sys.modules, "h5py", None)
+    with pytest.raises(RecordingError, match=r"h5py, which reads MATLAB 7\.3 files, is not installed"):
+        read_bench_mat(path)

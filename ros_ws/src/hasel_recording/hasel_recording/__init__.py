@@ -1,13 +1,12 @@
 """Crash-safe recordings of experiments: MCAP and CSV."""
 
-from hasel_common.lazy_version import lazy_version
+from hasel_common.provenance import lazy_version
 
 from hasel_recording.drive_channel import HASEL_PAIR, DriveChannel, parse_column
 from hasel_recording.errors import RecordingError, RecordingWarning
-from hasel_recording.marker_angle import sin_theta_from_markers
 from hasel_recording.mcap_recorder import McapRecorder
 from hasel_recording.reading import read_recording, read_recordings, write_recording
-from hasel_recording.recording import Recording
+from hasel_recording.recording import Recording, sin_theta_from_markers
 
 __all__ = [
     "HASEL_PAIR",

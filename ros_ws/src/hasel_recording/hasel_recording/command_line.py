@@ -1,18 +1,111 @@
-"""The commands `convert` and `info`."""
+"""The commands `convert` and `info`, and the options with which every command reads recordings."""
 
 import argparse
 import sys
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import NoReturn
 
 from hasel_common.command_entry import command
 
-from hasel_recording.convert import convert
+from hasel_recording.csv_columns import parse_map
+from hasel_recording.csv_run import drive_path
+from hasel_recording.csv_text import TEXT_SUFFIXES
 from hasel_recording.errors import RecordingError, RecordingWarning
-from hasel_recording.reading import drive_of_each, read_recording
-from hasel_recording.reading_options import RecordingsParser, add_reading_options
+from hasel_recording.reading import WRITERS, drive_of_each, read_recording, write_recording
 from hasel_recording.recording import Recording
+
+
+class RecordingsParser(argparse.ArgumentParser):
+    """A parser that says so where an option that takes several files has taken the recordings too."""
+
+    def error(self, message: str) -> NoReturn:
+        """Leave with usage, the message and a remedy."""
+        if "required: RECORDING" in message:
+            message += (
+                " (an option such as --drive takes every file that follows it: name the recordings first)"
+            )
+        super().error(message)
+
+
+def add_reading_options(parser: argparse.ArgumentParser) -> None:
+    """Add --map and --drive."""
+    add_map_option(
+        parser,
+        "such as time=t,sin_theta=angle_deg,voltage_upper=U1_kV; #2 is the second column, drive.time the time in the "
+        "drive's own file",
+    )
+    parser.add_argument(
+        "--drive",
+        metavar="FILE",
+        nargs="+",
+        type=Path,
+        default=[],
+        help="the drive as a file of its own: one for each recording in their order, or one for all",
+    )
+
+
+def add_map_option(parser: argparse.ArgumentParser, example: str) -> None:
+    """Add --map."""
+    parser.add_argument(
+        "--map",
+        metavar="NAME=COLUMN,…",
+        action=_Mapping,
+        default={},
+        help=f"names and units of your own CSV columns, {example}; may be given several times",
+    )
+
+
+class _Mapping(argparse.Action):
+    """Collects the pairs of every --map."""
+
+    def __call__(self, parser, namespace, values, option_string=None) -> None:
+        """Add the pairs of one --map."""
+        try:
+            setattr(namespace, self.dest, {**getattr(namespace, self.dest), **parse_map(values)})
+        except RecordingError as error:
+            raise argparse.ArgumentError(self, str(error)) from None
+
+
+OTHER_SUFFIX = dict.fromkeys(TEXT_SUFFIXES, ".mcap") | {".mcap": ".csv", ".db3": ".csv"}
+
+
+def target_path(source: Path, output: Path | None = None) -> Path:
+    """Return where a conversion goes: `output` when it is a file name, else the source's name in that folder.
+
+    Without output the new file lies beside the source.
+    """
+    if output is not None and output.suffix.lower() in WRITERS:
+        return output
+    suffix = OTHER_SUFFIX.get(source.suffix.lower(), ".csv")  # a rosbag2 folder has no suffix
+    folder = source.parent if output is None else output
+    return folder / (source.stem + suffix)
+
+
+def convert(
+    source: Path,
+    output: Path | None = None,
+    *,
+    replace: bool = False,
+    mapping: Mapping[str, str] | None = None,
+    drive: str | Path | None = None,
+) -> Path:
+    """Convert CSV to MCAP or MCAP to CSV and return the new file; raises RecordingError.
+
+    An existing file is replaced only when `replace` is set. mapping, drive: as of read_recording.
+    """
+    recording = read_recording(source, mapping, drive)
+    target = target_path(source, output)
+    written = [target]
+    if target.suffix.lower() == ".csv" and recording.drive_time_s is not None:
+        written.append(drive_path(target))
+    for path in written:
+        if path.exists() and not replace:
+            raise RecordingError(f"{path} exists already: give --force to replace it, or another --output.")
+    target.parent.mkdir(parents=True, exist_ok=True)
+    write_recording(recording, target)
+    return target
 
 
 @command

@@ -1,30 +1,73 @@
-"""The cells of a CSV recording as numbers in SI units."""
+"""The cells of a CSV recording as numbers in SI units, and clocks that wrap as times that increase."""
 
 import math
 import re
 from collections.abc import Sequence
 from datetime import datetime, timezone
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 
-from hasel_recording.csv_clock import counted_on
 from hasel_recording.csv_columns import Column
 from hasel_recording.csv_text import CsvText
-from hasel_recording.errors import RecordingError
+from hasel_recording.errors import RecordingError, warn
+
+COUNTERS = {2**16: "a counter of 16 bits", 2**31: "a counter of 31 bits", 2**32: "a counter of 32 bits"}
+CLOCKS_S = {60.0: "a clock without minutes", 3600.0: "a clock without hours", 86400.0: "midnight"}
+"""What wraps, in steps of the column's unit and in seconds."""
+FEW_STEPS = 5.0
+
+
+def _counted_on(times: np.ndarray, name: str, factor: float, text: CsvText) -> np.ndarray:
+    """Times [s] [n] that increase: a clock that wraps is counted on, with a RecordingWarning.
+
+    factor: the column's unit in s. Raises RecordingError with the line where rows share a time, the clock starts anew
+    or rows are out of order.
+    """
+    steps = np.diff(times)
+    if len(steps) == 0 or steps.min() > 0:
+        return times
+    usual = float(np.median(steps))
+    wraps = {factor * count: what for count, what in COUNTERS.items()} | CLOCKS_S
+    times = times.copy()
+    for row in 1 + np.flatnonzero(steps < 0):
+        back = float(times[row - 1] - times[row])
+        for span, what in wraps.items():
+            if -FEW_STEPS * usual < back - span < 1e-6 * span:
+                times[row:] += span
+                warn(
+                    f"{text.path}, line {text.lines[row]}: {name} starts again after {span:.10g} s ({what}); it is "
+                    "counted on."
+                )
+                break
+    late = np.flatnonzero(np.diff(times) <= 0)
+    if late.size == 0:
+        return times
+    row = int(late[0]) + 1
+    raise RecordingError(
+        f"{text.path}, line {text.lines[row]}: {name} {times[row] / factor:.12g} does not come after "
+        f"{times[row - 1] / factor:.12g}; {_advice(times, row, usual)}."
+    )
+
+
+def _advice(times: np.ndarray, row: int, usual: float) -> str:
+    """What to do about the first row that does not come after the one before."""
+    steps = np.diff(times)
+    shared = int(np.count_nonzero(steps == 0))
+    if times[row] == times[row - 1]:
+        finest = float(steps[steps > 0].min(initial=np.inf))
+        rounded = f", rounded to {finest:g} s" if np.isfinite(finest) and shared > 1 else ""
+        return f"{shared} rows share the time of the one before{rounded}: write it with more digits"
+    if np.count_nonzero(steps < 0) == 1 and times[row] <= times[0] + max(usual, 0.0):
+        return "the clock starts anew there, as after a restart: make two recordings of it"
+    return "sort the rows by time"
+
 
 NOT_MEASURED = {"", "nan", "na", "n/a", "null", "none", "-"}
-BLANKS, APOSTROPHES = "[ \u00a0\u2009\u202f]", "['\u2019]"
-NOTATIONS = (
-    ("", r"\."),
-    ("", ","),
-    (",", r"\."),
-    (r"\.", ","),
-    (BLANKS, r"\."),
-    (BLANKS, ","),
-    (APOSTROPHES, r"\."),
-    (APOSTROPHES, ","),
-)
+BLANKS, QUOTES = "[ \u00a0\u2009\u202f]", "['\u2019]"
+POINT = r"\."
+NOTATIONS = (("", POINT), ("", ","), (",", POINT), (POINT, ","), *product((BLANKS, QUOTES), (POINT, ",")))
 """How numbers are written: the sign between groups of three digits, and the decimal one."""
 CLOCK = re.compile(r"(?:\d+:)?\d{1,2}:\d{2}(?:[.,]\d*)?")
 
@@ -52,7 +95,17 @@ class CsvNumbers:
         notation = self._notation(column.name, cells)
         values = np.array([_number(cell, notation) for cell in cells])
         for row in np.flatnonzero(~np.isfinite(values)):
-            self._check_missing(cells[row], column.name, int(row), may_be_missing)
+            cell, where = cells[row], f"{self._text.path}, line {self._text.lines[row]}"
+            if cell.lower() in NOT_MEASURED and may_be_missing:
+                continue
+            if cell.lower().lstrip("+-") in ("nan", "inf", "infinity"):
+                raise RecordingError(
+                    f"{where}: {column.name} is {cell}, but a number is expected; repair or remove the line."
+                )
+            found = repr(cell) if cell else "a blank cell"
+            raise RecordingError(
+                f"{where}: {found} in column {column.name} is not a number; repair or remove the line."
+            )
         return values * column.factor if column.factor != 1 else values
 
     def times(self, column: Column) -> np.ndarray:
@@ -60,30 +113,18 @@ class CsvNumbers:
 
         Seconds, or a time of day, or date and time, as text.
         """
-        cells = self._text.column(column.name)
-        read = _clock(cells)
-        times = self.column(column) if read is None else read
-        return counted_on(times, column.name, 1.0 if read is not None else column.factor, self._text)
-
-    def _check_missing(self, cell: str, name: str, row: int, may_be_missing: bool) -> None:
-        if cell.lower() in NOT_MEASURED and may_be_missing:
-            return
-        where = f"{self._text.path}, line {self._text.lines[row]}"
-        if cell.lower().lstrip("+-") in ("nan", "inf", "infinity"):
-            raise RecordingError(
-                f"{where}: {name} is {cell}, but a number is expected; repair or remove the line."
-            )
-        found = repr(cell) if cell else "a blank cell"
-        raise RecordingError(f"{where}: {found} in column {name} is not a number; repair or remove the line.")
+        read = _clock(self._text.column(column.name))
+        if read is not None:
+            return _counted_on(read, column.name, 1.0, self._text)
+        return _counted_on(self.column(column), column.name, column.factor, self._text)
 
     @cached_property
     def _notations(self) -> list[tuple[str, str]]:
         """The notations that fit every column of numbers; points between groups only where some cell has a comma."""
         comma = any("," in cell for row in self._text.cells for cell in row)
         possible = [notation for notation in NOTATIONS if comma or "," not in notation]
-        for cells in map(list, zip(*self._text.cells, strict=True)):
-            fit = _fitting(cells, possible)
-            possible = fit or possible
+        for cells in zip(*self._text.cells, strict=True):
+            possible = _fitting(cells, possible) or possible
         return possible
 
     def _notation(self, name: str, cells: list[str]) -> tuple[str, str]:
@@ -104,7 +145,7 @@ class CsvNumbers:
         return fit[0]
 
 
-def _fitting(cells: list[str], notations: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
+def _fitting(cells: Sequence[str], notations: Sequence[tuple[str, str]]) -> list[tuple[str, str]]:
     """The notations in which every measured cell is a number."""
     measured = [cell.replace("\u2212", "-") for cell in cells if cell.lower() not in NOT_MEASURED]
     return [each for each in notations if all(map(GRAMMARS[each].fullmatch, measured))]

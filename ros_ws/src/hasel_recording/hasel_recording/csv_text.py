@@ -3,11 +3,10 @@
 import codecs
 import csv
 import re
-import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
-from hasel_recording.errors import RecordingError, RecordingWarning
+from hasel_recording.errors import RecordingError, warn
 
 TEXT_SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".lvm")
 SEPARATORS = (";", "\t", ",")
@@ -75,9 +74,9 @@ def read_text(path: Path) -> CsvText:
             key, colon, value = stripped[1:].partition(":")
             if colon:
                 metadata[key.strip()] = value.strip()
-        elif stripped.strip("".join(SEPARATORS)) and not stripped.lower().startswith(
-            "sep="
-        ):  # a spreadsheet's own first line
+        elif stripped.lower().startswith("sep="):  # a spreadsheet's own first line
+            continue
+        elif stripped.strip("".join(SEPARATORS)):
             top = line.removesuffix("Comment") if skipped >= 0 else line  # of which most rows have none
             return _table(path, metadata, top.strip(" "), lines[number + 1 :], number + 1)
     raise RecordingError(f"{path} is empty: give a file with a row of column names and a row per frame.")
@@ -130,11 +129,7 @@ def _table(path: Path, metadata: dict[str, str], top: str, rest: list[str], top_
     if not cells:
         raise RecordingError(f"{path} has column names but no frames: was the recording stopped too early?")
     if doubles:
-        warnings.warn(
-            f"{path}: {doubles} rows that repeat the one before were left out.",
-            RecordingWarning,
-            stacklevel=5,
-        )
+        warn(f"{path}: {doubles} rows that repeat the one before were left out.")
     kept = [n for n, name in enumerate(names) if name or any(row[n] for row in cells)]
     if len(kept) < len(names):
         cells = [[row[n] for n in kept] for row in cells]

@@ -1,7 +1,10 @@
-"""What drives a body: channels with a name, a quantity and a unit, and how a CSV column names them."""
+"""What drives a body: channels with a name, a quantity and a unit, as a CSV column names them."""
 
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
 from hasel_common.names import nearest
 
 from hasel_recording.errors import RecordingError
@@ -19,6 +22,7 @@ UNITS: dict[str, dict[str, float]] = {
 }
 """Quantities that can drive a body, and per unit that a column may end in its size in the SI unit."""
 
+PREFIX = "volts_per_"
 SI_UNITS = {"voltage": "V", "pressure": "Pa", "travel": "m", "angle": "rad", "current": "A", "force": "N"}
 
 
@@ -93,3 +97,44 @@ def parse_column(column: str) -> tuple[DriveChannel, float]:
             f"rename the column, for instance {quantity}_{name}_{next(iter(units))}."
         )
     return DriveChannel(name, quantity, SI_UNITS[quantity]), units[unit]
+
+
+def as_meant(
+    channels: tuple[DriveChannel, ...], values: np.ndarray, metadata: Mapping[str, str], source: str
+) -> tuple[tuple[DriveChannel, ...], np.ndarray, str]:
+    """Read voltages as what they stand for where a header line says so, such as `volts_per_mbar: 10`.
+
+    Return the channels, their values [n, channels] and a sentence (empty where nothing stands for anything).
+
+    The name of a channel stays; only voltages are converted. Raises RecordingError for a unit or number that is
+    not understood.
+    """
+    keys = [key for key in metadata if key.lower().startswith(PREFIX)]
+    if not keys or all(channel.quantity != "voltage" for channel in channels):
+        return channels, values, ""
+    if len(keys) > 1:
+        raise RecordingError(f"{source} has the header lines {' and '.join(keys)}: keep one of them.")
+    (key,) = keys
+    unit = key[len(PREFIX) :]
+    quantity = next((quantity for quantity, units in UNITS.items() if unit.lower() in units), None)
+    if quantity is None:
+        known = ", ".join(unit for units in UNITS.values() for unit in units)
+        raise RecordingError(f"{source}: the header line {key!r} ends in no unit of {known}: correct it.")
+    try:
+        volts = float(metadata[key].replace(",", "."))
+    except ValueError:
+        volts = math.nan
+    if not (math.isfinite(volts) and volts != 0):
+        raise RecordingError(
+            f"{source}: the header line {key!r} is {metadata[key]!r}, expected a number of volts other than 0: "
+            "correct it."
+        )
+    meant = tuple(
+        DriveChannel(channel.name, quantity, SI_UNITS[quantity]) if channel.quantity == "voltage" else channel
+        for channel in channels
+    )
+    scale = [
+        UNITS[quantity][unit.lower()] / volts if channel.quantity == "voltage" else 1.0
+        for channel in channels
+    ]
+    return meant, values * scale, f"{volts:g} V stand for 1 {unit} of {quantity} ({key} in the header)"

@@ -1,5 +1,8 @@
 """What can be wrong with a recording; every message is one sentence that ends with what to do."""
 
+import sys
+import warnings
+
 
 class _OneLine:
     """What a message quotes from a file may hold any sign: what cannot be printed is shown as in a Python string."""
@@ -14,3 +17,11 @@ class RecordingError(_OneLine, Exception):
 
 class RecordingWarning(_OneLine, UserWarning):
     """A recording was read or written, but something in it was left out."""
+
+
+def warn(sentence: str) -> None:
+    """Give a RecordingWarning, at the line outside this package that asked for what was read or written."""
+    frame, level = sys._getframe(1), 2
+    while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(sentence, RecordingWarning, stacklevel=level - 1)

@@ -47,7 +47,8 @@ class _Exact(ReadDataStream):
 @dataclass
 class Damage:
     """What could not be read. lost: (first, last) log time [ns] of chunks; unread: bytes between records; nameless:
-    messages whose topic was lost; checksum: whether that of the whole file does not fit; cut: whether it has no end.
+    messages whose topic was lost; checksum: whether that of the whole file does not fit; cut: whether it has no end;
+    rest: bytes of a record that was not finished.
     """
 
     lost: list[tuple[int, int]] = field(default_factory=list)
@@ -55,6 +56,7 @@ class Damage:
     nameless: int = 0
     checksum: bool = False
     cut: bool = False
+    rest: int = 0
 
     def sentences(self) -> list[str]:
         """What to tell, after the file's name."""
@@ -83,7 +85,7 @@ def whole_records(data: Bytes, damage: Damage) -> Iterator[McapRecord]:
         if record is None:
             found = _next_record(data, place)
             if found is None:
-                damage.cut = True
+                damage.cut, damage.rest = True, len(data) - place
                 return
             damage.unread += found - place
             place = found
@@ -92,7 +94,8 @@ def whole_records(data: Bytes, damage: Damage) -> Iterator[McapRecord]:
         if opcode == Opcode.FOOTER:
             return
         if isinstance(content, DataEnd):
-            damage.checksum |= _checksum_differs(data, place, content)
+            checksum = zlib.crc32(data[: place - HEAD.size - 4])  # of all before this record
+            damage.checksum |= content.data_section_crc not in (0, checksum)
         elif isinstance(content, Chunk):
             try:
                 yield from _of_chunk(content)
@@ -135,18 +138,6 @@ def _next_record(data: Bytes, place: int) -> int | None:
 
 def _of_chunk(chunk: Chunk) -> Iterator[McapRecord]:
     """The records of a chunk; raises one of UNREADABLE where it is damaged, before any is given."""
-    data = _unpacked(chunk)
-    place, records = 0, []
-    while place < len(data):
-        record = _whole(data, place)
-        if record is None:
-            raise EndOfFile()
-        _, content, place = record
-        records.append(content)
-    yield from (content for content in records if content is not None)
-
-
-def _unpacked(chunk: Chunk) -> bytes:
     if chunk.uncompressed_size > LARGEST_CHUNK:
         raise ValueError("larger than any chunk")
     try:
@@ -155,10 +146,11 @@ def _unpacked(chunk: Chunk) -> bytes:
         raise ValueError(str(error)) from None
     if length != chunk.uncompressed_size:
         raise ValueError("of another size than it says")
-    return stream.read(length)
-
-
-def _checksum_differs(data: Bytes, end: int, content: DataEnd) -> bool:
-    """Whether the data before the record that ends at `end` has another checksum than it says."""
-    begin = end - HEAD.size - 4
-    return content.data_section_crc not in (0, zlib.crc32(data[:begin]))
+    data, place, records = stream.read(length), 0, []
+    while place < length:
+        record = _whole(data, place)
+        if record is None:
+            raise EndOfFile()
+        _, content, place = record
+        records.append(content)
+    yield from (content for content in records if content is not None)

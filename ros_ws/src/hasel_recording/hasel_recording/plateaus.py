@@ -50,7 +50,7 @@ def find_plateaus(values: np.ndarray, scale: float) -> Plateaus | None:
     if not groups or sum(map(len, groups)) < STANDING * len(values):
         return None
     levels = np.array([_level(group, scale) for group in groups])
-    spread = max(_spread(group) for group in groups)
+    spread = max(float(np.std(group)) for group in groups)
     if len(levels) > 1 and np.diff(levels).min() < APART * spread:
         return None
     if len(levels) == 1 and spread > np.abs(levels).max(initial=scale) / APART:
@@ -89,16 +89,12 @@ def _stands(values: np.ndarray, group: np.ndarray) -> bool:
     return bool(np.any(inside[1:] & inside[:-1]))
 
 
-def _spread(group: np.ndarray) -> float:
-    return float(np.std(group))
-
-
 def _level(group: np.ndarray, scale: float) -> float:
     """The roundest number within the uncertainty of the group's median; 0 where it rests."""
     middle = float(np.median(group))
     if abs(middle) < FINEST * scale:
         return 0.0
-    uncertainty = 2.5 * _spread(group) / np.sqrt(len(group)) + 1e-9 * scale
+    uncertainty = 2.5 * float(np.std(group)) / np.sqrt(len(group)) + 1e-9 * scale
     return roundest(middle - uncertainty, middle + uncertainty)
 
 

@@ -1,22 +1,114 @@
-"""Read and write recordings of either kind."""
+"""A path in, recordings out, and back: of either kind, with the drive as a file of its own."""
 
-import warnings
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
 from hasel_common.names import nearest
 
-from hasel_recording.column_map import as_mapping
-from hasel_recording.csv_reader import read_csv
-from hasel_recording.csv_text import TEXT_SUFFIXES
-from hasel_recording.csv_writer import write_csv
-from hasel_recording.drive_file import with_drive
-from hasel_recording.errors import RecordingError, RecordingWarning
-from hasel_recording.mcap_reader import read_mcap
-from hasel_recording.mcap_writer import write_mcap
-from hasel_recording.recording import DRIVE_KEY, Recording
+from hasel_recording.bag import read_bag
+from hasel_recording.csv_columns import as_mapping, meant_names, understand
+from hasel_recording.csv_numbers import CsvNumbers
+from hasel_recording.csv_run import drive_columns, read_csv, write_csv
+from hasel_recording.csv_text import TEXT_SUFFIXES, read_text
+from hasel_recording.drive_channel import DriveChannel, as_meant
+from hasel_recording.errors import RecordingError, warn
+from hasel_recording.mcap_run import read_mcap, seconds, stamped_drive, time_origin, write_mcap
+from hasel_recording.recording import DRIVE_KEY, Recording, held, row_in_force
 from hasel_recording.switch_times import with_placed_switches
+
+
+@dataclass(frozen=True)
+class RecordedDrive:
+    """Values [k, channels] in SI units, each from its time_s [k] to the next. start_ns: time 0 since the epoch [ns], if
+    it is known. stand_in: a sentence where voltages stand for another quantity, or ''."""
+
+    channels: tuple[DriveChannel, ...]
+    time_s: np.ndarray
+    values: np.ndarray
+    start_ns: int | None = None
+    stand_in: str = ""
+
+
+def read_drive(
+    path: Path, mapping: Mapping[str, str] | None = None, metadata: Mapping[str, str] | None = None
+) -> RecordedDrive:
+    """Read the drive alone of a .csv or .mcap file or a bag; raises RecordingError.
+
+    mapping: as of csv_columns.parse_map; metadata: header lines of the run, which those of the file go before.
+    """
+    if not path.exists():
+        raise RecordingError(f"There is no drive file {path}: check the name.")
+    if path.suffix.lower() not in TEXT_SUFFIXES:
+        file = read_bag(path)
+        drive = stamped_drive(file)
+        if drive is None:
+            raise RecordingError(
+                f"{path} has neither /hasel/state nor /hasel/drive: give the drive's recording."
+            )
+        channels, values, stand_in = as_meant(drive.channels, drive.values, metadata or {}, str(path))
+        origin = time_origin(file, drive.stamps)
+        return RecordedDrive(channels, seconds(drive.stamps, origin), values, origin or None, stand_in)
+    text = read_text(path)
+    text = replace(text, metadata={**(metadata or {}), **text.metadata})
+    meant = meant_names(mapping or {}, text.names, str(path), all_here=False, of_drive=True)
+    columns, numbers = understand(text.names, meant, str(path), angle=False), CsvNumbers(text)
+    time_s = numbers.times(columns.time)
+    channels, values, stand_in = drive_columns(columns, numbers, text)
+    if values is None:
+        raise RecordingError(
+            f"{path} has no drive, only {', '.join(text.names)}: expected columns such as voltage_upper_v or "
+            "pressure_chamber_kpa, or say which they are with --map."
+        )
+    return RecordedDrive(channels, time_s, values, stand_in=stand_in)
+
+
+def with_drive(recording: Recording, path: Path, mapping: Mapping[str, str] | None = None) -> Recording:
+    """Return the recording with the drive of another file in place of its own.
+
+    path: a .csv file with time and drive columns, or an .mcap file or bag with the drive's topic, counting time as the
+    recording does. mapping: as of csv_columns.parse_map; pairs for columns that this file has not got are passed over.
+    A RecordingWarning says where the drive does not reach over the whole run; raises RecordingError where it does not
+    overlap with it at all.
+    """
+    if not path.exists():
+        raise RecordingError(f"{recording.name}: there is no drive file {path}: check the name.")
+    drive = read_drive(path, mapping, recording.metadata)
+    _check_cover(recording, path, drive)
+    started = max(0, int(row_in_force(drive.time_s, recording.time_s[0])))
+    first = 0 if drive.values[: started + 1].any() else started  # before the run it matters only if it drove
+    said = f"the drive comes from {path.name}: {', '.join(map(str, drive.channels))}"
+    return replace(
+        recording,
+        channels=drive.channels,
+        drive_signal=held(drive.time_s, drive.values, recording.time_s),
+        drive_time_s=drive.time_s[first:],
+        drive_values=drive.values[first:],
+        understood=(*recording.understood, *filter(None, [said, drive.stand_in])),
+    )
+
+
+def _check_cover(recording: Recording, path: Path, drive: RecordedDrive) -> None:
+    (first, last), (begin, end) = recording.time_s[[0, -1]], drive.time_s[[0, -1]]
+    if begin > last:
+        raise RecordingError(
+            f"{recording.name}: the drive in {path} begins at {begin:g} s, when the recording has ended "
+            f"({last:g} s): give both the same time."
+        )
+    if begin > first:
+        warn(
+            f"{recording.name}: the drive in {path} begins at {begin:g} s; before, nothing is taken to drive."
+        )
+    pause = max(np.diff(drive.time_s).max(initial=0.0), 1.0)
+    if drive.values[-1].any() and last - end > 2 * pause:
+        pairs = zip(drive.channels, drive.values[-1], strict=True)
+        on = ", ".join(channel.shown(value) for channel, value in pairs if value)
+        warn(
+            f"{recording.name}: the drive in {path} ends at {end:g} s with {on}, which is taken to hold until "
+            f"{last:g} s."
+        )
+
 
 SUFFIXES = (*TEXT_SUFFIXES, ".mcap", ".db3")
 WRITERS = {".csv": write_csv, ".mcap": write_mcap}
@@ -27,7 +119,7 @@ def read_recording(
 ) -> Recording:
     """Read a `.csv`, `.mcap` or `.db3` file, or the folder that `ros2 bag record` made; raises RecordingError.
 
-    mapping: {name that is known here: the file's own column} for CSV files, or the text of column_map.parse_map.
+    mapping: {name that is known here: the file's own column} for CSV files, or the text of csv_columns.parse_map.
     drive: the file that holds the drive, instead of what the recording or its header line `drive` says.
     """
     path, mapping = Path(path), as_mapping(mapping)
@@ -87,7 +179,7 @@ def read_recordings(
             " ".join(errors) or "No recording was given: name at least one .mcap or .csv file."
         )
     for error in errors:
-        warnings.warn(f"Skipped: {error}", RecordingWarning, stacklevel=2)
+        warn(f"Skipped: {error}")
     return recordings
 
 

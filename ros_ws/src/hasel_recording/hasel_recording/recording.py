@@ -1,4 +1,4 @@
-"""One run of an experiment in memory."""
+"""One run of an experiment in memory: the drive, which holds until the next value, and the angle of three markers."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,6 +10,58 @@ import numpy as np
 from hasel_recording.drive_channel import HASEL_PAIR, DriveChannel
 from hasel_recording.errors import RecordingError
 from hasel_recording.plateaus import acting
+
+KNOWN_KEYS = {
+    "model": "model to use where --model is not given; one with an effect of your own, which is code, wants --model",
+    "initial_state": "rest (default) or static_equilibrium",
+    "initial_load_factor": "times all loads that act in static_equilibrium (default 1)",
+    "initial_time_s": "when the body is let go (default: first frame or switch)",
+    "drive": "file of the drive, beside the recording",
+    "volts_per_<unit>": "the voltage columns stand for another quantity, such as volts_per_mbar: 10",
+    "voltage_v": "voltage that was asked for, compared with the column",
+    "frequency_hz": "frequency that was asked for, compared with the column",
+    "muscles": "both, lower_first, upper or lower: which were meant to be driven",
+}
+"""Key and what it says; any other key is kept as a note."""
+
+
+def row_in_force(times: np.ndarray, at: np.ndarray | float) -> np.ndarray:
+    """Number of the last row whose time is no later, [n]; -1 before the first.
+
+    times [k] increase; at [n] in the same unit, or a single instant.
+    """
+    return np.searchsorted(times, at, side="right") - 1
+
+
+def held(times: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Value in force at every instant, [n, ...] of values [k, ...]; 0 before the first."""
+    row = row_in_force(times, at)
+    known = (row >= 0).reshape(-1, *[1] * (np.ndim(values) - 1))
+    return np.where(known, values[np.maximum(row, 0)], 0.0)
+
+
+def sin_theta_from_markers(markers: np.ndarray) -> np.ndarray:
+    """Return sin θ = cross(v_HM, v_MT) / (|v_HM| |v_MT|), shape [...], y up.
+
+    markers: [..., 3, 2], head, middle, tail in any one unit; v_HM points from head to middle, v_MT from middle
+    to tail. Markers that coincide give NaN.
+    """
+    chords = np.diff(markers, axis=-2)
+    return turn_between(chords[..., 0, :], chords[..., 1, :])[0]
+
+
+def turn_between(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return (sin θ, θ [rad]) of the turn from one vector to another, both [..., 2], y up, anticlockwise positive.
+
+    NaN where either has no length.
+    """
+    cross = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
+    lengths = np.hypot(first[..., 0], first[..., 1]) * np.hypot(second[..., 0], second[..., 1])
+    nowhere = np.full(np.shape(cross), np.nan)
+    sine = np.divide(cross, lengths, out=nowhere, where=lengths > 0)
+    angle = np.arctan2(cross, (first * second).sum(axis=-1))
+    return sine, np.where(lengths > 0, angle, np.nan)
+
 
 MARKER_NAMES = ("head", "middle", "tail")
 DRIVE_KEY = "drive"  # header line that names the file of the drive, beside the recording

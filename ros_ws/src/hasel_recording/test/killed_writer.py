@@ -5,7 +5,7 @@ import time
 
 from hasel_common.topics import MEASURED
 from hasel_recording import McapRecorder
-from hasel_recording.bending_angle_message import bending_angle_message
+from hasel_recording.ros_messages import bending_angle_message
 
 path, rate_hz = sys.argv[1], float(sys.argv[2])
 recorder = McapRecorder(path)

@@ -6,7 +6,7 @@ from pathlib import Path
 from hasel_common.topics import DRIVE, MEASURED, SIMULATED, STATE, TOPIC_TYPES
 from hasel_recording.csv_columns import MARKER_UNITS, THETA_UNITS, TIME_UNITS
 from hasel_recording.drive_channel import UNITS
-from hasel_recording.header_keys import KNOWN_KEYS
+from hasel_recording.recording import KNOWN_KEYS
 
 DOCS = Path(__file__).resolve().parents[4] / "docs"
 PAGE = (DOCS / "how_to/recordings.md").read_text(encoding="utf-8")

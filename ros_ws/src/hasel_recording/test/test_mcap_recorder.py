@@ -3,18 +3,21 @@ import signal
 import subprocess
 import sys
 import time
+import warnings
 from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from hasel_common.topics import COMMAND, MEASURED, STATE
 from hasel_interfaces.msg import SupplyState
-from hasel_recording import McapRecorder, RecordingError, RecordingWarning, mcap_recorder
-from hasel_recording.mcap_file import read_file
+from hasel_recording import McapRecorder, RecordingError, RecordingWarning, mcap_recorder, read_recording
+from hasel_recording.bag import read_file
 from hasel_recording.mcap_recorder import HEADER_RECORD
 from mcap.reader import make_reader
 from rclpy.serialization import deserialize_message, serialize_message
 from rosbags.highlevel import AnyReader
+from rosbags.rosbag2 import Reader
 
 
 def state_at(stamp_ns: int) -> SupplyState:
@@ -46,6 +49,54 @@ def test_killed_writer_loses_at_most_a_second(rate_hz, tmp_path):
         stamps = [message.log_time for message in read_file(path).messages[MEASURED]]
     assert stamps[0] == first_ns
     assert (last_ns - stamps[-1]) / 1e9 < 1.0
+
+
+def kill_at_once(path: Path, writes: str) -> None:
+    """Begin a recording, write, and be killed before anything is flushed by the clock."""
+    program = f"""
+import os, signal
+from hasel_recording import McapRecorder, mcap_recorder
+mcap_recorder.FLUSH_PERIOD_S = 60
+recorder = McapRecorder({str(path)!r}, {{"model": "swimmer"}}, time_origin_ns=5)
+{writes}
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+    assert subprocess.run([sys.executable, "-c", program], check=False).returncode == -signal.SIGKILL
+
+
+def test_a_writer_killed_before_the_first_message_leaves_an_empty_recording(tmp_path):
+    """Its header lines are there, and reading a run from it is refused in one sentence, without a warning."""
+    kill_at_once(tmp_path / "run.mcap", "")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        content = read_file(tmp_path / "run.mcap")
+        with pytest.raises(RecordingError, match="is an empty recording: it ended before the first message"):
+            read_recording(tmp_path / "run.mcap")
+    assert content.metadata[HEADER_RECORD] == {"model": "swimmer"}
+    assert content.messages == {}
+
+
+def test_the_first_message_of_every_topic_is_on_the_disk_at_once(tmp_path):
+    """With the topic's definition: nothing waits for the clock but the messages after it."""
+    writes = "\n".join(
+        f"recorder.write({topic!r}, {{'voltage': [1.0, 2.0]}}, 7, 'hasel_interfaces/msg/Actuation')"
+        for topic in ("/a", "/b")
+    )
+    kill_at_once(tmp_path / "run.mcap", writes)
+    with pytest.warns(RecordingWarning, match="truncated"):
+        content = read_file(tmp_path / "run.mcap")
+    for topic in ("/a", "/b"):
+        (message,) = content.decoded(topic, "hasel_interfaces/msg/Actuation")
+        assert list(message.voltage) == [1.0, 2.0]
+
+
+def test_a_disk_that_is_full_from_the_beginning_is_reported_at_the_first_message():
+    """Whoever begins a recording may have a supply to watch: no error until something is lost."""
+    recorder = McapRecorder("/dev/full")
+    with pytest.raises(RecordingError, match=r"cannot be written on \(No space left on device\)"):
+        recorder.write(COMMAND, {"voltage": [1.0, 2.0]}, 1)
+    with pytest.raises(RecordingError, match="could not be finished"):
+        recorder.close()
 
 
 def test_header_lines_may_be_told_later(tmp_path):
@@ -174,3 +225,37 @@ def test_folder_that_does_not_exist(tmp_path):
     """A place that cannot be written to is one sentence."""
     with pytest.raises(RecordingError, match="cannot be written"):
         McapRecorder(tmp_path / "nowhere" / "run.mcap")
+
+
+def make_bag(folder: Path) -> Path:
+    """Record two messages and put `metadata.yaml` beside them, taken from the file's own record."""
+    with McapRecorder(folder / "bag_0.mcap", {"model": "swimmer"}) as recorder:
+        for stamp_ns in (1_000_000_000, 3_500_000_000):
+            recorder.write(COMMAND, {"voltage": [3500.0, 0.0]}, stamp_ns)
+    record = read_file(folder / "bag_0.mcap").metadata["rosbag2"]["serialized_metadata"]
+    text = yaml.safe_dump({"rosbag2_bagfile_information": yaml.safe_load(record)})
+    (folder / "metadata.yaml").write_text(text)
+    return folder
+
+
+def test_independent_reader_accepts_the_bag(tmp_path):
+    """With our metadata as metadata.yaml, rosbags opens the folder as a rosbag2 bag with the right counts."""
+    with Reader(make_bag(tmp_path)) as bag:
+        assert bag.message_count == 2
+        assert bag.duration >= 2_500_000_000
+        assert bag.ros_distro == "jazzy"
+        assert len(list(bag.messages())) == 2
+        (connection,) = bag.connections
+        assert connection.msgtype == "hasel_interfaces/msg/Actuation"
+
+
+def test_quality_of_service_is_understood(tmp_path):
+    """The channel's offered_qos_profiles parses to one reliable, volatile, keep-last profile."""
+    with Reader(make_bag(tmp_path)) as bag:
+        (qos,) = bag.connections[0].ext.offered_qos_profiles
+    assert (qos.reliability.name, qos.durability.name, qos.history.name) == (
+        "RELIABLE",
+        "VOLATILE",
+        "KEEP_LAST",
+    )
+    assert qos.deadline.sec == 9223372036

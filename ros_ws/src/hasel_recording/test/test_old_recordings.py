@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hasel_common.topics import MEASURED, SIMULATED, STATE
 from hasel_recording import read_recording
-from hasel_recording.convert import convert
+from hasel_recording.command_line import convert
 from hasel_recording.drive_channel import HASEL_PAIR
 from rosbags.highlevel import AnyReader
 

@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 import pytest
 from hasel_recording import RecordingError, RecordingWarning, read_recording
-from hasel_recording.column_map import parse_map
+from hasel_recording.csv_columns import parse_map
 
 TOP = "time_s,voltage_upper_v,sin_theta\n"
 

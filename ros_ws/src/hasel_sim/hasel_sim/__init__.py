@@ -1,5 +1,5 @@
 """Planar finite elements of the swimmer, its muscles and the physical effects on it."""
 
-from hasel_common.lazy_version import lazy_version
+from hasel_common.provenance import lazy_version
 
 __getattr__ = lazy_version(__name__)

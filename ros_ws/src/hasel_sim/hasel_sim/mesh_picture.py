@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from hasel_recording.marker_angle import turn_between
+from hasel_recording.recording import turn_between
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Patch

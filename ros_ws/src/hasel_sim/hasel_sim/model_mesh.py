@@ -5,7 +5,7 @@ from functools import lru_cache
 from types import SimpleNamespace
 
 import numpy as np
-from hasel_recording.marker_angle import sin_theta_from_markers
+from hasel_recording.recording import sin_theta_from_markers
 
 from hasel_sim.effects.base import ObservationEffect, guarded
 from hasel_sim.errors import ModelError

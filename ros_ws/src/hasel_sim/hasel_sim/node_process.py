@@ -8,8 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import rclpy
-from hasel_common.parent import end_with_parent
-from hasel_common.spinning import quiet_at_shutdown
+from hasel_common.command_entry import end_with_parent
+from hasel_common.managed_node import quiet_at_shutdown
 from rclpy.exceptions import InvalidParameterValueException
 from rclpy.node import Node
 

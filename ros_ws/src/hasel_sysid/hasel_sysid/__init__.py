@@ -8,7 +8,7 @@ imports only what it needs.
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from hasel_common.lazy_version import lazy_version
+from hasel_common.provenance import lazy_version
 
 if TYPE_CHECKING:
     from hasel_sysid.api import *  # noqa: F403

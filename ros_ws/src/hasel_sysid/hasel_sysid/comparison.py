@@ -5,7 +5,7 @@ from concurrent.futures import Executor, as_completed
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_common.workload import Workload
+from hasel_common.progress import Workload
 from hasel_sim.model import Model
 from hasel_sim.parallel import submit_all
 from hasel_sim.run import Simulation

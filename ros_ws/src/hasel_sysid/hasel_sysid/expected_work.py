@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
-from hasel_common.workload import Stage
+from hasel_common.progress import Stage
 from hasel_sim.model import Model
 from hasel_sim.run import Run
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from hasel_recording import DriveChannel, Recording
-from hasel_recording.marker_angle import sin_theta_from_markers
+from hasel_recording.recording import sin_theta_from_markers
 from hasel_sim.swimming.beating_fish import Beat, Fish, beat_shape
 from scipy.optimize import minimize_scalar
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from hasel_common.workload import Workload
+from hasel_common.progress import Workload
 from hasel_sim.errors import ModelError, SimulationError
 from hasel_sim.model import Model
 from hasel_sim.parallel import submit_each

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hasel_common.workload import Workload
+from hasel_common.progress import Workload
 from hasel_recording import Recording, read_recording
 from hasel_sim.model import load_model
 from hasel_sim.parallel import SerialExecutor

@@ -11,7 +11,7 @@ from itertools import groupby
 from pathlib import Path
 
 import pytest
-from hasel_common.workload import HowFar, Stage, Workload
+from hasel_common.progress import HowFar, Stage, Workload
 from hasel_sysid.command_line.options import improve_parser
 from hasel_sysid.expected_work import TYPICAL, USUAL_SPEED, TimeLimit, plan_of_improve
 

@@ -6,7 +6,7 @@ import warnings
 import hasel_sysid as h
 import pytest
 from hasel_recording import RecordingWarning, read_recording
-from hasel_recording.convert import convert
+from hasel_recording.command_line import convert
 from hasel_sysid.command_line import check, compare
 from hasel_sysid.dataset import load_experiments
 from hasel_sysid.errors import SysidError

@@ -4,7 +4,7 @@ import json
 import math
 
 import pytest
-from hasel_common.workload import Workload
+from hasel_common.progress import Workload
 from hasel_sysid.answer.diagnosis import Verdict
 from hasel_sysid.answer.result import Improvement, Status
 from hasel_sysid.command_line.improve import Ledger

@@ -4,7 +4,7 @@ from concurrent.futures import Executor, Future
 
 import numpy as np
 import pytest
-from hasel_common.workload import Stage, Workload
+from hasel_common.progress import Stage, Workload
 from hasel_recording import Recording
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import load_model

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hasel_recording import Recording
-from hasel_recording.csv_writer import write_csv
+from hasel_recording.csv_run import write_csv
 from hasel_sim.model import load_model, save_model
 from hasel_sim.parallel import SerialExecutor
 from hasel_sim.simulate import simulate

@@ -1,5 +1,5 @@
 """From a camera or a video to three markers and the bending angle."""
 
-from hasel_common.lazy_version import lazy_version
+from hasel_common.provenance import lazy_version
 
 __getattr__ = lazy_version(__name__)

@@ -32,7 +32,7 @@ def track(arguments: Sequence[str] | None = None) -> int:
 @command
 def tracker_node() -> int:
     """The node, until it is interrupted."""
-    from hasel_common.node_usage import answer_help
+    from hasel_common.node_parameter import answer_help
 
     from hasel_tracker.tracker_parameters import PARAMETERS
 

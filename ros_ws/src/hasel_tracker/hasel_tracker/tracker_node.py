@@ -11,11 +11,11 @@ import cv2
 import numpy as np
 import rclpy
 from builtin_interfaces.msg import Time
+from hasel_common.command_entry import end_with_parent
 from hasel_common.declared_parameters import declare
 from hasel_common.diagnostics import Diagnostics, Level, Part
 from hasel_common.endpoints import STEADY, Role, frame_of, publisher
 from hasel_common.managed_node import ManagedNode, start_and_spin
-from hasel_common.parent import end_with_parent
 from hasel_common.topics import MEASURED, NAMESPACE
 from hasel_interfaces.msg import BendingAngle
 from rcl_interfaces.msg import SetParametersResult

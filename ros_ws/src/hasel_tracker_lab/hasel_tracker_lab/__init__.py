@@ -1,5 +1,5 @@
 """The tracker's laboratory: pictures with a known truth, scenes that deceive, and how often the tracker is right."""
 
-from hasel_common.lazy_version import lazy_version
+from hasel_common.provenance import lazy_version
 
 __getattr__ = lazy_version(__name__)

@@ -1,5 +1,5 @@
 """The workbench: load runs, see where the model fails, try an effect by hand, watch the error fall."""
 
-from hasel_common.lazy_version import lazy_version
+from hasel_common.provenance import lazy_version
 
 __getattr__ = lazy_version(__name__)

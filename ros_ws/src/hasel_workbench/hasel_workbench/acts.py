@@ -5,7 +5,7 @@ from concurrent.futures import Executor
 from dataclasses import replace
 from functools import partial
 
-from hasel_common.workload import Workload
+from hasel_common.progress import Workload
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 from hasel_sysid.answer.diagnosis import Diagnosis

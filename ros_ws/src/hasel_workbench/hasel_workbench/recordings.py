@@ -6,8 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from hasel_recording import Recording, RecordingError, RecordingWarning, read_recording
-from hasel_recording.column_map import meant_names
-from hasel_recording.csv_columns import understand
+from hasel_recording.csv_columns import meant_names, understand
 from hasel_recording.csv_text import TEXT_SUFFIXES, read_text
 from hasel_recording.reading import distinct_names
 from hasel_sim.model import Model

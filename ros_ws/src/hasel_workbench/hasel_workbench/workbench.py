@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
-from hasel_common.workload import Workload
+from hasel_common.progress import Workload
 from hasel_recording import Recording
 from hasel_sim.model import Model, save_model
 from hasel_sim.run import Simulation

@@ -7,7 +7,7 @@ from pathlib import Path
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_common.endpoints import Role, subscription
-from hasel_common.spinning import node_alone
+from hasel_common.managed_node import node_alone
 from hasel_common.topics import DIAGNOSTICS, ERROR, NAMESPACE, SIMULATED
 from hasel_interfaces.msg import RunningError
 from hasel_interfaces.srv import LoadModel

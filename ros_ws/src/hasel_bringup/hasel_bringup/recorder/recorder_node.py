@@ -17,7 +17,7 @@ from hasel_common.topics import ERROR, MEASURED, NAMESPACE, SIMULATED, STATE, re
 from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
 from hasel_recording import RecordingError
 from hasel_recording.mcap_recorder import McapRecorder
-from hasel_recording.message_fields import nanoseconds
+from hasel_recording.ros_messages import nanoseconds
 from hasel_sim.node_process import run_node
 from std_srvs.srv import Trigger
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from itertools import count
 
 import rclpy
+from hasel_common.managed_node import quiet_at_shutdown
 from hasel_common.progress import counted
-from hasel_common.spinning import quiet_at_shutdown
 from hasel_recording import RecordingError, read_recordings
 
 from hasel_bringup.errors import BringupError

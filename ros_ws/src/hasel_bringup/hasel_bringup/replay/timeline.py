@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from hasel_recording import Recording
-from hasel_recording.zero_order_hold import held
+from hasel_recording.recording import held
 
 from hasel_bringup.errors import BringupError
 

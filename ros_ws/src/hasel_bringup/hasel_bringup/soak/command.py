@@ -11,7 +11,7 @@ import numpy as np
 from hasel_common.endpoints import Role, subscription
 from hasel_common.topics import ERROR, MEASURED, SIMULATED, STATE
 from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
-from hasel_recording.message_fields import nanoseconds
+from hasel_recording.ros_messages import nanoseconds
 from hasel_sysid.live.start_sysid import PARAMETERS
 
 from hasel_bringup.demo.processes import Processes

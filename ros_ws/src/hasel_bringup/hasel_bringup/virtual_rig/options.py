@@ -2,7 +2,7 @@
 
 import argparse
 
-from hasel_common.node_usage import parameter_list
+from hasel_common.node_parameter import parameter_list
 
 from hasel_bringup.virtual_rig.body_parameters import PARAMETERS
 

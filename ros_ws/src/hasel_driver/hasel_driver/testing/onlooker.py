@@ -3,7 +3,7 @@
 import time
 
 import rclpy
-from hasel_common.spinning import node_alone
+from hasel_common.managed_node import node_alone
 from hasel_interfaces.msg import SupplyState
 from rclpy.executors import SingleThreadedExecutor
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
-from hasel_common.spinning import BackgroundSpin, node_alone
+from hasel_common.managed_node import BackgroundSpin, node_alone
 from hasel_interfaces.msg import Actuation, SupplyState
 from lifecycle_msgs.msg import State, Transition
 from lifecycle_msgs.srv import ChangeState, GetState

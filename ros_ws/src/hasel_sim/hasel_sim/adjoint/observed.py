@@ -1,7 +1,7 @@
 """From weights of the measured angles back to weights of the markers; observation effects included."""
 
 import numpy as np
-from hasel_recording.marker_angle import sin_theta_from_markers
+from hasel_recording.recording import sin_theta_from_markers
 
 from hasel_sim.adjoint.trajectory import Trajectory
 from hasel_sim.effects.base import ObservationEffect, guarded

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from hasel_recording.drive_channel import HASEL_PAIR
-from hasel_recording.zero_order_hold import held
+from hasel_recording.recording import held
 
 from hasel_sim.errors import SimulationError
 

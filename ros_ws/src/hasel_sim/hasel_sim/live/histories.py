@@ -1,7 +1,7 @@
 """The recent past of a running simulation: what drove it, and the angle that was observed."""
 
 import numpy as np
-from hasel_recording.zero_order_hold import row_in_force
+from hasel_recording.recording import row_in_force
 
 from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.schedule import DriveSchedule

@@ -10,7 +10,7 @@ from geometry_msgs.msg import Point
 from hasel_common.declared_parameters import descriptor
 from hasel_common.node_parameter import NodeParameter
 from hasel_interfaces.msg import BendingAngle, SupplyState
-from hasel_recording.mcap_drive import muscles
+from hasel_recording.mcap_run import muscles
 from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.exceptions import InvalidParameterValueException
 from rclpy.node import Node

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations, product
 
 import numpy as np
-from hasel_common.workload import Workload
+from hasel_common.progress import Workload
 from hasel_recording import HASEL_PAIR, DriveChannel
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.errors import HaselSimError, SimulationError

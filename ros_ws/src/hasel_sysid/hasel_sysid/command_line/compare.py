@@ -4,8 +4,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from hasel_common.progress import progress_bar
-from hasel_common.workload import Stage
+from hasel_common.progress import Stage, progress_bar
 from hasel_sim.errors import SimulationError
 
 from hasel_sysid.command_line.inputs import chosen_model, load_all

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 
-from hasel_common.progress import progress_bar
-from hasel_common.workload import Workload
+from hasel_common.progress import Workload, progress_bar
 from hasel_sim.model import Model, save_model
 from hasel_sim.parallel import simulate_all
 

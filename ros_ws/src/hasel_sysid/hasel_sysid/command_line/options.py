@@ -9,7 +9,7 @@ from importlib import import_module
 from pathlib import Path
 
 from hasel_common.command_entry import command
-from hasel_recording.reading_options import RecordingsParser, add_reading_options
+from hasel_recording.command_line import RecordingsParser, add_reading_options
 
 DEFAULT_MODEL = "swimmer"
 FIT_METHODS = ("adam", "least_squares")

@@ -3,7 +3,7 @@
 import numpy as np
 from hasel_common.names import nearest
 from hasel_recording import Recording
-from hasel_recording.header_keys import KNOWN_KEYS
+from hasel_recording.recording import KNOWN_KEYS
 
 from hasel_sysid.data_quality.finding import DataFinding, error, warning
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from hasel_common.workload import Stage
+from hasel_common.progress import Stage
 from hasel_sim.effects.base import Effect
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model, Parameter

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 from hasel_common.names import nearest_name
-from hasel_common.workload import Stage
+from hasel_common.progress import Stage
 from hasel_sim.model import Model
 
 from hasel_sysid.errors import SysidError

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 from hasel_recording import Recording
-from hasel_recording.zero_order_hold import held
+from hasel_recording.recording import held
 
 from hasel_sysid.errors import SysidError
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 
-from hasel_common.workload import Workload
+from hasel_common.progress import Workload
 from hasel_interfaces import msg
 from hasel_recording import Recording, read_recordings
 from hasel_sim.live.simulator_interface import to_time

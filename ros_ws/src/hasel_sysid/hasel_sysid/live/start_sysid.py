@@ -3,8 +3,7 @@
 import sys
 
 from hasel_common.command_entry import command
-from hasel_common.node_parameter import AUTOSTART, NodeParameter
-from hasel_common.node_usage import answer_help
+from hasel_common.node_parameter import AUTOSTART, NodeParameter, answer_help
 
 PARAMETERS = (
     NodeParameter(*AUTOSTART),

@@ -10,9 +10,8 @@ from hasel_common.declared_parameters import declare, words
 from hasel_common.diagnostics import Diagnostics, Level, Part
 from hasel_common.endpoints import STEADY, Role, frame_of, publisher, subscription
 from hasel_common.managed_node import ManagedNode, start_and_spin
-from hasel_common.progress import LogLines
+from hasel_common.progress import HowFar, LogLines, Workload
 from hasel_common.topics import DIAGNOSIS, ERROR, FIT, MEASURED, NAMESPACE, SIMULATED, STATE
-from hasel_common.workload import HowFar, Workload
 from hasel_interfaces.msg import BendingAngle, Diagnosis, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import RecordingError

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from hasel_recording import DriveChannel, Recording
-from hasel_recording.zero_order_hold import row_in_force
+from hasel_recording.recording import row_in_force
 
 from hasel_sysid.residual_analysis.robust_statistics import high_frequency_noise
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_recording.zero_order_hold import held
+from hasel_recording.recording import held
 from scipy.special import chdtrc, ndtri
 
 from hasel_sysid.residual_analysis.drive_cycle import comparable, net_drive

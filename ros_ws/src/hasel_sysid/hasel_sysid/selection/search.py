@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from hasel_common.workload import Stage
+from hasel_common.progress import Stage
 from hasel_sim.errors import HaselSimError
 from hasel_sim.model import Model
 from hasel_sim.parallel import all_at_once

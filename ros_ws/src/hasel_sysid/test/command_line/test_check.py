@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from hasel_recording.header_keys import KNOWN_KEYS
+from hasel_recording.recording import KNOWN_KEYS
 from hasel_sysid.command_line import check, compare
 
 

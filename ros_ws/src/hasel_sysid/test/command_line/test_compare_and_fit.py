@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hasel_common.workload import Workload
+from hasel_common.progress import Workload
 from hasel_recording import Recording, read_recording, write_recording
 from hasel_recording.command_line import convert_main
 from hasel_sim.model import load_model, save_model

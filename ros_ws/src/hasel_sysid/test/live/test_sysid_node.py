@@ -13,8 +13,8 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_common.endpoints import Role
 from hasel_common.managed_node import ManagedNode
+from hasel_common.progress import Stage
 from hasel_common.topics import MEASURED, SIMULATED, STATE
-from hasel_common.workload import Stage
 from hasel_interfaces.msg import BendingAngle, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import Recording

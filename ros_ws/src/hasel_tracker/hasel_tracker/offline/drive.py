@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 from hasel_recording import HASEL_PAIR, DriveChannel, RecordingError
-from hasel_recording.drive_file import read_drive as read_recorded_drive
 from hasel_recording.reading import SUFFIXES
-from hasel_recording.zero_order_hold import held
+from hasel_recording.reading import read_drive as read_recorded_drive
+from hasel_recording.recording import held
 
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.offline.drive_lag import estimate_lag

@@ -10,7 +10,7 @@ period later) is refused.
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_recording.zero_order_hold import row_in_force
+from hasel_recording.recording import row_in_force
 
 from hasel_tracker.errors import TrackerError
 

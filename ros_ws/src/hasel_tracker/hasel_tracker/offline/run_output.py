@@ -15,8 +15,8 @@ from hasel_recording import (
     RecordingWarning,
     write_recording,
 )
-from hasel_recording.bending_angle_message import bending_angle_message
-from hasel_recording.mcap_writer import state_message
+from hasel_recording.mcap_run import state_message
+from hasel_recording.ros_messages import bending_angle_message
 
 from hasel_tracker.errors import TrackerError
 from hasel_tracker.offline.drive import Drive, DriveAlignment, after_the_drive

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from hasel_recording.marker_angle import turn_between
+from hasel_recording.recording import turn_between
 
 from hasel_tracker.tracking.doubt import Doubt
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from hasel_common.endpoints import Role, subscription
-from hasel_common.spinning import BackgroundSpin, node_alone
+from hasel_common.managed_node import BackgroundSpin, node_alone
 from hasel_common.topics import MEASURED, SIMULATED, STATE
 from hasel_interfaces.action import RunExperiment
 from hasel_interfaces.msg import BendingAngle, SupplyState

@@ -1,7 +1,7 @@
 """What a node answers to --help, and which arguments it takes."""
 
 import pytest
-from hasel_common.node_usage import answer_help, user_arguments
+from hasel_common.node_parameter import answer_help, user_arguments
 
 PARAMETERS = [("rate", 1.5, "angles per second"), ("effects", [""], "added"), ("quiet", False, "says less")]
 

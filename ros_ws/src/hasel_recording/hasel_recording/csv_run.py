@@ -1,21 +1,19 @@
-"""Read a lab's CSV file: `#key: value` lines, a row of column names, one row of numbers per frame."""
+"""A run as a CSV file, as labs write it and as we do: `#key: value` lines, a row of column names, one row per frame."""
 
-import warnings
-from collections.abc import Mapping
+import csv
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from hasel_recording.column_map import meant_names
-from hasel_recording.csv_columns import Columns, understand
-from hasel_recording.csv_numbers import CsvNumbers
+from hasel_recording.csv_columns import SIN_THETA, Columns, marker_columns, meant_names, understand
+from hasel_recording.csv_numbers import NOT_MEASURED, CsvNumbers
 from hasel_recording.csv_text import CsvText, read_text
-from hasel_recording.drive_channel import HASEL_PAIR, DriveChannel
-from hasel_recording.drive_end import until_drive_ends
-from hasel_recording.errors import RecordingError, RecordingWarning
-from hasel_recording.marker_angle import sin_theta_from_markers
-from hasel_recording.recording import MARKER_NAMES, Recording
-from hasel_recording.stand_in import as_meant
+from hasel_recording.drive_channel import HASEL_PAIR, DriveChannel, as_meant
+from hasel_recording.errors import RecordingError, warn
+from hasel_recording.recording import DRIVE_KEY, MARKER_NAMES, Recording, sin_theta_from_markers
 
 SEPARATED_BY = {";": "semicolons", "\t": "tabs", " ": "blanks"}
 
@@ -23,18 +21,14 @@ SEPARATED_BY = {";": "semicolons", "\t": "tabs", " ": "blanks"}
 def read_csv(path: Path, mapping: Mapping[str, str] | None = None, own_drive: bool = True) -> Recording:
     """Read one run; raises RecordingError naming the line and column of what is wrong.
 
-    mapping: {name that is known here: the file's own column}, as of column_map.parse_map. own_drive: False where the
+    mapping: {name that is known here: the file's own column}, as of csv_columns.parse_map. own_drive: False where the
     drive is in another file, to which some of the mapping belongs.
     """
     text = read_text(path)
     columns = understand(text.names, meant_names(mapping or {}, text.names, str(path), own_drive), str(path))
     for name in columns.unused:
-        warnings.warn(
-            f"{path}: column {name!r} is not used; --map says what a column is.",
-            RecordingWarning,
-            stacklevel=3,
-        )
-    text = until_drive_ends(text, columns)
+        warn(f"{path}: column {name!r} is not used; --map says what a column is.")
+    text = _until_drive_ends(text, columns)
     numbers = CsvNumbers(text)
     time_s = numbers.times(columns.time)
     markers = _markers(columns, numbers)
@@ -111,3 +105,69 @@ def _understood(columns: Columns, text: CsvText) -> list[str]:
         if column.name != channel.column:
             said.append(f"{channel} is column {column.name!r}, times {column.factor:g}")
     return said
+
+
+def _until_drive_ends(text: CsvText, columns: Columns) -> CsvText:
+    """Leave out the rows at the end whose drive cells are all blank; a RecordingWarning says how many."""
+    places = [text.names.index(column.name) for column in columns.drive.values()]
+    known = [
+        number
+        for number, row in enumerate(text.cells, start=1)
+        if any(row[place].lower() not in NOT_MEASURED for place in places)
+    ]
+    left_out = len(text.cells) - known[-1] if known else 0
+    if not left_out:
+        return text
+    warn(
+        f"{text.path}: {left_out} frames after the drive's end were left out: what drove the body then is not known."
+    )
+    return replace(text, lines=text.lines[:-left_out], cells=text.cells[:-left_out])
+
+
+TIME = "time_s"
+
+
+def write_csv(recording: Recording, path: Path) -> None:
+    """Write one run; a frame without an angle has a blank cell.
+
+    A drive that switches between frames goes into a file of its own beside it, which the header names. A
+    RecordingWarning says what is left out.
+    """
+    metadata = {key: value for key, value in recording.metadata.items() if key != DRIVE_KEY}
+    names, columns = [TIME], [recording.time_s]
+    if recording.drive_signal is not None:
+        names += [channel.column for channel in recording.channels]
+        columns += list(recording.drive_signal.T)
+    if recording.markers is not None:
+        names += marker_columns(recording.marker_names, recording.marker_unit)
+        columns += list(recording.markers.reshape(len(recording.time_s), -1).T)
+    if recording.drive_time_s is not None:
+        own = drive_path(path)
+        metadata[DRIVE_KEY] = own.name
+        drive_names = [TIME, *(channel.column for channel in recording.channels)]
+        _write(own, {}, drive_names, [recording.drive_time_s, *recording.drive_values.T], recording.name)
+    _write(path, metadata, [*names, SIN_THETA], [*columns, recording.sin_theta], recording.name)
+    if recording.simulated_time_s is not None:
+        warn(f"{path}: the simulated angle was left out, a CSV recording holds the measured one.")
+
+
+def drive_path(path: Path) -> Path:
+    """Return where the drive of a recording goes that switches between its frames."""
+    return path.with_name(f"{path.stem}_drive{path.suffix}")
+
+
+def _write(
+    path: Path, metadata: Mapping[str, str], names: Sequence[str], columns: Sequence[np.ndarray], run: str
+) -> None:
+    with path.open("w", encoding="utf-8", newline="") as file:
+        for key, value in metadata.items():
+            if "\n" in key + value or ":" in key:
+                raise RecordingError(f"The header line {key!r} of {run} does not fit on one CSV line.")
+            file.write(f"#{key}: {value}\n")
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(names)
+        writer.writerows([_digits(number) for number in row] for row in np.column_stack(columns).tolist())
+
+
+def _digits(number: float) -> str:
+    return "" if math.isnan(number) else repr(number).removesuffix(".0")

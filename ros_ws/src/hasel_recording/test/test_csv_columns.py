@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from hasel_recording import RecordingError, read_recording
-from hasel_recording.column_map import meant_names, parse_map
+from hasel_recording.csv_columns import meant_names, parse_map
 
 
 def test_pairs_are_read():
