@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from hasel_muscle.muscle_runs import read_bench
-from hasel_muscle.recording import BenchRecording
+from hasel_muscle.bench_files import read_bench
+from hasel_muscle.bench_recording import BenchRecording
 from hasel_sim.muscle.muscle import Muscle
 from hasel_sim.muscle.muscle_file import load_muscle
 from hasel_sim.muscle.swing import HangingLoad

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from hasel_muscle.muscle_runs import read_bench
-from hasel_muscle.problem import BenchProblem, as_model, bench_problem
+from hasel_muscle.bench_files import read_bench
+from hasel_muscle.bench_problem import BenchProblem, as_model
 from hasel_muscle.settled import settled
 from hasel_sim.muscle.muscle_file import load_muscle
 from hasel_sysid.errors import SysidError
@@ -17,7 +17,7 @@ NAMES = ("pouch.fill", "parallel_stiffness.stiffness")
 def problem(bench, tmp_path) -> BenchProblem:
     """Lifts of a muscle with a stiffness."""
     bench.hiding(parallel_stiffness__stiffness=6.0)
-    return bench_problem([settled(read_bench(bench.write_csv(tmp_path / "a.csv")))])
+    return BenchProblem([settled(read_bench(bench.write_csv(tmp_path / "a.csv")))])
 
 
 @pytest.fixture
@@ -63,4 +63,4 @@ def test_a_recording_that_does_not_tell_its_noise_is_refused(bench, tmp_path):
     rows = "\n".join(f"{0.5 * n:.1f},{3000.0 * (n > 1):.0f},{float(n > 1):.3f}" for n in range(6))
     (tmp_path / "a.csv").write_text(f"#load_n: 0.5\ntime_s,voltage_v,contraction_mm\n{rows}\n")
     with pytest.raises(SysidError, match=r"does not tell the noise of a settled frame.*rest of a second"):
-        _ = bench_problem([settled(read_bench(tmp_path / "a.csv"))]).measured_noise
+        _ = BenchProblem([settled(read_bench(tmp_path / "a.csv"))]).measured_noise

@@ -1,15 +1,15 @@
 """Where a law fails, said of muscles whose failure is known."""
 
-from hasel_muscle.muscle_runs import read_bench
-from hasel_muscle.problem import bench_problem
+from hasel_muscle.bench_files import read_bench
+from hasel_muscle.bench_problem import BenchProblem
+from hasel_muscle.law_check import where_it_fails
 from hasel_muscle.settled import settled
-from hasel_muscle.where_it_fails import where_it_fails
 from hasel_sim.muscle.muscle_file import load_muscle
 
 
 def said_of(bench, tmp_path) -> str:
     """All sentences about the package's own muscle on this bench's lifts."""
-    problem = bench_problem([settled(read_bench(bench.write_csv(tmp_path / "a.csv")))])
+    problem = BenchProblem([settled(read_bench(bench.write_csv(tmp_path / "a.csv")))])
     return " ".join(where_it_fails(problem, load_muscle("peano_hasel")))
 
 

@@ -1,7 +1,9 @@
-"""Read a bench's CSV file: time_s, voltage_v, contraction_mm, load_n, current_ma; each column says its unit."""
+"""What a bench recorded of one muscle, and its CSV file: time_s, voltage_v, contraction_mm, load_n, current_ma."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from hasel_common.names import nearest
@@ -12,7 +14,30 @@ from hasel_recording.csv_text import CsvText, read_text
 from hasel_recording.drive_channel import UNITS
 from hasel_recording.errors import RecordingError
 
-from hasel_muscle.recording import BenchRecording
+Held = Literal["load", "contraction"]
+
+
+@dataclass(frozen=True)
+class BenchRecording:
+    """Samples at times [s] [n]: voltage [V], contraction [m], load [N] and, where measured, current [A], all [n].
+
+    held: what the bench keeps, a hanging load or the contraction (a clamped length); the other one is the answer.
+    contraction and load may be NaN where a sensor saw nothing.
+    """
+
+    name: str
+    time: np.ndarray
+    voltage: np.ndarray
+    contraction: np.ndarray
+    load: np.ndarray
+    current: np.ndarray | None = None
+    held: Held = "load"
+
+    @property
+    def answer(self) -> np.ndarray:
+        """What the muscle does: contraction [m] under a load, load [N] at a held contraction."""
+        return self.contraction if self.held == "load" else self.load
+
 
 QUANTITIES = {
     "time": TIME_UNITS,
@@ -23,12 +48,10 @@ QUANTITIES = {
 }
 """Columns of a bench and, per unit that each may end in, its size in the SI unit; a mass counts as its weight."""
 
-HELD = "held"
-"""Header line that says what the bench keeps: load (a hanging weight, unless said otherwise) or contraction."""
-
 
 def read_bench_csv(path: Path, mapping: Mapping[str, str] | None = None) -> BenchRecording:
-    """Read one recording; a load that never changes may stand in the header, as `#load_n: 0.59`.
+    """Read one recording; a load that never changes may stand in the header, as `#load_n: 0.59`, and so does what the
+    bench keeps, as `#held: contraction` (else it is the load, a hanging weight).
 
     mapping: {name that is known here: the file's own column}, as of hasel_recording.column_map.parse_map.
     Raises RecordingError that names the column or line of what is wrong.
@@ -42,10 +65,10 @@ def read_bench_csv(path: Path, mapping: Mapping[str, str] | None = None) -> Benc
                 f"{path} has no column {name}_<unit>, only {', '.join(text.names)}; expected {_example(name)}: rename "
                 f"a column, or say which it is with --map {name}=COLUMN."
             )
-    held = text.metadata.get(HELD, "load")
+    held = text.metadata.get("held", "load")
     if held not in ("load", "contraction"):
         raise RecordingError(
-            f"{path}: #{HELD} is {held!r}, load or contraction was expected: correct that line."
+            f"{path}: #held is {held!r}, load or contraction was expected: correct that line."
         )
     time = numbers.times(columns["time"])
     load = numbers.column(columns["load"], True) if "load" in columns else _constant_load(text, len(time))
@@ -57,9 +80,6 @@ def read_bench_csv(path: Path, mapping: Mapping[str, str] | None = None) -> Benc
         load=load,
         current=numbers.column(columns["current"], True) if "current" in columns else None,
         held="load" if held == "load" else "contraction",
-        path=path,
-        metadata=text.metadata,
-        understood=tuple(f"{name} is column '{c.name}', times {c.factor:g}" for name, c in columns.items()),
     )
 
 

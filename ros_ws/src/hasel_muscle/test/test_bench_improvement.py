@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
-from hasel_muscle.improve import fit_muscle, improve_muscle
-from hasel_muscle.muscle_runs import read_bench, settled_runs
-from hasel_muscle.problem import bench_problem
-from hasel_muscle.result import BenchVerdict
+from hasel_muscle.bench_files import read_bench, settled_runs
+from hasel_muscle.bench_improvement import BenchVerdict, fit_muscle, improve_muscle
+from hasel_muscle.bench_problem import BenchProblem
+from hasel_muscle.bench_report import sentences
+from hasel_muscle.law_check import rival_table
 from hasel_muscle.settled import settled
-from hasel_muscle.shown import sentences
-from hasel_muscle.stroke_table import rival_table
 from hasel_sim.muscle.muscle_file import load_muscle
 from hasel_sysid.errors import SysidError
 from numpy.testing import assert_allclose
@@ -21,7 +20,7 @@ def problem_of(tmp_path):
     """The problem of a bench's lifts."""
 
     def make(bench):
-        return bench_problem([settled(read_bench(bench.write_csv(tmp_path / f"{bench.seed}.csv")))])
+        return BenchProblem([settled(read_bench(bench.write_csv(tmp_path / f"{bench.seed}.csv")))])
 
     return make
 
@@ -90,7 +89,7 @@ def test_held_lengths_show_it(bench, tmp_path):
     """Forces at two held contractions tell the spring in series."""
     bench.hiding(series_compliance__compliance=5e-4)
     paths = [bench.write_force_csv(tmp_path / f"{x}.csv", 1e-3 * x) for x in (2, 6)]
-    problem = bench_problem(settled_runs(paths, 1.0))
+    problem = BenchProblem(settled_runs(paths, 1.0))
     found = improve_muscle(problem, load_muscle("peano_hasel"), candidates=["series_compliance"])
     assert found.missing == ["series_compliance"]
     assert_allclose(found.muscle.values["series_compliance.compliance"], 5e-4, rtol=0.1)
@@ -102,7 +101,7 @@ def test_a_stranger_leaves_the_others_unjudged(bench, tmp_path):
     odd = x * (1 + 0.3 * np.sin(voltage / 300.0))
     rows = "\n".join(f"{t:.2f},{v:.1f},{1e3 * c:.6f}" for t, v, c in zip(time, voltage, odd, strict=True))
     (tmp_path / "odd.csv").write_text(f"#load_n: 0.5\ntime_s,voltage_v,contraction_mm\n{rows}\n")
-    problem = bench_problem([settled(read_bench(tmp_path / "odd.csv"))])
+    problem = BenchProblem([settled(read_bench(tmp_path / "odd.csv"))])
     found = improve_muscle(problem, load_muscle("peano_hasel"), candidates=FEW)
     assert found.status in ("unexplained", "partly_explained")
     assert BenchVerdict.ABSENT not in {finding.verdict for finding in found.findings}
@@ -141,5 +140,5 @@ def test_lifts_alike_tell_how_well_they_repeat(bench, tmp_path):
     x = x + np.where(voltage != 0, (number - 1) * 1e-4, 0.0)
     rows = "\n".join(f"{t:.2f},{v:.1f},{1e3 * c:.6f}" for t, v, c in zip(time, voltage, x, strict=True))
     (tmp_path / "a.csv").write_text(f"#load_n: 0.5\ntime_s,voltage_v,contraction_mm\n{rows}\n")
-    problem = bench_problem([settled(read_bench(tmp_path / "a.csv"))])
+    problem = BenchProblem([settled(read_bench(tmp_path / "a.csv"))])
     assert_allclose(problem.repeatability * problem.scales["m"], 1e-4, rtol=0.02)

@@ -3,9 +3,8 @@
 import h5py
 import numpy as np
 import pytest
-from hasel_muscle.muscle_runs import read_bench
-from hasel_muscle.read_csv import read_bench_csv
-from hasel_muscle.read_mat import muscle_beside, read_bench_mat
+from hasel_muscle.bench_files import muscle_beside, read_bench, read_bench_mat
+from hasel_muscle.bench_recording import read_bench_csv
 from hasel_recording.errors import RecordingError
 from numpy.testing import assert_allclose
 

@@ -43,10 +43,14 @@ class BenchProblem(Problem):
     """
 
     free_offset = False
+    experiments: tuple[Lifts, ...]
 
-    def __init__(self, settled: Sequence[SettledRun], scales: dict[str, float]) -> None:
-        """Raises SysidError where nothing is left that counts."""
-        self.runs, self.scales = tuple(settled), scales
+    def __init__(self, settled: Sequence[SettledRun], scales: dict[str, float] | None = None) -> None:
+        """scales: of another problem, to compare errors. Raises SysidError where nothing is left that counts."""
+        self.runs, self.scales = tuple(settled), dict(scales or {})
+        for run in () if scales else self.runs:
+            self.scales[run.unit] = np.max(np.abs(run.measured), initial=self.scales.get(run.unit, 0.0))
+        self.scales = {unit: float(size) or 1.0 for unit, size in self.scales.items()}
         super().__init__([lifts for run in self.runs for lifts in self._by_voltage(run)], SerialExecutor())
 
     def _by_voltage(self, run: SettledRun) -> list[Lifts]:
@@ -103,10 +107,11 @@ class BenchProblem(Problem):
     @property
     def shared_errors(self) -> Sequence[np.ndarray]:
         """What the zero of every recording is uncertain by, by the quantity's scale."""
-        lifts = cast(tuple[Lifts, ...], self.experiments)
         errors = [run.zero_error / self.scales[run.unit] for run in self.runs]
         return [
-            np.concatenate([np.full(int(one.frames.sum()), error * (one.of is run)) for one in lifts])
+            np.concatenate(
+                [np.full(int(one.frames.sum()), error * (one.of is run)) for one in self.experiments]
+            )
             for run, error in zip(self.runs, errors, strict=True)
             if error
         ]
@@ -151,9 +156,8 @@ class BenchProblem(Problem):
 
     def _series(self, muscle: Muscle) -> list[np.ndarray]:
         """The law's answer by the quantity's scale in the frames of every run."""
-        lifts = cast(tuple[Lifts, ...], self.experiments)
         answers = {id(run): run.predicted(muscle) / self.scales[run.unit] for run in self.runs}
-        found = [answers[id(one.of)][one.frames] for one in lifts]
+        found = [answers[id(one.of)][one.frames] for one in self.experiments]
         if not all(np.isfinite(one).all() for one in found):
             raise SimulationError(f"the law of muscle '{muscle.name}' has no answer there")
         return found
@@ -182,6 +186,11 @@ class BenchProblem(Problem):
         return np.concatenate([run.level[run.used] for run in self.runs])
 
     @cached_property
+    def units(self) -> np.ndarray:
+        """Of the answers, [frames]."""
+        return np.concatenate([np.full(run.used.sum(), run.unit) for run in self.runs])
+
+    @cached_property
     def driven(self) -> np.ndarray:
         """Whether there is a voltage, [frames]."""
         return np.concatenate([run.voltage[run.used] != 0 for run in self.runs])
@@ -203,11 +212,11 @@ class BenchProblem(Problem):
     def error(self, muscle: Muscle) -> dict[str, float]:
         """Mean |law - measurement| of the holds by quantity, in metres and newtons."""
         away = np.abs(self.predicted(muscle) - self.measured)
-        units = np.concatenate([np.full(run.used.sum(), run.unit) for run in self.runs])
+        frames = {unit: self.units == unit for unit in self.scales}
         return {
-            unit: float(np.average(away[units == unit], weights=self.weights[units == unit]))
-            for unit in self.scales
-            if np.any(units == unit)
+            unit: float(np.average(away[here], weights=self.weights[here]))
+            for unit, here in frames.items()
+            if here.any()
         }
 
     def only_levels(self, levels: Sequence[float] | np.ndarray, keep: bool = True) -> "BenchProblem":
@@ -217,16 +226,6 @@ class BenchProblem(Problem):
         """
         chosen = [run.only(np.isin(run.level, levels) == keep) for run in self.runs]
         return BenchProblem([run for run in chosen if run.used.any()], self.scales)
-
-
-def bench_problem(runs: Sequence[SettledRun], scales: dict[str, float] | None = None) -> BenchProblem:
-    """A problem of these runs; scales: of another problem, where errors are to be compared."""
-    if scales is None:
-        scales = {}
-        for run in runs:
-            largest = float(np.max(np.abs(run.measured), initial=0.0))
-            scales[run.unit] = max(scales.get(run.unit, 0.0), largest)
-    return BenchProblem(runs, {unit: size or 1.0 for unit, size in scales.items()})
 
 
 def as_model(muscle: Muscle) -> Model:

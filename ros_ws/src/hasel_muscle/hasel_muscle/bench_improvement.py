@@ -1,7 +1,8 @@
-"""What a muscle's law lacks: the search of the swimmer's `improve`, among the effects of a muscle."""
+"""What a muscle's law lacks: the search of the swimmer's `improve` among the effects of a muscle, stage by stage."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from enum import Enum
 from typing import cast
 
 import numpy as np
@@ -12,15 +13,9 @@ from hasel_sysid.candidates import Candidate
 from hasel_sysid.diagnosis import Finding, Verdict, said_beside
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation.covariance import with_numerical_error
-from hasel_sysid.estimation.fit import (
-    FittedModel,
-    descend,
-    exact,
-    fit_from_starts,
-    fitted_model,
-)
+from hasel_sysid.estimation.fit import FittedModel, descend, exact, fit_from_starts, fitted_model
 from hasel_sysid.estimation.starts import starts
-from hasel_sysid.model_checking.lack_of_fit import goodness_of_fit
+from hasel_sysid.model_checking.lack_of_fit import GoodnessOfFit, goodness_of_fit
 from hasel_sysid.noise.model import allowed_noise
 from hasel_sysid.policy import POLICY
 from hasel_sysid.result import Status
@@ -29,8 +24,99 @@ from hasel_sysid.selection.likelihood import Names, out_of_range
 from hasel_sysid.selection.search import Search, Searched
 from hasel_sysid.verdict import DETECTION, findings, share_left, status_with
 
-from hasel_muscle.problem import BenchProblem, as_model, as_muscle
-from hasel_muscle.result import BenchFinding, BenchImprovement, BenchVerdict, Described, MuscleStage
+from hasel_muscle.bench_problem import BenchProblem, as_model, as_muscle
+
+
+class BenchVerdict(Enum):
+    """In the order in which they are listed."""
+
+    MISSING = "missing"
+    AS_GOOD = "as good as the one that was added"
+    BEYOND = "would help, but only beyond its plausible range"
+    ABSENT = "absent"
+    NOT_JUDGED = "not judged"
+    UNSEEN = "cannot be seen"
+
+
+@dataclass(frozen=True)
+class BenchFinding:
+    """An effect, what is said of it, and why."""
+
+    effect: str
+    verdict: BenchVerdict
+    reason: str
+
+    def __str__(self) -> str:
+        return f"{self.effect}: {self.verdict.value}; {self.reason}."
+
+
+@dataclass(frozen=True)
+class Described:
+    """goodness: whether a law describes its lifts; error: root mean square by the largest answer, and allowed, what
+    that may be; noise, repeats: what is allowed for, likewise.
+    """
+
+    goodness: GoodnessOfFit
+    error: float
+    allowed: float
+    noise: float
+    repeats: float | None
+
+    @property
+    def describes(self) -> bool:
+        """Whether nothing is left but noise."""
+        return self.goodness.adequate
+
+    def __str__(self) -> str:
+        of = f"noise {100 * self.noise:.2g} %"
+        of += "" if self.repeats is None else f", lifts repeat to {100 * self.repeats:.2g} %"
+        said = "describes these lifts" if self.describes else "does not describe these lifts yet"
+        worst = "; most in " + ", ".join(map(str, self.goodness.lacking[:3])) if self.goodness.lacking else ""
+        return (
+            f"The model {said}: it is off by {100 * self.error:.2g} % of the largest answer, "
+            f"{100 * self.allowed:.2g} % are allowed for ({of}){worst}."
+        )
+
+
+@dataclass(frozen=True)
+class MuscleStage:
+    """What was added, the fit with it, and mean |law - measurement| by unit, of fitted and of unseen lifts."""
+
+    added: tuple[str, ...]
+    fit: FittedModel
+    error: dict[str, float]
+    unseen: dict[str, float]
+    rivals: tuple[str, ...] = ()
+
+    @property
+    def muscle(self) -> Muscle:
+        """With the fitted values."""
+        return as_muscle(self.fit.model)
+
+
+@dataclass(frozen=True)
+class BenchImprovement:
+    """stages: the file's own constants, the fitted law, then with every effect added; findings: of all effects; status:
+    as of the swimmer's `improve`; described: whether the last stage describes its lifts; groups: effects that these
+    lifts cannot tell apart.
+    """
+
+    stages: tuple[MuscleStage, ...]
+    findings: tuple[BenchFinding, ...]
+    status: Status
+    described: Described
+    groups: tuple[tuple[str, ...], ...] = ()
+
+    @property
+    def muscle(self) -> Muscle:
+        """With everything that was added."""
+        return self.stages[-1].muscle
+
+    @property
+    def missing(self) -> list[str]:
+        """What was added, in this order."""
+        return [name for stage in self.stages[2:] for name in stage.added]
+
 
 _OFTEN = replace(POLICY, fits=12)
 """A formula costs little: more models are fitted than of a body that is simulated."""
@@ -50,9 +136,8 @@ def _with_errors(problem: BenchProblem, fit: FittedModel) -> FittedModel:
     shared = {f"zero {number}": change for number, change in enumerate(problem.shared_errors)}
     covariance = with_numerical_error(free.evaluation, free.model.covariance(moving), shared)
     held = {name: free.model.values[name] for name in fit.at_bound}
-    return replace(
-        fit, model=free.model.with_covariance(moving, covariance).with_values(held, dict.fromkeys(held))
-    )
+    model = free.model.with_covariance(moving, covariance)
+    return replace(fit, model=model.with_values(held, dict.fromkeys(held)))
 
 
 def described(problem: BenchProblem, fit: FittedModel) -> Described:
@@ -87,9 +172,8 @@ def improve_muscle(
 
     def stage(fit: FittedModel, added: tuple[str, ...] = (), rivals: tuple[str, ...] = ()) -> MuscleStage:
         law = as_muscle(fit.model)
-        return MuscleStage(
-            added, fit, problem.error(law), {} if unseen is None else unseen.error(law), rivals
-        )
+        apart = {} if unseen is None else unseen.error(law)
+        return MuscleStage(added, fit, problem.error(law), apart, rivals)
 
     fit = fit_muscle(problem, muscle)
     present = {effect.id for effect in muscle.effects}
@@ -109,9 +193,8 @@ def improve_muscle(
     status = _status(found, stages, described(problem, stages[-1].fit).describes)
     stages = stages[:2] if status is Status.UNEXPLAINED else stages
     told = described(problem, stages[-1].fit)
-    return BenchImprovement(
-        tuple(stages), _findings(problem, found, effects, stages, told.describes), status, told, groups
-    )
+    said = _findings(problem, found, effects, stages, told.describes)
+    return BenchImprovement(tuple(stages), said, status, told, groups)
 
 
 def _groups(found: Searched) -> tuple[tuple[str, ...], ...]:
@@ -152,7 +235,7 @@ def _findings(
         one = said_beside(one, describes, added)
         if one.verdict is Verdict.ABSENT and _may_hide(problem, found, of[one.effect], frozenset(added)):
             one = replace(one, verdict=Verdict.CANNOT_BE_SEEN)
-        said.append(_finding(one, found, stages, describes))
+        said.append(BenchFinding(one.effect, *_judged(one, found, stages, describes)))
     order = list(BenchVerdict)
     return tuple(sorted(said, key=lambda each: order.index(each.verdict)))
 
@@ -164,34 +247,36 @@ def _may_hide(problem: BenchProblem, found: Searched, candidate: Candidate, besi
     answer = found.models[beside]
     begin = [start.model(answer.fitted.fit.model) for start in starts(candidate) if start.typical]
     ended = descend(problem, [model.with_held(*candidate.names) for model in begin])
-    likely = max(
-        (found.likelihood.of(one.residual, one.jacobian).logarithm for one in ended), default=-np.inf
-    )
-    return answer.whitened.logarithm - likely < 0.5 * DETECTION**2
+    likely = [found.likelihood.of(one.residual, one.jacobian).logarithm for one in ended]
+    return answer.whitened.logarithm - max(likely, default=-np.inf) < 0.5 * DETECTION**2
 
 
-def _finding(one: Finding, found: Searched, stages: Sequence[MuscleStage], describes: bool) -> BenchFinding:
+def _judged(
+    one: Finding, found: Searched, stages: Sequence[MuscleStage], describes: bool
+) -> tuple[BenchVerdict, str]:
+    """Verdict and reason."""
     name = one.effect
     alone = found.models.get(frozenset({name}))
     instead = [" and ".join(stage.added) for stage in stages[2:] if name in stage.rivals]
     if one.verdict is Verdict.MISSING:
-        return BenchFinding(name, BenchVerdict.MISSING, _sizes(stages[-1].muscle, name))
+        return BenchVerdict.MISSING, _sizes(stages[-1].muscle, name)
     if instead:
-        reason = f"these lifts cannot tell it from {' and '.join(instead)}"
-        return BenchFinding(name, BenchVerdict.AS_GOOD, reason)
+        return BenchVerdict.AS_GOOD, f"these lifts cannot tell it from {' and '.join(instead)}"
     if alone and any(out_of_range(c, alone.fitted.fit) for c in alone.fitted.candidates.values()):
-        return BenchFinding(name, BenchVerdict.BEYOND, _sizes(as_muscle(alone.fitted.fit.model), name))
+        return BenchVerdict.BEYOND, _sizes(as_muscle(alone.fitted.fit.model), name)
     if not describes:
-        return BenchFinding(name, BenchVerdict.NOT_JUDGED, "the model does not describe these lifts yet")
+        return BenchVerdict.NOT_JUDGED, "the model does not describe these lifts yet"
     if one.verdict is Verdict.ABSENT:
         path, unit = next(iter(one.units.items()))
         limit = f"{path} {one.null + one.visible_above:.2g}" + ("" if unit == "1" else f" {unit}")
-        return BenchFinding(name, BenchVerdict.ABSENT, f"at most {limit}")
+        return BenchVerdict.ABSENT, f"at most {limit}"
     if one.verdict is Verdict.MISSING_IF_SIZE_MATTERS:
-        reason = "it may be there, but voltages left out are predicted as well without it"
-        return BenchFinding(name, BenchVerdict.NOT_JUDGED, reason)
+        return (
+            BenchVerdict.NOT_JUDGED,
+            "it may be there, but voltages left out are predicted as well without it",
+        )
     reason = "beside what is free, its typical size would change these lifts by less than their noise"
-    return BenchFinding(name, BenchVerdict.UNSEEN, reason)
+    return BenchVerdict.UNSEEN, reason
 
 
 def _sizes(muscle: Muscle, name: str) -> str:

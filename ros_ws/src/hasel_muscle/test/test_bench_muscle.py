@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from hasel_muscle.command import main
+from hasel_muscle.bench_muscle import main
 from hasel_sim.muscle.muscle_file import load_muscle
 
 

@@ -1,28 +1,36 @@
-"""Read recordings of the kind of the public repository MadhavL/PH-HASEL-Python: MATLAB 7.3 files of a muscle's bench.
+"""Recordings of a bench from files and folders, and the muscle that they are of.
 
-`data` has five columns: time [s]; commanded voltage, 2 kV per volt; position, 4 mm per volt, growing as the muscle
-contracts; measured voltage, 2 kV per volt; measured current, 2 mA per volt. The name begins with the mass that hangs
-from the muscle, as in `60g__step…`. Its `parameters.py` holds the muscle's dimensions as plain assignments.
+Beside CSV files, MATLAB 7.3 files as of the public repository MadhavL/PH-HASEL-Python. `data` has five columns:
+time [s]; commanded voltage, 2 kV per volt; position, 4 mm per volt, growing as the muscle contracts; measured voltage,
+2 kV per volt; measured current, 2 mA per volt. The name begins with the mass that hangs from the muscle, as in
+`60g__step…`. Its `parameters.py` holds the muscle's dimensions as plain assignments.
 """
 
 import ast
+import contextlib
 import re
+import warnings
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
-from hasel_recording.errors import RecordingError
+from hasel_recording.errors import RecordingError, RecordingWarning
 from hasel_sim.muscle.muscle import Muscle
-from hasel_sim.muscle.muscle_file import MuscleDescription, muscle_of
+from hasel_sim.muscle.muscle_file import MuscleDescription, load_muscle, muscle_of
+from hasel_sysid.errors import SysidError
 
-from hasel_muscle.recording import BenchRecording
+from hasel_muscle.bench_recording import BenchRecording, read_bench_csv
+from hasel_muscle.settled import SettledRun, settled
 
-_SCALES = {"voltage": 2000.0, "position": 4e-3, "current": 2e-3}
+_VOLTAGE, _POSITION, _CURRENT = 2000.0, 4e-3, 2e-3
+"""Of a volt of the data logger [V, m, A]."""
 _COLUMNS = 5
 _SENSOR_VOLTS = 10.0
 _BLIND = 0.02
 """Share of the position sensor's range at either end at which it sees nothing any more."""
 _MASS = re.compile(r"(\d+(?:[.-]\d+)?)\s*g_", re.IGNORECASE)
 _NEEDED = ("n_pouches", "w", "t", "eps_r", "Lp", "Le")
+_DEFAULT = "peano_hasel"
 
 
 def read_bench_mat(path: Path) -> BenchRecording:
@@ -38,15 +46,10 @@ def read_bench_mat(path: Path) -> BenchRecording:
     return BenchRecording(
         name=path.stem,
         time=time - time[0],
-        voltage=_SCALES["voltage"] * commanded,
-        contraction=np.where(dark, np.nan, _SCALES["position"] * position),
+        voltage=_VOLTAGE * commanded,
+        contraction=np.where(dark, np.nan, _POSITION * position),
         load=np.full(len(time), load),
-        current=_SCALES["current"] * current,
-        path=path,
-        understood=(
-            f"a load of {load:.3g} N, from the file's name",
-            f"{dark.sum()} samples out of the sensor's range",
-        ),
+        current=_CURRENT * current,
     )
 
 
@@ -129,9 +132,64 @@ def _number(node: ast.expr, known: dict[str, float]) -> float | None:
         return float(node.value)
     if isinstance(node, ast.Name):
         return known.get(node.id)
-    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div):
-        left, right = _number(node.left, known), _number(node.right, known)
-        if left is None or right is None or (isinstance(node.op, ast.Div) and right == 0):
-            return None
-        return left * right if isinstance(node.op, ast.Mult) else left / right
-    return None
+    if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Mult | ast.Div):
+        return None
+    left, right = _number(node.left, known), _number(node.right, known)
+    if left is None or right is None or (isinstance(node.op, ast.Div) and right == 0):
+        return None
+    return left * right if isinstance(node.op, ast.Mult) else left / right
+
+
+def read_bench(path: Path, mapping: Mapping[str, str] | None = None) -> BenchRecording:
+    """One recording, .csv or .mat; mapping: columns of a .csv, as of --map. Raises RecordingError."""
+    if not path.is_file():
+        raise RecordingError(f"there is no recording {path}: check the name.")
+    if path.suffix.lower() not in (".csv", ".mat"):
+        raise RecordingError(f"{path}: a bench recording is a .csv or .mat file, not '{path.suffix}'.")
+    return read_bench_mat(path) if path.suffix.lower() == ".mat" else read_bench_csv(path, mapping)
+
+
+def readable(paths: Sequence[Path], mapping: Mapping[str, str] | None = None) -> list[BenchRecording]:
+    """Those of the recordings that can be read."""
+    found = []
+    for path in paths:
+        with contextlib.suppress(RecordingError):
+            found.append(read_bench(path, mapping))
+    return found
+
+
+def settled_runs(
+    paths: Sequence[Path], settling: float, mapping: Mapping[str, str] | None = None
+) -> list[SettledRun]:
+    """The settled frames of all recordings; one that cannot be used is told of and left out.
+
+    Raises SysidError where none is left.
+    """
+    found = []
+    for path in paths:
+        try:
+            found.append(settled(read_bench(path, mapping), settling))
+        except (RecordingError, SysidError) as error:
+            if len(paths) == 1:
+                raise
+            warnings.warn(f"left out: {error}", RecordingWarning, stacklevel=2)
+    if not found:
+        raise SysidError(
+            "no recording can be used, for the reasons given; expected at least one with held lifts"
+        )
+    return found
+
+
+def muscle_for(name: str | None, paths: Sequence[Path]) -> Muscle:
+    """The muscle that was asked for, or the one described beside the recordings, or the package's own."""
+    if name is not None:
+        return load_muscle(name)
+    described = next((muscle for path in paths if (muscle := muscle_beside(path)) is not None), None)
+    if described is not None:
+        return described
+    warnings.warn(
+        f"no --muscle was given: the package's own, '{_DEFAULT}', is taken; describe yours in a muscle file",
+        RecordingWarning,
+        stacklevel=2,
+    )
+    return load_muscle(_DEFAULT)
