@@ -1,12 +1,15 @@
-"""The curves of one run as one array of 32-bit numbers, row by row."""
+"""The curves of one run as one array of 32-bit numbers, and the map of where the model fails in all of them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from hasel_sysid.compare.run_comparison import RunComparison
 from hasel_sysid.report.figures.overlay import driven_stretches
+from hasel_sysid.where_it_fails.phase_profile import BINS
+from hasel_sysid.where_it_fails.run_series import RunSeries
 
 from hasel_workbench.state import SessionState
-from hasel_workbench.step import Step
 
 
 @dataclass(frozen=True)
@@ -43,22 +46,49 @@ def curves(state: SessionState, run: str) -> Curves:
     shown, before = state.shown, state.current if state.trial else None
     experiment = state.every[number]
     time, measured = experiment.run.time, experiment.sin_theta
-    offset, error = _offset(shown, number)
-    rows = [time, measured - offset, shown.simulations[number].sin_theta]
-    error_before = None
+    compared = shown.comparison.runs[number]
+    series, error, error_before = compared.series, compared.mean_absolute_error, None
+    rows = [time, measured - series.offset, shown.simulations[number].sin_theta]
     if before is not None:
-        other, error_before = _offset(before, number)
-        rows.append(before.simulations[number].sin_theta + other - offset)
-    series = shown.comparison.runs[number].series
+        other = before.comparison.runs[number]
+        error_before = other.mean_absolute_error
+        rows.append(before.simulations[number].sin_theta + other.series.offset - series.offset)
+    ends = float(time[0]), float(time[-1])
     driven = (
-        ()
-        if series.drive_time is None
-        else driven_stretches(series.drive_time, series.drive_values, float(time[0]), float(time[-1]))
+        [] if series.drive_time is None else driven_stretches(series.drive_time, series.drive_values, *ends)
     )
     unseen = number >= len(state.experiments)
     return Curves(run, unseen, np.array(rows, dtype=np.float32), tuple(driven), error, error_before)
 
 
-def _offset(step: Step, number: int) -> tuple[float, float]:
-    run = step.comparison.runs[number]
-    return run.series.offset, run.mean_absolute_error
+@dataclass(frozen=True)
+class MapRow:
+    """One run: mean of measured minus simulated sin theta by phase, [bins], NaN in a bin without a frame."""
+
+    run: str
+    mean: np.ndarray
+
+
+def failure_map(runs: Sequence[RunComparison]) -> list[MapRow]:
+    """A row for every run that has a cycle."""
+    profiles = ((run.name, run.analysis.profile) for run in runs)
+    return [MapRow(name, profile.mean) for name, profile in profiles if profile is not None]
+
+
+def stretch(series: RunSeries, cell: int) -> tuple[float, float]:
+    """Begin and end [s] of a cell of the map, in the cycle in which its error is largest.
+
+    A run without a cycle is one stretch.
+    """
+    first, last = float(series.time[0]), float(series.time[-1])
+    if series.cycle is None:
+        return first, last
+    inside = (series.cycle.phase(series.time) * BINS).astype(int) == cell
+    inside &= series.time >= series.cycle.start
+    width = series.cycle.period / BINS
+    if not inside.any():
+        begin = series.cycle.start + cell * width
+        return begin, min(begin + width, last)
+    worst = series.time[inside][int(np.argmax(np.abs(series.residual[inside])))]
+    begin = series.cycle.start + width * np.floor((worst - series.cycle.start) / width)
+    return max(first, float(begin)), min(last, float(begin + width))

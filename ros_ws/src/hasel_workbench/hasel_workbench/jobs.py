@@ -11,7 +11,8 @@ from hasel_recording import RecordingError
 from hasel_sim.errors import HaselSimError
 from hasel_sysid.errors import SysidError
 
-from hasel_workbench.evaluate import Progress
+Progress = Callable[[str, float], None]
+"""Called with a line of text and the share done, 0 to 1; it raises where the work is no longer wanted."""
 
 
 class Cancelled(Exception):  # noqa: N818  no error: somebody asked for it
@@ -95,15 +96,11 @@ class Jobs:
         except (HaselSimError, SysidError, RecordingError) as error:
             self.say("negative", str(error))
         except BrokenProcessPool:
-            self.say(
-                "negative",
-                "a worker process ended early, perhaps for lack of memory; start again with --jobs 1",
-            )
+            lost = "a worker process ended early, perhaps for lack of memory; start again with --jobs 1"
+            self.say("negative", lost)
         except OSError as error:
-            self.say(
-                "negative",
-                f"{error.filename or 'a file'}: {error.strerror or error}; choose another --output",
-            )
+            why = f"{error.filename or 'a file'}: {error.strerror or error}"
+            self.say("negative", f"{why}; choose another --output")
         except BaseException as error:
             if self._cancel.is_set():  # what it works with may be closed by now
                 self._say_cancelled()

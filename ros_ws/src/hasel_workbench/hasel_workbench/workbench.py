@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager
 from dataclasses import replace
+from itertools import chain, count
 from pathlib import Path
 
 from hasel_common.workload import Workload
@@ -18,16 +19,20 @@ from hasel_sysid.compare.compare import with_amplitudes
 from hasel_sysid.errors import SysidError
 from hasel_sysid.expected_work import USUAL_SPEED, plan_of_diagnosis, plan_of_fit
 from hasel_sysid.experiment import Experiment
+from hasel_sysid.improvement import diagnose
+from hasel_sysid.problem import Problem
 
 from hasel_workbench import acts
 from hasel_workbench.cards import Card, cards
-from hasel_workbench.evaluate import Progress, evaluated, silent
-from hasel_workbench.export import export
-from hasel_workbench.ledger import StepLedger
-from hasel_workbench.prediction import Prediction, predicted
+from hasel_workbench.jobs import Progress
 from hasel_workbench.recordings import ReadingChoices, checked, file_place, place_of, read
+from hasel_workbench.session_files import StepLedger, export
 from hasel_workbench.state import SessionState
-from hasel_workbench.step import Step
+from hasel_workbench.step import Prediction, Step, predicted
+
+
+def silent(_text: str, _share: float) -> None:
+    """The progress of who does not wait."""
 
 
 class Workbench:
@@ -131,15 +136,15 @@ class Workbench:
             if state.current.fit is None:
                 state = self._kept(state, acts.fitted(state, self.pool, work))
                 self._commit(state)
-            found = acts.diagnosed(state, self.pool, self.effects, work)
+            problem = Problem(state.experiments, self.pool, workload=work)
+            found = diagnose(problem, state.current.fit, self.effects)
             self._commit(replace(state, diagnosis=found, diagnosed=state.at, suggestions=()))
 
     def switch_on(self, effect: str, progress: Progress = silent) -> None:
         """Try the current model with an effect, at the values that the diagnosis found, else at typical ones."""
         with self._change() as state:
-            self._commit(
-                replace(state, trial=acts.with_effect(state, effect, self.effects, self.pool, progress))
-            )
+            trial = acts.with_effect(state, effect, self.effects, self.pool, progress)
+            self._commit(replace(state, trial=trial))
 
     def switch_off(self, effect: str, progress: Progress = silent) -> None:
         """Try the current model without an effect that it has."""
@@ -231,14 +236,11 @@ class Workbench:
         self._commit(state)
         if not found:
             return
-        count = len(state.experiments)
-        fitted = tuple(known[:count]) if unseen else (*known[:count], *found)
-        others = (*known[count:], *found) if unseen else tuple(known[count:])
+        first = len(state.experiments)
+        fitted = tuple(known[:first]) if unseen else (*known[:first], *found)
+        others = (*known[first:], *found) if unseen else tuple(known[first:])
         state = replace(state, experiments=fitted, unseen=others)
-        if not fitted:
-            self._commit(state)
-            return
-        self._commit(self._judged_anew(state, model, progress))
+        self._commit(self._judged_anew(state, model, progress) if fitted else state)
 
     def _regroup(
         self,
@@ -257,14 +259,11 @@ class Workbench:
         state = replace(state, trial=None, diagnosis=None, suggestions=())
         if not state.steps:
             first = with_amplitudes(model, state.every)
-            step = evaluated("start", first, state.experiments, state.unseen, self.pool, progress)
-            return self._kept(state, step)
+            return self._kept(state, acts.evaluated(state, "start", first, self.pool, progress, ()))
         steps = []
         for number, step in enumerate(state.steps):
             progress(f"{step.label} against all runs", number / len(state.steps))
-            again = evaluated(
-                step.label, step.model, state.experiments, state.unseen, self.pool, did=step.did
-            )
+            again = acts.evaluated(state, step.label, step.model, self.pool, silent, step.did)
             steps.append(replace(again, file=step.file))
         return replace(state, steps=tuple(steps))
 
@@ -294,8 +293,5 @@ class Workbench:
 
 def _unlike(label: str, taken: Sequence[str]) -> str:
     """The label, numbered where another step is called so already."""
-    number, found = 1, label
-    while found in taken:
-        number += 1
-        found = f"{label} ({number})"
-    return found
+    names = chain([label], (f"{label} ({number})" for number in count(2)))
+    return next(name for name in names if name not in taken)

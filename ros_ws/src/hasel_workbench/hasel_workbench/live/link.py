@@ -17,7 +17,7 @@ from hasel_sysid.errors import SysidError
 from rclpy.action import ActionClient
 from std_srvs.srv import Trigger
 
-from hasel_workbench.evaluate import Progress
+from hasel_workbench.jobs import Progress
 from hasel_workbench.live.stream import KINDS, LiveStream
 
 _STOP_S, _ANSWER_S, _LOOK_S = 1.0, 30.0, 0.05

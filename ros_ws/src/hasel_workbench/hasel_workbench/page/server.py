@@ -14,36 +14,13 @@ from nicegui import app, background_tasks, run, ui
 
 from hasel_workbench.jobs import Jobs
 from hasel_workbench.live.rig import RunningRig
-from hasel_workbench.page.door import Door
+from hasel_workbench.page.access import LOOPBACK, Door, RedirectFile
 from hasel_workbench.page.page import Page
-from hasel_workbench.page.redirect_file import RedirectFile
 from hasel_workbench.page.routes import add_routes
 from hasel_workbench.workbench import Workbench
 
 _STATIC = Path(__file__).with_name("static")
 _SCRIPTS = ("packet.js", "body.js", "curves.js", "tuning.js", "live.js", "bench.js")
-LOOPBACK = ("127.0.0.1", "localhost", "::1")
-
-
-def opening(host: str, certificate: tuple[Path, Path] | None, unencrypted: bool) -> str:
-    """What listening at a host opens, in one sentence; '' for this machine only.
-
-    Raises SysidError where others on the network would be let in without a certificate and without being told so.
-    """
-    if host in LOOPBACK:
-        return ""
-    opens = (
-        f"--host {host} opens the workbench to the network: whoever has its address with the token can run experiments "
-        "on the rig and read recordings and effect files"
-    )
-    if certificate is not None:
-        return f"{opens}."
-    if not unencrypted:
-        raise SysidError(
-            f"{opens}, and without encryption everybody on the way can read the token; give --certificate FILE --key "
-            "FILE, or say --unencrypted where you trust the network"
-        )
-    return f"{opens}; without encryption everybody on the way can read the token."
 
 
 def serve(

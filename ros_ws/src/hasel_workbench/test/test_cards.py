@@ -4,7 +4,7 @@ import math
 
 import pytest
 from hasel_sim.model import load_model
-from hasel_workbench.sliders import Slider, sliders
+from hasel_workbench.cards import Slider, sliders
 
 PIXELS = 140
 

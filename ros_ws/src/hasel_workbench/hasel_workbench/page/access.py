@@ -1,19 +1,45 @@
-"""Who may come in: each request and socket shows the printed address' token, and comes from the page itself."""
+"""Who may come in: whom the host lets in, the printed address' token, and the browser that is led to it."""
 
 import secrets
 from collections.abc import Awaitable, Callable, MutableMapping
+from html import escape
 from http.cookies import CookieError, SimpleCookie
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 from urllib.parse import parse_qs, urlencode, urlsplit
 
 from fastapi.datastructures import Headers
 from fastapi.responses import PlainTextResponse, RedirectResponse
+from hasel_sysid.errors import SysidError
 
+LOOPBACK = ("127.0.0.1", "localhost", "::1")
 LARGEST_REQUEST = 1 << 30
 """Bytes that one request, such as an upload, may have."""
 Scope = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
 Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
+
+
+def opening(host: str, certificate: tuple[Path, Path] | None, unencrypted: bool) -> str:
+    """What listening at a host opens, in one sentence; '' for this machine only.
+
+    Raises SysidError where others on the network would be let in without a certificate and without being told so.
+    """
+    if host in LOOPBACK:
+        return ""
+    opens = (
+        f"--host {host} opens the workbench to the network: whoever has its address with the token can run experiments "
+        "on the rig and read recordings and effect files"
+    )
+    if certificate is not None:
+        return f"{opens}."
+    if not unencrypted:
+        raise SysidError(
+            f"{opens}, and without encryption everybody on the way can read the token; give --certificate FILE --key "
+            "FILE, or say --unencrypted where you trust the network"
+        )
+    return f"{opens}; without encryption everybody on the way can read the token."
 
 
 class Door:
@@ -81,3 +107,26 @@ class Door:
             self._cookie, self._token, httponly=True, samesite="lax", secure=scope["scheme"] == "https"
         )
         return answer
+
+
+_PAGE = """<!DOCTYPE html>
+<html lang="en">
+<head><meta charset="utf-8"><meta http-equiv="refresh" content="0; url={0}"><title>HASEL workbench</title></head>
+<body><a href="{0}">To the workbench</a></body>
+</html>
+"""
+
+
+class RedirectFile:
+    """uri: its address; below: where it is, in a folder of its own, as a browser in a snap sees no temporary files."""
+
+    def __init__(self, address: str, below: Path) -> None:
+        self._folder = TemporaryDirectory(prefix="open_", dir=below)
+        path = Path(self._folder.name).resolve() / "workbench.html"
+        path.touch(0o600)
+        path.write_text(_PAGE.format(escape(address)), encoding="utf-8")
+        self.uri = path.as_uri()
+
+    def remove(self) -> None:
+        """With its folder."""
+        self._folder.cleanup()

@@ -1,14 +1,18 @@
-"""One page of a browser that is driven by the Chrome DevTools Protocol: what a user does to it, and what it shows."""
+"""A browser without a window, by the Chrome DevTools Protocol without a driver program; and how fast the page is."""
 
 import base64
 import json
 import re
+import shutil
+import subprocess
+import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from hasel_sysid.errors import SysidError
 
 PATIENCE_S = 60.0
@@ -41,13 +45,8 @@ class BrowserPage:
 
     def resize(self, width: int, height: int) -> None:
         """Size of the window in pixels."""
-        self.send(
-            "Emulation.setDeviceMetricsOverride",
-            width=width,
-            height=height,
-            deviceScaleFactor=1,
-            mobile=False,
-        )
+        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        self.send("Emulation.setDeviceMetricsOverride", **size)
 
     def go(self, address: str) -> None:
         """Load an address."""
@@ -108,12 +107,8 @@ class BrowserPage:
 
     def middle(self, element: str) -> tuple[float, float]:
         """Of an element, in pixels of the window."""
-        return tuple(
-            self.run(
-                f"(() => {{ const r = ({element}).getBoundingClientRect(); "
-                "return [r.x + r.width / 2, r.y + r.height / 2]; })()"
-            )
-        )
+        box = f"const r = ({element}).getBoundingClientRect()"
+        return tuple(self.run(f"(() => {{ {box}; return [r.x + r.width / 2, r.y + r.height / 2]; }})()"))
 
     def press(self, key: str) -> None:
         """A key, such as ArrowRight."""
@@ -150,6 +145,122 @@ class BrowserPage:
             thrown = details["exceptionDetails"]
             self.errors.append(thrown.get("exception", {}).get("description", thrown["text"]))
         elif event.get("method") == "Log.entryAdded" and details["entry"]["level"] == "error":
-            self.errors.append(
-                re.sub(r"\s+", " ", details["entry"]["text"] + " " + details["entry"].get("url", ""))
-            )
+            entry = details["entry"]
+            self.errors.append(re.sub(r"\s+", " ", entry["text"] + " " + entry.get("url", "")))
+
+
+_NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+
+
+def find_browser() -> str | None:
+    """The program of a browser that speaks the protocol; None where none is installed."""
+    return next((path for path in map(shutil.which, _NAMES) if path), None)
+
+
+class Browser:
+    """As a context manager, ends the browser. Raises SysidError where none is installed, or it does not start."""
+
+    def __init__(self, program: str | None = None) -> None:
+        program = program or find_browser()
+        if program is None:
+            raise SysidError(f"no browser was found; expected one of {', '.join(_NAMES)}: install chromium")
+        self._folder = tempfile.TemporaryDirectory(prefix="browser-", ignore_cleanup_errors=True)
+        options = [
+            "--headless=new",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--remote-debugging-port=0",
+            "--mute-audio",
+        ]
+        options += ["--no-first-run", "--disable-extensions", "--disable-background-networking"]
+        # several pages at once, none of which is to sleep because another one is in front
+        options += ["--disable-renderer-backgrounding", "--disable-background-timer-throttling"]
+        options += ["--disable-backgrounding-occluded-windows", "--disable-dev-shm-usage"]
+        options += [f"--user-data-dir={self._folder.name}", "about:blank"]
+        self._process = subprocess.Popen(
+            [program, *options], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+        )
+        self._address = self._found_address()
+        self.pages: list[BrowserPage] = []
+
+    def open(self, address: str, width: int = 1400, height: int = 900, dark: bool = False) -> BrowserPage:
+        """A page of its own at an address, loaded."""
+        page = BrowserPage(self._address, width, height, dark)
+        self.pages.append(page)
+        page.go(address)
+        return page
+
+    def close(self) -> None:
+        """End it."""
+        for page in self.pages:
+            page.close()
+        self._process.terminate()
+        try:
+            self._process.wait(10.0)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._folder.cleanup()
+
+    def __enter__(self) -> "Browser":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _found_address(self) -> str:
+        note, end = Path(self._folder.name) / "DevToolsActivePort", time.monotonic() + PATIENCE_S
+        while time.monotonic() < end and self._process.poll() is None:
+            lines = note.read_text().split() if note.exists() else []
+            if len(lines) == 2:
+                return f"ws://127.0.0.1:{lines[0]}{lines[1]}"
+            time.sleep(0.05)
+        self._process.kill()
+        raise SysidError("the browser did not start; try it by hand with --headless --no-sandbox")
+
+
+_DRAGS, _LOADED_S = 12, 300.0
+_DRAG = (
+    "(() => {{ const s = [...document.querySelectorAll('input[data-name]')].pop(); s.value = +s.value + {};"
+    " s.dispatchEvent(new Event('input', {{bubbles: true}})); }})()"
+)
+_WEIGHT = "performance.getEntriesByType('resource').reduce((sum, each) => sum + each.transferSize, 0)"
+
+
+def measure(address: str, tell: Callable[[str], None]) -> None:
+    """Drive a page of a workbench with runs in a browser without a window, and tell what was measured beside its bar.
+
+    Raises SysidError where no browser is installed.
+    """
+    with Browser() as browser:
+        page = browser.open(address)
+        page.until("window.bench && bench.shown > 0", _LOADED_S)
+        runs, weight = page.run("bench.runs"), page.run(_WEIGHT)
+        here = (address.partition("?")[0], "data:")
+        local = "yes" if all(each.startswith(here) for each in page.addresses()) else "NO"
+        tell(f"runs: {len(runs)}; the page loads {weight / 1e6:.1f} MB, all from here: {local}")
+        foretold, true = _drags(page)
+        tell(f"a value dragged, new curve foretold and drawn: {_times(foretold)} (bar 100 ms)")
+        tell(f"… true simulation of the run drawn: {_times(true)} (bar 1000 ms)")
+        page.run("bench.play()")
+        rates = []
+        for _ in range(5):  # the first one counts from before the motion began
+            page.run("bench.rate = 0")
+            page.until("bench.rate > 0", _LOADED_S)
+            rates.append(page.run("bench.rate"))
+        tell(f"motion: {np.median(rates[1:]):.0f} frames/s (bar 30)")
+
+
+def _drags(page: BrowserPage) -> tuple[list[float], list[float]]:
+    """Times [ms] from the input to the picture, foretold and true."""
+    for number in range(_DRAGS):
+        page.run("bench.times = {predict: [], truth: [], ...window.wbKept}")
+        page.run(_DRAG.format(40 if number % 2 else -40))
+        drawn = f"bench.times.predict.length > {number} && bench.times.truth.length > {number}"
+        page.until(drawn, _LOADED_S)
+        page.run("window.wbKept = bench.times")
+    return page.run("bench.times.predict"), page.run("bench.times.truth")
+
+
+def _times(found: list[float]) -> str:
+    return f"median {np.median(found):.0f} ms, largest {max(found):.0f} ms of {len(found)}"
