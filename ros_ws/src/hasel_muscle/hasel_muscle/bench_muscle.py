@@ -100,9 +100,8 @@ def _problems(options: argparse.Namespace) -> tuple[BenchProblem, BenchProblem |
     missing = [volts for volts in apart if volts not in every.voltages]
     if missing:
         known = ", ".join(f"{level:g}" for level in every.voltages)
-        raise SysidError(
-            f"no lift is at {missing[0]:g} V; expected some of {known}: correct --unseen-voltages"
-        )
+        said = f"no lift is at {missing[0]:g} V; expected some of {known}"
+        raise SysidError(f"{said}: correct --unseen-voltages")
     if set(apart) >= set(every.voltages.tolist()):
         raise SysidError(
             "all voltages are unseen, so that nothing is left to fit: name fewer with --unseen-voltages"

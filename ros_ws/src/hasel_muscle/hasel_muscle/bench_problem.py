@@ -83,16 +83,17 @@ class BenchProblem(Problem):
         """Standard deviation of lifts alike, by the answer's scale; None where no lift was repeated."""
         groups: dict[tuple, list[float]] = {}
         for run in self.runs:
-            for number in np.unique(run.hold[run.used & (run.voltage != 0)]):
-                frames = run.used & (run.hold == number)
-                kept = run.load if run.held == "load" else run.contraction
-                key = (run.held, float(run.level[frames][0]), float(f"{np.median(kept[frames]):.2g}"))
-                answer = run.contraction if run.held == "load" else run.load
-                groups.setdefault(key, []).append(float(np.median(answer[frames])) / self.scales[run.unit])
-        repeated = [np.asarray(values) for values in groups.values() if len(values) > 1]
+            level, voltage, hold = (each[run.used] for each in (run.level, run.voltage, run.hold))
+            for number in np.unique(hold[voltage != 0]):
+                here = hold == number
+                key = (run.held, float(level[here][0]), float(f"{np.median(run.kept[here]):.2g}"))
+                groups.setdefault(key, []).append(
+                    float(np.median(run.measured[here])) / self.scales[run.unit]
+                )
+        repeated = [values for values in groups.values() if len(values) > 1]
         if not repeated:
             return None
-        squares = sum(float(np.sum((values - values.mean()) ** 2)) for values in repeated)
+        squares = sum(len(values) * np.var(values) for values in repeated)
         return float(np.sqrt(squares / sum(len(values) - 1 for values in repeated)))
 
     @property
@@ -109,9 +110,7 @@ class BenchProblem(Problem):
         """What the zero of every recording is uncertain by, by the quantity's scale."""
         errors = [run.zero_error / self.scales[run.unit] for run in self.runs]
         return [
-            np.concatenate(
-                [np.full(int(one.frames.sum()), error * (one.of is run)) for one in self.experiments]
-            )
+            np.concatenate([np.full(e.frames.sum(), error * (e.of is run)) for e in self.experiments])
             for run, error in zip(self.runs, errors, strict=True)
             if error
         ]

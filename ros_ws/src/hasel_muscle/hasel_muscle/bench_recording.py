@@ -67,9 +67,8 @@ def read_bench_csv(path: Path, mapping: Mapping[str, str] | None = None) -> Benc
             )
     held = text.metadata.get("held", "load")
     if held not in ("load", "contraction"):
-        raise RecordingError(
-            f"{path}: #held is {held!r}, load or contraction was expected: correct that line."
-        )
+        said = f"#held is {held!r}, load or contraction was expected: correct that line."
+        raise RecordingError(f"{path}: {said}")
     time = numbers.times(columns["time"])
     load = numbers.column(columns["load"], True) if "load" in columns else _constant_load(text, len(time))
     return BenchRecording(
@@ -103,12 +102,10 @@ def _columns(text: CsvText, meant: Mapping[str, str]) -> dict[str, Column]:
     found: dict[str, Column] = {}
     for name in text.names:
         quantity, unit = _parsed(meant.get(name, name))
-        near = nearest(quantity, QUANTITIES)
         if quantity not in QUANTITIES:
-            if near:
-                raise RecordingError(
-                    f"{text.path}: column {name!r} is not known; did you mean {_example(near)}?"
-                )
+            if near := nearest(quantity, QUANTITIES):
+                said = f"column {name!r} is not known; did you mean {_example(near)}?"
+                raise RecordingError(f"{text.path}: {said}")
             continue
         if unit not in QUANTITIES[quantity]:
             units = ", ".join(QUANTITIES[quantity])

@@ -1,7 +1,7 @@
 """What the bench shows: tables and sentences for the terminal, JSON, a picture, and one HTML page with it."""
 
 import base64
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
@@ -52,27 +52,25 @@ def stroke_table(
     table = Table(title="settled lifts, mean of all at one voltage and load; *: unseen", title_justify="left")
     for name in ("voltage", "held", "lifts", "measured", *(name for name, _ in muscles)):
         table.add_column(name, justify="right", no_wrap=True)
-    fitted = [(row, "") for row in _rows(problem, [muscle for _, muscle in muscles])]
-    apart = [(row, " *") for row in _rows(unseen, [muscle for _, muscle in muscles])] if unseen else []
-    for row, mark in sorted([*fitted, *apart]):
-        table.add_row(f"{row[0]:g} V{mark}", *row[1:])
+    laws = [muscle for _, muscle in muscles]
+    rows = [*_rows(problem, laws, ""), *(_rows(unseen, laws, " *") if unseen else ())]
+    for volts, cells, mark in sorted(rows):
+        table.add_row(f"{volts:g} V{mark}", *cells)
     return table
 
 
-def _rows(problem: BenchProblem, muscles: Sequence[Muscle]) -> list[tuple]:
-    rows = []
+def _rows(problem: BenchProblem, laws: Sequence[Muscle], mark: str) -> Iterator[tuple]:
+    """Voltage [V], the other cells, and the mark."""
     for run in problem.runs:
-        predicted = [run.predicted(muscle) for muscle in muscles]
-        kept, kept_unit = (run.load, "N") if run.held == "load" else (run.contraction, "m")
-        at = np.array([float(f"{value:.2g}") for value in kept[run.used]])
+        answers = [run.measured, *(run.predicted(law) for law in laws)]
+        kept_unit = "N" if run.held == "load" else "m"
+        at = np.array([float(f"{value:.2g}") for value in run.kept])
         voltage, level, hold = (each[run.used] for each in (run.voltage, run.level, run.hold))
         for volts, held in sorted(set(zip(level[voltage != 0], at[voltage != 0], strict=True))):
             here = (voltage != 0) & (level == volts) & (at == held)
-            lifts = len(np.unique(hold[here]))
-            answers = [run.measured, *predicted]
             shown = [quantity(float(np.mean(answer[here])), run.unit) for answer in answers]
-            rows.append((float(volts), quantity(float(held), kept_unit), str(lifts), *shown))
-    return rows
+            lifts = str(len(np.unique(hold[here])))
+            yield float(volts), (quantity(float(held), kept_unit), lifts, *shown), mark
 
 
 def stage_name(stage: MuscleStage, number: int) -> str:
@@ -94,12 +92,9 @@ def stage_table(found: BenchImprovement) -> Table:
 def sentences(found: BenchImprovement) -> list[str]:
     """What the terminal says below the tables."""
     said = []
-    for stage in found.stages[2:]:
-        before = found.stages[found.stages.index(stage) - 1]
-        fell = ", ".join(
-            f"{quantity(before.error[u], u)} to {quantity(e, u)}" for u, e in stage.error.items()
-        )
-        said.append(f"{' and '.join(stage.added)} is missing: it takes the error from {fell}.")
+    for before, stage in zip(found.stages[1:], found.stages[2:], strict=False):
+        fell = [f"{quantity(before.error[u], u)} to {quantity(e, u)}" for u, e in stage.error.items()]
+        said.append(f"{' and '.join(stage.added)} is missing: it takes the error from {', '.join(fell)}.")
         if stage.rivals:
             said.append(f"  These lifts cannot tell it from {', '.join(stage.rivals)}.")
     if not found.missing:
@@ -194,9 +189,8 @@ def write_picture(result: BenchResult, path: Path) -> None:
     curve.set(xlabel="voltage [kV]", ylabel=shown, title="lifts (mean of the settled frames)")
     curve.legend(fontsize=8, frameon=False)
     left.axhline(0, color=_GREY, lw=0.8)
-    left.set(
-        xlabel="voltage [kV]", ylabel=f"law - measurement, {shown}", title="what is left (hollow: unseen)"
-    )
+    label = f"law - measurement, {shown}"
+    left.set(xlabel="voltage [kV]", ylabel=label, title="what is left (hollow: unseen)")
     _falling(falling, found, unit, factor)
     _force_strain(law, found.muscle, float(max(np.abs(run.voltage).max() for run in fitted.runs)))
     for axes in (curve, falling, left, law):
@@ -240,9 +234,8 @@ def _force_strain(axes, muscle: Muscle, highest: float) -> None:
 def write_report(result: BenchResult, picture: Path, path: Path) -> None:
     """Write the page; picture: a PNG that is taken into it."""
     found = result.found
-    environment = Environment(
-        loader=FunctionLoader(_template), autoescape=True, undefined=StrictUndefined, trim_blocks=True
-    )
+    templates = FunctionLoader(_template)
+    environment = Environment(loader=templates, autoescape=True, undefined=StrictUndefined, trim_blocks=True)
     page = environment.get_template("bench_muscle.html").render(
         muscle=found.muscle.name,
         status=found.status.value.replace("_", " "),

@@ -47,6 +47,11 @@ class SettledRun:
         return (self.contraction if self.held == "load" else self.load)[self.used]
 
     @property
+    def kept(self) -> np.ndarray:
+        """What the bench keeps, in the same frames, [used]: load [N], or contraction [m]."""
+        return (self.load if self.held == "load" else self.contraction)[self.used]
+
+    @property
     def unit(self) -> str:
         """Of `measured`."""
         return "m" if self.held == "load" else "N"

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from concurrent.futures import Executor
-from dataclasses import replace
+from contextlib import suppress
 from functools import partial
 
 from hasel_common.workload import Workload
@@ -23,12 +23,6 @@ from hasel_workbench.step import Step
 FIT = "model = h.fit(model, fitted).model"
 _SMALLER = (1.0, 0.5, 0.25)
 """Shares of an effect's typical size that are tried until one can be simulated."""
-
-
-def nothing_is_tried(state: SessionState) -> None:
-    """Raise SysidError while something is being tried."""
-    if state.trial is not None:
-        raise SysidError(f"'{state.trial.label}' is being tried; keep it or take it back first")
 
 
 def evaluated(
@@ -83,17 +77,18 @@ def with_effect(
         found = finding.fit.model
         return evaluated(state, label, found, pool, progress, (add, _values_line(found.values)), finding.fit)
     model = current.model.with_effects(source)
-    for share in _SMALLER:
+
+    def at(share: float) -> Step:
         values = _sized(model, effect, share)
         if finding is not None and finding.expected and finding.is_plausible and share == 1.0:
             values |= {name: value for name, (value, _) in finding.expected.items()}
-        try:
-            tried = model.with_values(values)
-            return evaluated(state, label, tried, pool, progress, (add, _values_line(values)))
-        except SimulationError:
-            if share == _SMALLER[-1]:
-                raise
-    raise AssertionError
+        did = (add, _values_line(values))
+        return evaluated(state, label, model.with_values(values), pool, progress, did)
+
+    for share in _SMALLER[:-1]:
+        with suppress(SimulationError):
+            return at(share)
+    return at(_SMALLER[-1])
 
 
 def without_effect(state: SessionState, effect: str, pool: Executor, progress: Progress) -> Step:
@@ -106,10 +101,8 @@ def without_effect(state: SessionState, effect: str, pool: Executor, progress: P
 def with_values(state: SessionState, values: Mapping[str, float], pool: Executor, progress: Progress) -> Step:
     """What is shown, with other values; those outside their bounds are moved onto them."""
     shown = state.shown
-    known = {name: shown.model.parameter(name) for name in values}
-    values = {
-        name: min(max(float(value), known[name].lower), known[name].upper) for name, value in values.items()
-    }
+    known = [(shown.model.parameter(name), float(value)) for name, value in values.items()]
+    values = {p.name: min(max(value, p.lower), p.upper) for p, value in known}
     model = shown.model.with_values(values, dict.fromkeys(values))
     label = shown.label if state.trial else "by hand"
     did = (*(shown.did if state.trial else ()), _values_line(values))
@@ -130,13 +123,6 @@ def suggestions(state: SessionState, pool: Executor, progress: Progress) -> tupl
             "no experiment of the library can be simulated with these explanations: plan it by hand"
         )
     return tuple(found)
-
-
-def filed(step: Step, label: str, file: str = "") -> Step:
-    """A step with the name that it has in the history and that of its model file; what was worked out of it stays."""
-    new = replace(step, label=label, file=file)
-    new.__dict__["comparison"] = step.comparison
-    return new
 
 
 def _sized(model: Model, effect: str, share: float) -> dict[str, float]:

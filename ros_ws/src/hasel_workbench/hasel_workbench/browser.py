@@ -8,7 +8,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any
 
@@ -24,8 +24,7 @@ class BrowserPage:
     def __init__(self, address: str, width: int, height: int, dark: bool) -> None:
         from websockets.sync.client import connect
 
-        self._open = ExitStack()
-        self._socket = self._open.enter_context(connect(address, max_size=None, open_timeout=PATIENCE_S))
+        self._socket = connect(address, max_size=None, open_timeout=PATIENCE_S)
         self._number, self._session = 0, ""
         self.errors: list[str] = []
         context = self.send("Target.createBrowserContext")["browserContextId"]
@@ -41,7 +40,7 @@ class BrowserPage:
 
     def close(self) -> None:
         """Leave it."""
-        self._open.close()
+        self._socket.close()
 
     def resize(self, width: int, height: int) -> None:
         """Size of the window in pixels."""
@@ -157,7 +156,7 @@ def find_browser() -> str | None:
     return next((path for path in map(shutil.which, _NAMES) if path), None)
 
 
-class Browser:
+class Browser(AbstractContextManager):
     """As a context manager, ends the browser. Raises SysidError where none is installed, or it does not start."""
 
     def __init__(self, program: str | None = None) -> None:
@@ -201,9 +200,6 @@ class Browser:
             self._process.kill()
             self._process.wait()
         self._folder.cleanup()
-
-    def __enter__(self) -> "Browser":
-        return self
 
     def __exit__(self, *_: object) -> None:
         self.close()

@@ -73,11 +73,9 @@ class Slider:
     @property
     def share(self) -> float:
         """Where the value lies between the ends of the scale, 0 to 1."""
-        low, at, high = (self._scaled(value) for value in (self.lowest, self.value, self.highest))
+        values = (self.lowest, self.value, self.highest)
+        low, at, high = (math.asinh((value - self.centre) / self.size) for value in values)
         return (at - low) / (high - low) if high > low else 0.0
-
-    def _scaled(self, value: float) -> float:
-        return math.asinh((value - self.centre) / self.size)
 
 
 def sliders(model: Model) -> list[Slider]:
@@ -98,9 +96,8 @@ def _slider(model: Model, name: str, declared: EffectParameter | None) -> Slider
     low, high = min(low, p.value), max(high, p.value)
     centre, size = (0.0, abs(p.value)) if declared is None else _scale(declared)
     size = size or high - low or 1.0
-    return Slider(
-        name, p.unit, p.value, low, high, centre, size, meaning(name, model), plausible(name, model)
-    )
+    words = meaning(name, model), plausible(name, model)
+    return Slider(name, p.unit, p.value, low, high, centre, size, *words)
 
 
 def _scale(declared: EffectParameter) -> tuple[float, float]:

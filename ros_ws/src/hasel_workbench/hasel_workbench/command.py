@@ -27,7 +27,7 @@ def run(options: argparse.Namespace) -> int:
     return run_command(lambda: _serve(options))
 
 
-def _serve(options: argparse.Namespace) -> int:
+def _serve(options: argparse.Namespace) -> None:
     if find_spec("nicegui") is None:
         raise SysidError(
             "the workbench needs NiceGUI 3, which is not installed: `pip install 'nicegui>=3,<4'` into the environment "
@@ -71,7 +71,6 @@ def _serve(options: argparse.Namespace) -> int:
             serve(session, jobs, rig, options.host, 0, False, _visit, certificate)
         else:
             serve(session, jobs, rig, options.host, options.port, options.browser, None, certificate)
-    return 0
 
 
 def _end(number: int, _frame: object) -> None:

@@ -55,7 +55,9 @@ def film(model: Model, experiment: Experiment, simulation: Simulation, offset: f
     offset: of this run's measured sin theta, taken out before its direction is drawn.
     """
     mesh = model_mesh(model)
-    shown = _shown(simulation.time)
+    usual = float(np.median(np.diff(simulation.time))) if len(simulation.time) > 1 else 1.0
+    every = max(1, round(1.0 / (_FRAMES_PER_SECOND * usual))) if usual > 0 else 1
+    shown = np.arange(0, len(simulation.time), every)
     shapes = simulation.shapes[shown]
     simulated = simulation.markers[shown][:, :3]
     measured = measured_markers(experiment, simulation.markers, offset, model)[shown]
@@ -70,15 +72,8 @@ def film(model: Model, experiment: Experiment, simulation: Simulation, offset: f
     ]
     frames = np.concatenate(parts, axis=1).astype(np.float32)
     frames = frames[np.isfinite(shapes).all(axis=(1, 2))]
-    return Film(
-        experiment.name,
-        frames,
-        mesh.elements[:, _RING],
-        mesh.muscle,
-        mesh.skin,
-        shapes.shape[1],
-        simulation.contraction.shape[1],
-    )
+    outline = mesh.elements[:, _RING], mesh.muscle, mesh.skin
+    return Film(experiment.name, frames, *outline, shapes.shape[1], simulation.contraction.shape[1])
 
 
 def axial_strain(mesh: Mesh, shapes: np.ndarray) -> np.ndarray:
@@ -86,13 +81,6 @@ def axial_strain(mesh: Mesh, shapes: np.ndarray) -> np.ndarray:
     _, gradients, _ = reference_gradients(mesh.nodes[mesh.elements], 1)
     along = np.einsum("neai,ea->nei", shapes[:, mesh.elements], gradients[:, 0, :, 0])
     return np.linalg.norm(along, axis=-1) - 1.0
-
-
-def _shown(time: np.ndarray) -> np.ndarray:
-    """Numbers of the frames that are shown."""
-    usual = float(np.median(np.diff(time))) if len(time) > 1 else 1.0
-    every = max(1, round(1.0 / (_FRAMES_PER_SECOND * usual))) if usual > 0 else 1
-    return np.arange(0, len(time), every)
 
 
 def measured_markers(

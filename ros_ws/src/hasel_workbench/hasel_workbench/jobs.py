@@ -39,7 +39,7 @@ class Said:
 
 
 class Jobs:
-    """on_end: called after every piece of work."""
+    """said: sentences for every page, the last ones."""
 
     def __init__(self) -> None:
         self.said: deque[Said] = deque(maxlen=50)
@@ -91,8 +91,6 @@ class Jobs:
             work(self._progress)
             if done:
                 self.say("positive", done)
-        except Cancelled:
-            self._say_cancelled()
         except (HaselSimError, SysidError, RecordingError) as error:
             self.say("negative", str(error))
         except BrokenProcessPool:
@@ -103,12 +101,9 @@ class Jobs:
             self.say("negative", f"{why}; choose another --output")
         except BaseException as error:
             if self._cancel.is_set():  # what it works with may be closed by now
-                self._say_cancelled()
+                self.say("warning", f"{self._title}: cancelled, nothing was changed")
                 return
             self.say("negative", f"{self._title} failed, please report it: {type(error).__name__}: {error}")
             raise
         finally:
             self._thread = None
-
-    def _say_cancelled(self) -> None:
-        self.say("warning", f"{self._title}: cancelled, nothing was changed")

@@ -10,7 +10,6 @@ from itertools import groupby
 from pathlib import Path
 
 from hasel_sim.model import save_model
-from hasel_sysid.compare.comparison import Comparison
 from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.report.content import ReportContent
@@ -24,6 +23,10 @@ from hasel_workbench.jobs import Progress
 from hasel_workbench.recordings import ReadingChoices
 from hasel_workbench.state import SessionState, waterfall
 from hasel_workbench.step import Step
+
+START_FILE, MODEL_FILE, AGAIN_FILE, SCRIPT_FILE = "start.yaml", "model.yaml", "model_again.yaml", "session.py"
+_MOST_MODELS = 3
+"""More models in one curve's picture cannot be told apart: the first and the last ones are shown."""
 
 
 class StepLedger:
@@ -60,8 +63,6 @@ class StepLedger:
         with self.path.open("a", encoding="utf-8") as file_:
             file_.write(json.dumps(line, ensure_ascii=False) + "\n")
 
-
-START_FILE, AGAIN_FILE = "start.yaml", "model_again.yaml"
 
 _SCRIPT = '''"""What was done in the workbench, step by step; run it where the workspace is sourced.
 
@@ -111,26 +112,16 @@ def _loaded(experiments: Sequence[Experiment], reading: ReadingChoices) -> str:
 
 
 def _read(experiments: Sequence[Experiment], columns: Mapping[str, str], reading: ReadingChoices) -> str:
-    paths = [_path(each) for each in experiments]
-    parts = [*(f"        {str(path)!r}," for path in paths)]
+    for each in experiments:
+        if each.recording.path is None:
+            raise SysidError(f"{each.name} is in no file, so no script can read it again; save it first")
+    parts = [f"        {str(each.recording.path.resolve())!r}," for each in experiments]
     if columns:
         parts.append(f"        columns={columns!r},")
     drives = [reading.drives.get(str(each.recording.path)) for each in experiments]
     if any(drives):
         parts.append(f"        drives={[None if d is None else str(Path(d).resolve()) for d in drives]!r},")
-    return "h.load(\n" + "\n".join(parts) + "\n    )"
-
-
-def _path(experiment: Experiment) -> Path:
-    path = experiment.recording.path
-    if path is None:
-        raise SysidError(f"{experiment.name} is in no file, so no script can read it again; save it first")
-    return path.resolve()
-
-
-MODEL_FILE, SCRIPT_FILE = "model.yaml", "session.py"
-_MOST_MODELS = 3
-"""More models in one curve's picture cannot be told apart: the first and the last ones are shown."""
+    return "\n".join(["h.load(", *parts, "    )"])
 
 
 def export(
@@ -162,13 +153,16 @@ def export(
 
 def report_content(state: SessionState, pool: Executor) -> ReportContent:
     """What the report shows of a session."""
-    comparisons = _shown(state)
-    falling = waterfall(state)
-    content = comparison_content(
-        comparisons, detailed=-1, shapes_of=lambda *given: pool.submit(simulated_shapes, *given).result()
-    )
-    diagnosis = state.diagnosis
-    current = state.current
+    steps = state.kept
+    if len(steps) > _MOST_MODELS:
+        steps = (steps[0], *steps[1 - _MOST_MODELS :])
+    comparisons = [replace(step.comparison, label=step.label) for step in steps]
+
+    def shapes(*given):
+        return pool.submit(simulated_shapes, *given).result()
+
+    content = comparison_content(comparisons, detailed=-1, shapes_of=shapes)
+    falling, diagnosis, current = waterfall(state), state.diagnosis, state.current
     return replace(
         content,
         title=f"A session of the workbench: {current.label}",
@@ -182,10 +176,3 @@ def report_content(state: SessionState, pool: Executor) -> ReportContent:
         remains=() if diagnosis is None else what_remains(diagnosis),
         next_runs=tuple(next_run(each) for each in state.suggestions[:3]),
     )
-
-
-def _shown(state: SessionState) -> list[Comparison]:
-    steps = (
-        state.kept if len(state.kept) <= _MOST_MODELS else (state.kept[0], *state.kept[1 - _MOST_MODELS :])
-    )
-    return [replace(step.comparison, label=step.label) for step in steps]

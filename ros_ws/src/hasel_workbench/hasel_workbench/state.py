@@ -78,9 +78,8 @@ class SessionState:
         """Number of a run among all of them. Raises SysidError for one that is not there."""
         names = [each.name for each in self.every]
         if run not in names:
-            raise SysidError(
-                f"there is no run '{run}'; expected one of: {', '.join(names) or 'none is loaded'}"
-            )
+            known = ", ".join(names) or "none is loaded"
+            raise SysidError(f"there is no run '{run}'; expected one of: {known}")
         return names.index(run)
 
     def with_banners(self, said: Sequence[Banner]) -> "SessionState":

@@ -18,7 +18,6 @@ from hasel_sysid.command_line.chosen_model import chosen_model
 from hasel_sysid.compare.compare import with_amplitudes
 from hasel_sysid.errors import SysidError
 from hasel_sysid.expected_work import USUAL_SPEED, plan_of_diagnosis, plan_of_fit
-from hasel_sysid.experiment import Experiment
 from hasel_sysid.improvement import diagnose
 from hasel_sysid.problem import Problem
 
@@ -130,7 +129,8 @@ class Workbench:
     def diagnose(self, progress: Progress = silent) -> None:
         """Rank the effects that the current model may lack; fits it first where that was not done."""
         with self._change() as state:
-            acts.nothing_is_tried(state)
+            if state.trial is not None:
+                raise SysidError(f"'{state.trial.label}' is being tried; keep it or take it back first")
             plan = plan_of_diagnosis(acts.size_of(state), len(effects_of(state.current.model, self.effects)))
             work = Workload(plan, usual_speed=USUAL_SPEED, tell=progress)
             if state.current.fit is None:
@@ -242,13 +242,8 @@ class Workbench:
         state = replace(state, experiments=fitted, unseen=others)
         self._commit(self._judged_anew(state, model, progress) if fitted else state)
 
-    def _regroup(
-        self,
-        state: SessionState,
-        fitted: Sequence[Experiment],
-        unseen: Sequence[Experiment],
-        progress: Progress,
-    ) -> None:
+    def _regroup(self, state: SessionState, fitted: list, unseen: list, progress: Progress) -> None:
+        """Other experiments to fit and not to fit than before."""
         if not fitted:
             raise SysidError("no run to fit would be left; expected one at least: load another one first")
         state = replace(state, experiments=tuple(fitted), unseen=tuple(unseen))
@@ -268,13 +263,14 @@ class Workbench:
         return replace(state, steps=tuple(steps))
 
     def _kept(self, state: SessionState, step: Step) -> SessionState:
-        step = acts.filed(step, _unlike(step.label, [each.label for each in state.kept]))
-        return state.with_step(acts.filed(step, step.label, self._ledger.keep(step)))
+        label = _unlike(step.label, [each.label for each in state.kept])
+        new = replace(step, label=label, file=self._ledger.keep(replace(step, label=label)))
+        new.__dict__["comparison"] = step.comparison  # what was worked out stays
+        return state.with_step(new)
 
     def _go(self, state: SessionState, number: int) -> None:
-        self._ledger.note(
-            "taken back" if number < state.at else "restored", state.steps[max(number, state.at)]
-        )
+        what = "taken back" if number < state.at else "restored"
+        self._ledger.note(what, state.steps[max(number, state.at)])
         self._commit(replace(state, at=number))
 
     @contextmanager

@@ -137,14 +137,12 @@ class OwnSimulator:
         self._log = model.with_name("simulator.log")
         own = {} if self._domain is None else {"ROS_DOMAIN_ID": str(self._domain)}
         file = model.resolve()
-        given = ("-r", f"__ns:={self._namespace}", "-p", f"model:={file}", "-p", f"own_files:={file.parent}")
+        given = ["-r", f"__ns:={self._namespace}", "-p", f"model:={file}", "-p", f"own_files:={file.parent}"]
+        command = [sys.executable, "-m", "hasel_sim.start_simulator", "--ros-args", *given]
+        env = {**os.environ, "PYTHONUNBUFFERED": "1", **own}
         with self._log.open("w") as output:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "hasel_sim.start_simulator", "--ros-args", *given],
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=subprocess.STDOUT,
-                env={**os.environ, "PYTHONUNBUFFERED": "1", **own},
+                command, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT, env=env
             )
 
     def check(self) -> None:

@@ -143,16 +143,14 @@ def waterfall_svg(falling: Waterfall) -> str:
     if all(stage.error_unseen is not None for stage in falling.stages):
         groups.append(("unseen runs", "unseen", [s.error_unseen for s in falling.stages]))
     highest = max(error for *_, errors in groups for error in errors)
-    labels = [stage.label for stage in falling.stages]
-    drawn = "".join(_group(*group, labels, highest, falling) for group in groups)
+    drawn = "".join(_group(*group, highest, falling) for group in groups)
     return f'<div class="wb-waterfalls">{drawn}</div>'
 
 
-def _group(
-    title: str, kind: str, errors: Sequence[float], labels: Sequence[str], highest: float, falling: Waterfall
-) -> str:
-    count = len(errors) + (1 if len(errors) > 1 else 0)
-    pitch = (_WIDTH - 2 * _LEFT) / max(count, 3)
+def _group(title: str, kind: str, errors: Sequence[float], highest: float, falling: Waterfall) -> str:
+    labels = [stage.label for stage in falling.stages]
+    pitch = (_WIDTH - 2 * _LEFT) / max(len(errors) + (len(errors) > 1), 3)
+    most = max(4, int(pitch / 6.2))
     scale = (_HEIGHT - _TOP - _BOTTOM) / (1.06 * highest)
 
     def y(error: float) -> float:
@@ -174,23 +172,17 @@ def _group(
     for number, (before, after, css, text, label) in enumerate(bars):
         left, top = _LEFT + number * pitch, y(max(before, after))
         height = max(1.0, abs(before - after) * scale)
-        middle = left + 0.45 * pitch
+        middle, short = left + 0.45 * pitch, label if len(label) <= most else label[: most - 1] + "…"
         parts.append(
             f'<rect class="{css}" x="{left:.1f}" y="{top:.1f}" width="{0.9 * pitch:.1f}" height="{height:.1f}"/>'
             f'<text class="number" x="{middle:.1f}" y="{top - 4:.1f}">{text}</text>'
             f'<text class="label" x="{middle:.1f}" y="{_HEIGHT - _BOTTOM + 14}">'
-            f"{escape(_short(label, pitch))}<title>{escape(label)}</title></text>"
+            f"{escape(short)}<title>{escape(label)}</title></text>"
         )
     floor = y(falling.noise_floor)
     if floor > _TOP:
-        parts.append(
-            f'<line class="noise" x1="{_LEFT}" x2="{_WIDTH - _LEFT}" y1="{floor:.1f}" y2="{floor:.1f}"/>'
-        )
+        ends = f'x1="{_LEFT}" x2="{_WIDTH - _LEFT}" y1="{floor:.1f}" y2="{floor:.1f}"'
+        parts.append(f'<line class="noise" {ends}/>')
     note = f"dashed: noise floor {error_text(falling.noise_floor)}"
     parts.append(f'<text class="noise" x="{_LEFT}" y="{_HEIGHT - 4}">{note}</text>')
     return "".join(parts) + "</svg>"
-
-
-def _short(label: str, pitch: float) -> str:
-    most = max(4, int(pitch / 6.2))
-    return label if len(label) <= most else label[: most - 1] + "…"

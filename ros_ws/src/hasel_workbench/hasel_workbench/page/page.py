@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from html import escape
+from itertools import chain, count
 from pathlib import Path
 
 from hasel_sysid.errors import SysidError
@@ -61,13 +62,10 @@ class Page:
 
     def do(self, title: str, work: Callable[[Progress], object], done: str = "") -> None:
         """Begin long work; where something else is under way, say so."""
-        try:
-            self.jobs.start(title, work, done)
-        except SysidError as error:
-            ui.notify(str(error), type="warning")
+        self.at_once(lambda: self.jobs.start(title, work, done))
 
     def at_once(self, act: Callable[[], object]) -> None:
-        """Do what takes no time."""
+        """Do what takes no time; what cannot be done is told."""
         try:
             act()
         except SysidError as error:
@@ -96,13 +94,10 @@ class Page:
         if shown.error_unseen is not None:
             numbers.append(("wb-error-unseen", shown.error_unseen, "unseen runs"))
         numbers.append(("wb-noise", noise_floor(state), "noise floor"))
-        rows = (
-            f'<b id="{name}">{error_text(value)}</b><small>{label}</small>' for name, value, label in numbers
-        )
-        cells = "".join(
-            f"<div>{each}</div>" for each in (f"<b>{model}</b><small>model{tried}</small>", *rows)
-        )
-        markup(f'<div class="wb-numbers" aria-live="polite">{cells}</div>')
+        cells = [(f'<b id="{name}">{error_text(value)}</b>', label) for name, value, label in numbers]
+        cells = [(f"<b>{model}</b>", f"model{tried}"), *cells]
+        text = "".join(f"<div>{bold}<small>{label}</small></div>" for bold, label in cells)
+        markup(f'<div class="wb-numbers" aria-live="polite">{text}</div>')
 
     @ui.refreshable_method
     def banners(self) -> None:
@@ -163,8 +158,5 @@ def free_path(folder: Path, name: str) -> Path:
     """A path in a folder, of the end of this name, that no file has yet; the folder is numbered where one has it."""
     name = Path(name.replace("\0", "")).name[-_LONGEST_NAME:]
     name = name if name.strip(".") else "recording"
-    path, number = folder / name, 1
-    while path.exists():
-        number += 1
-        path = folder.with_name(f"{folder.name}_{number}") / name
-    return path
+    folders = chain([folder], (folder.with_name(f"{folder.name}_{number}") for number in count(2)))
+    return next(path for path in (each / name for each in folders) if not path.exists())

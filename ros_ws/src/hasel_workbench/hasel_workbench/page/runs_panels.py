@@ -218,12 +218,11 @@ class LivePanel:
         self._send.set_text(_TAKE if rig.has_simulator else _START)
 
     def _take(self) -> None:
-        page = self._page
-
-        def work(progress) -> None:
-            page.session.take(page.rig.recordings(page.session.folder / "heard"), False, progress)
-
-        page.do("take what was heard", work)
+        page, folder = self._page, self._page.session.folder / "heard"
+        page.do(
+            "take what was heard",
+            lambda progress: page.session.take(page.rig.recordings(folder), False, progress),
+        )
 
     def _model(self) -> None:
         page = self._page

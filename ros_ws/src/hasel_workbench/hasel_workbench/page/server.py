@@ -5,6 +5,7 @@ import secrets
 import socket
 import webbrowser
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from threading import Thread
 
@@ -73,29 +74,19 @@ def serve(
                 app.shutdown()
 
     app.on_startup(lambda: background_tasks.create(opened()))
-    ui.run(
-        host=host,
-        port=port,
-        reload=False,
-        show=False,
-        dark=None,
-        title="HASEL workbench",
-        favicon="〰️",
-        show_welcome_message=False,
-        **({} if certificate is None else {"ssl_certfile": certificate[0], "ssl_keyfile": certificate[1]}),
-    )
+    secure = {} if certificate is None else {"ssl_certfile": certificate[0], "ssl_keyfile": certificate[1]}
+    quiet = {"reload": False, "show": False, "show_welcome_message": False}
+    ui.run(host=host, port=port, dark=None, title="HASEL workbench", favicon="〰️", **quiet, **secure)
 
 
 async def _until_open(host: str, port: int) -> None:
     """Wait until the server answers."""
     while True:
         await asyncio.sleep(0.05)
-        try:
+        with suppress(OSError):
             _, writer = await asyncio.open_connection(host, port)
-        except OSError:
-            continue
-        writer.close()
-        return
+            writer.close()
+            return
 
 
 def _free_port(host: str, port: int) -> int:
