@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import partial
 from itertools import product
 
 import numpy as np
 from hasel_sim.muscle.muscle import Muscle
-from hasel_sim.muscle.swing import ForceTable, HangingLoad, force_table
+from hasel_sim.muscle.swing import HangingLoad, force_table
 from hasel_sysid.estimation.covariance import scatter_between_runs
 from scipy.optimize import least_squares
 
@@ -109,20 +109,14 @@ class HeldStretch:
     zero: float
 
 
-def shows_swings(recording: BenchRecording) -> bool:
-    """Whether a load hangs and samples are dense enough to see it swing."""
-    step = float(np.median(np.diff(recording.time)))
-    return recording.held == "load" and step > 0 and 1 / step >= _SLOWEST_SAMPLES
-
-
 def stretches_of(recording: BenchRecording) -> list[HeldStretch]:
-    """Lifts from rest to a voltage that is held."""
+    """Lifts from rest to a voltage that is held, where a load hangs and samples are dense enough to see it swing."""
     time, voltage = recording.time, np.abs(recording.voltage)
-    same = _SAME * float(voltage.max())
-    if same == 0:
+    step, same = float(np.median(np.diff(time))), _SAME * float(voltage.max())
+    if recording.held != "load" or not 0 < step <= 1 / _SLOWEST_SAMPLES or same == 0:
         return []
     rising = np.flatnonzero((voltage[:-1] <= same) & (voltage[1:] > same)) + 1
-    kept = max(1, round(_KEPT_S / float(np.median(np.diff(time)))))
+    kept = max(1, round(_KEPT_S / step))
     found = []
     for start in rising.tolist():
         before = (time >= time[start] - _REST_S) & (time < time[start] - 1e-9)
@@ -141,28 +135,20 @@ def stretches_of(recording: BenchRecording) -> list[HeldStretch]:
 class _SwungRecording:
     """A recording with its lifts, and the law of the load that hangs."""
 
-    def __init__(self, recording: BenchRecording, muscle: Muscle) -> None:
-        self.recording, self.muscle, self.stretches = recording, muscle, stretches_of(recording)
-        self.load = float(np.nanmedian(recording.load))
-        self.largest = float(np.abs(recording.voltage).max())
-
-    @cached_property
-    def table(self) -> ForceTable:
-        """Forces by the law."""
-        return force_table(self.muscle, self.load, self.largest)
-
-    @cached_property
-    def settled(self) -> list[float]:
-        """Contraction [m] of the law alone, of every lift."""
-        loads = np.full(len(self.stretches), self.load)
-        return self.muscle.balanced(np.array([each.level for each in self.stretches]), loads, loads).tolist()
+    def __init__(self, recording: BenchRecording, stretches: list[HeldStretch], muscle: Muscle) -> None:
+        self.recording, self.stretches = recording, stretches
+        load, largest = float(np.nanmedian(recording.load)), float(np.abs(recording.voltage).max())
+        self._hanging = partial(HangingLoad, muscle, load, largest)
+        self._table = force_table(muscle, load, largest)
+        levels, loads = np.array([each.level for each in stretches]), np.full(len(stretches), load)
+        self._settled = muscle.balanced(levels, loads, loads).tolist()
 
     def lifts(self, numbers: np.ndarray, unseen: Sequence[float]) -> Iterator[Lift]:
         """All lifts, by these damping, slowness and lag."""
         recording = self.recording
-        hanging = HangingLoad(self.muscle, self.load, self.largest, *numbers.tolist())
-        x = hanging.contraction(recording.time, recording.voltage, self.table)
-        for each, alone in zip(self.stretches, self.settled, strict=True):
+        hanging = self._hanging(*numbers.tolist())
+        x = hanging.contraction(recording.time, recording.voltage, self._table)
+        for each, alone in zip(self.stretches, self._settled, strict=True):
             time = recording.time[each.samples] - recording.time[each.samples[0]]
             measured = recording.contraction[each.samples] - each.zero
             known = any(abs(volts - each.level) <= _SAME * each.level for volts in unseen)
@@ -176,7 +162,7 @@ def swinging(
 
     muscle: with its law fitted to settled frames, which stays; unseen: voltages [V] that are not fitted.
     """
-    swung = [one for r in recordings if shows_swings(r) and (one := _SwungRecording(r, muscle)).stretches]
+    swung = [_SwungRecording(each, found, muscle) for each in recordings if (found := stretches_of(each))]
 
     def lifts_by(numbers: np.ndarray) -> list[Lift]:
         return [lift for one in swung for lift in one.lifts(numbers, unseen)]
@@ -188,13 +174,12 @@ def swinging(
         fitted = [lift for lift in lifts_by(x * _START) if not lift.unseen]
         return np.concatenate([np.nan_to_num(lift.swinging - lift.measured) for lift in fitted])
 
-    found = least_squares(
-        residual, np.ones(3), bounds=(0.0, _UPPER / _START), diff_step=1e-2, x_scale=1.0, max_nfev=40
-    )
-    numbers = found.x * _START
+    ends = 0.0, _UPPER / _START
+    best = least_squares(residual, np.ones(3), bounds=ends, diff_step=1e-2, x_scale=1.0, max_nfev=40)
+    numbers = best.x * _START
     lifts = lifts_by(numbers)
     fitted = [lift for lift in lifts if not lift.unseen]
     each = np.concatenate([np.full(len(lift.time), number) for number, lift in enumerate(fitted)])
-    errors = scatter_between_runs(found.jac, found.fun, each) * _START
+    errors = scatter_between_runs(best.jac, best.fun, each) * _START
     values, scatter = (dict(zip(_UNITS, each.tolist(), strict=True)) for each in (numbers, errors))
     return Swinging(tuple(lifts), values, scatter)

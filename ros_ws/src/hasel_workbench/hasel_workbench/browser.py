@@ -8,7 +8,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager
+from contextlib import AbstractContextManager, ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +24,8 @@ class BrowserPage:
     def __init__(self, address: str, width: int, height: int, dark: bool) -> None:
         from websockets.sync.client import connect
 
-        self._socket = connect(address, max_size=None, open_timeout=PATIENCE_S)
+        self._open = ExitStack()
+        self._socket = self._open.enter_context(connect(address, max_size=None, open_timeout=PATIENCE_S))
         self._number, self._session = 0, ""
         self.errors: list[str] = []
         context = self.send("Target.createBrowserContext")["browserContextId"]
@@ -40,7 +41,7 @@ class BrowserPage:
 
     def close(self) -> None:
         """Leave it."""
-        self._socket.close()
+        self._open.close()
 
     def resize(self, width: int, height: int) -> None:
         """Size of the window in pixels."""

@@ -45,16 +45,15 @@ def _serve(options: argparse.Namespace) -> None:
         print(f"note: {told}", file=sys.stderr)
     paths = [*options.recordings, *options.validate]
     drives = dict(zip(map(str, paths), drive_of_each(paths, options.drive), strict=True))
-    known = {path: Path(drive) for path, drive in drives.items() if drive is not None}
-    reading = ReadingChoices(options.map, known)
-    folder = options.output.resolve()
+    drives = {path: Path(drive) for path, drive in drives.items() if drive is not None}
+    reading = ReadingChoices(options.map, drives)
     jobs, rig = Jobs(), RunningRig()
     with ExitStack() as open_:
         open_.callback(signal.signal, signal.SIGTERM, signal.signal(signal.SIGTERM, _end))
         pool = open_.enter_context(workers(options))
         hand = open_.enter_context(executor(2))  # of its own: what is dragged never waits for a search
         effects = tuple(options.effects) if options.effects else None
-        session = Workbench(pool, hand, folder, options.model, effects, reading)
+        session = Workbench(pool, hand, options.output.resolve(), options.model, effects, reading)
         open_.callback(rig.close)
         if options.rig and (why := rig.connect(options.namespace)):
             print(f"note: {why}", file=sys.stderr)

@@ -43,20 +43,19 @@ class Curves:
 def curves(state: SessionState, run: str) -> Curves:
     """Of what is shown and, while something is being tried, of what it started from."""
     number = state.number_of(run)
-    shown, before = state.shown, state.current if state.trial else None
-    experiment = state.every[number]
+    shown, experiment = state.shown, state.every[number]
     time, measured = experiment.run.time, experiment.sin_theta
     compared = shown.comparison.runs[number]
     series, error, error_before = compared.series, compared.mean_absolute_error, None
     rows = [time, measured - series.offset, shown.simulations[number].sin_theta]
-    if before is not None:
-        other = before.comparison.runs[number]
+    if state.trial is not None:
+        other = state.current.comparison.runs[number]
         error_before = other.mean_absolute_error
-        rows.append(before.simulations[number].sin_theta + other.series.offset - series.offset)
-    ends = float(time[0]), float(time[-1])
-    driven = (
-        [] if series.drive_time is None else driven_stretches(series.drive_time, series.drive_values, *ends)
-    )
+        rows.append(state.current.simulations[number].sin_theta + other.series.offset - series.offset)
+    driven: Sequence[tuple[float, float, int]] = ()
+    if series.drive_time is not None:
+        ends = float(time[0]), float(time[-1])
+        driven = driven_stretches(series.drive_time, series.drive_values, *ends)
     unseen = number >= len(state.experiments)
     return Curves(run, unseen, np.array(rows, dtype=np.float32), tuple(driven), error, error_before)
 

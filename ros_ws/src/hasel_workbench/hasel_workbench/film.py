@@ -45,7 +45,7 @@ class Film:
             "muscles": self.muscles,
             "rings": self.rings.tolist(),
             "muscle": self.muscle.tolist(),
-            "skin": self.skin[:, [0, 1, 2]].tolist(),
+            "skin": self.skin.tolist(),
         }
 
 
@@ -59,13 +59,12 @@ def film(model: Model, experiment: Experiment, simulation: Simulation, offset: f
     every = max(1, round(1.0 / (_FRAMES_PER_SECOND * usual))) if usual > 0 else 1
     shown = np.arange(0, len(simulation.time), every)
     shapes = simulation.shapes[shown]
-    simulated = simulation.markers[shown][:, :3]
     measured = measured_markers(experiment, simulation.markers, offset, model)[shown]
     count = len(shapes)
     parts = [
         simulation.time[shown][:, None],
         simulation.contraction[shown],
-        simulated.reshape(count, -1),
+        simulation.markers[shown][:, :3].reshape(count, -1),
         measured.reshape(count, -1),
         shapes.reshape(count, -1),
         axial_strain(mesh, shapes),

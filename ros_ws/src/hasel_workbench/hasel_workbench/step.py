@@ -82,10 +82,8 @@ def predicted(step: Step, number: int, values: Mapping[str, float]) -> Predictio
     """
     change = {name: value - step.model.parameter(name).value for name, value in values.items()}
     evaluation = step.seen if number < len(step.experiments) else step.unseen
-    simulation = step.simulations[number]
-    sin_theta = simulation.sin_theta + simulation.slopes @ [
-        change.get(name, 0.0) for name in evaluation.names
-    ]
+    simulation, by = step.simulations[number], [change.get(name, 0.0) for name in evaluation.names]
+    sin_theta = simulation.sin_theta + simulation.slopes @ by
     unseen = None if step.unseen is None else _error(step.unseen, change)
     return Prediction(sin_theta, _error(step.seen, change), unseen)
 

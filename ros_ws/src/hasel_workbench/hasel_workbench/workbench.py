@@ -243,7 +243,6 @@ class Workbench:
         self._commit(self._judged_anew(state, model, progress) if fitted else state)
 
     def _regroup(self, state: SessionState, fitted: list, unseen: list, progress: Progress) -> None:
-        """Other experiments to fit and not to fit than before."""
         if not fitted:
             raise SysidError("no run to fit would be left; expected one at least: load another one first")
         state = replace(state, experiments=tuple(fitted), unseen=tuple(unseen))
@@ -263,7 +262,10 @@ class Workbench:
         return replace(state, steps=tuple(steps))
 
     def _kept(self, state: SessionState, step: Step) -> SessionState:
-        label = _unlike(step.label, [each.label for each in state.kept])
+        """With one more step, whose label is numbered where another one is called so already."""
+        taken = [each.label for each in state.kept]
+        labels = chain([step.label], (f"{step.label} ({number})" for number in count(2)))
+        label = next(each for each in labels if each not in taken)
         new = replace(step, label=label, file=self._ledger.keep(replace(step, label=label)))
         new.__dict__["comparison"] = step.comparison  # what was worked out stays
         return state.with_step(new)
@@ -285,9 +287,3 @@ class Workbench:
     def _commit(self, state: SessionState) -> None:
         self.state = state
         self.version += 1
-
-
-def _unlike(label: str, taken: Sequence[str]) -> str:
-    """The label, numbered where another step is called so already."""
-    names = chain([label], (f"{label} ({number})" for number in count(2)))
-    return next(name for name in names if name not in taken)

@@ -2,6 +2,7 @@
 
 import secrets
 from collections.abc import Awaitable, Callable, MutableMapping
+from contextlib import suppress
 from html import escape
 from http.cookies import CookieError, SimpleCookie
 from pathlib import Path
@@ -80,11 +81,9 @@ class Door:
 
     def _kept(self, headers: Headers) -> str:
         """The token that the browser keeps."""
-        try:
-            kept = SimpleCookie(headers.get("cookie", "")).get(self._cookie)
-        except CookieError:
-            return ""
-        return kept.value if kept is not None else ""
+        with suppress(CookieError, KeyError):
+            return SimpleCookie(headers.get("cookie", ""))[self._cookie].value
+        return ""
 
     def _shown(self, scope: Scope) -> bool:
         """Whether the address of a page carries the token."""
@@ -103,9 +102,8 @@ class Door:
         query.pop("token")
         rest = urlencode(query, doseq=True)
         answer = RedirectResponse("/" + scope["path"].lstrip("/") + (f"?{rest}" if rest else ""), 303)
-        answer.set_cookie(
-            self._cookie, self._token, httponly=True, samesite="lax", secure=scope["scheme"] == "https"
-        )
+        is_secure = scope["scheme"] == "https"
+        answer.set_cookie(self._cookie, self._token, httponly=True, samesite="lax", secure=is_secure)
         return answer
 
 
