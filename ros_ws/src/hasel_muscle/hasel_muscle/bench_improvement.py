@@ -154,10 +154,7 @@ def described(problem: BenchProblem, fit: FittedModel) -> Described:
 
 
 def improve_muscle(
-    problem: BenchProblem,
-    muscle: Muscle,
-    unseen: BenchProblem | None = None,
-    candidates: Sequence[str] | None = None,
+    problem: BenchProblem, muscle: Muscle, unseen: BenchProblem | None = None, candidates: Sequence[str] = ()
 ) -> BenchImprovement:
     """Compare, fit, and add the smallest set of effects that predicts voltages left out as well as the best one.
 
@@ -223,8 +220,8 @@ def _status(found: Searched, stages: Sequence[MuscleStage], describes: bool) -> 
 def _findings(
     problem: BenchProblem,
     found: Searched,
-    effects: Sequence[Candidate],
-    stages: Sequence[MuscleStage],
+    effects: list[Candidate],
+    stages: list[MuscleStage],
     describes: bool,
 ) -> tuple[BenchFinding, ...]:
     """What is said of every effect, beside those that were added."""

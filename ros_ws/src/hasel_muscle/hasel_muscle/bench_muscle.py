@@ -53,7 +53,7 @@ def _bench(options: argparse.Namespace) -> None:
         return
     candidates = len(options.effects or muscle_catalogue())
     with progress_bar("fit", plan_of_search(1.0, candidates), "evaluations") as fitted.workload:
-        found = improve_muscle(fitted, muscle, unseen, options.effects or None)
+        found = improve_muscle(fitted, muscle, unseen, options.effects)
     result = BenchResult(
         found,
         fitted,
@@ -73,9 +73,8 @@ def _bench(options: argparse.Namespace) -> None:
 
 def _tell(result: BenchResult, every_effect: bool, console: Console) -> None:
     found, swings = result.found, result.swings
-    named = [("formula", found.stages[0]), ("fitted", found.stages[1])]
-    named += [("with effects", found.stages[-1])] if found.missing else []
-    muscles = [(name, stage.muscle) for name, stage in named]
+    muscles = [("formula", found.stages[0].muscle), ("fitted", found.stages[1].muscle)]
+    muscles += [("with effects", found.muscle)] if found.missing else []
     console.print(bench_report.stroke_table(result.fitted, muscles, result.unseen))
     console.print(bench_report.stage_table(found))
     if swings is not None:

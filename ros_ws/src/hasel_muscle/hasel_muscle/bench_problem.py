@@ -1,7 +1,7 @@
 """Settled strokes of a muscle as a problem: what its law leaves of every voltage's lifts, by formula."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import cast
 
@@ -172,12 +172,9 @@ class BenchProblem(Problem):
     @cached_property
     def holds(self) -> np.ndarray:
         """Number of the hold that each counting frame is in, from 0, [frames]."""
-        found, last = [], 0
-        for run in self.runs:
-            _, number = np.unique(run.hold[run.used], return_inverse=True)
-            found.append(number + last)
-            last += int(number.max(initial=-1)) + 1
-        return np.concatenate(found)
+        runs = np.repeat(np.arange(len(self.runs)), [run.used.sum() for run in self.runs])
+        holds = np.concatenate([run.hold[run.used] for run in self.runs])
+        return np.unique(np.stack([runs, holds]), axis=1, return_inverse=True)[1].ravel()
 
     @cached_property
     def levels(self) -> np.ndarray:
@@ -219,11 +216,11 @@ class BenchProblem(Problem):
         }
 
     def only_levels(self, levels: Sequence[float] | np.ndarray, keep: bool = True) -> "BenchProblem":
-        """The problem with the frames of some levels [V] (keep) or without them.
+        """The problem with the frames of some levels [V] (keep) or without them; the history of others stays.
 
         Raises SysidError where none is left.
         """
-        chosen = [run.only(np.isin(run.level, levels) == keep) for run in self.runs]
+        chosen = [replace(run, used=run.used & (np.isin(run.level, levels) == keep)) for run in self.runs]
         return BenchProblem([run for run in chosen if run.used.any()], self.scales)
 
 

@@ -135,9 +135,8 @@ def _constant_load(text: CsvText, count: int) -> np.ndarray:
             try:
                 return np.full(count, float(value) * QUANTITIES["load"][unit])
             except ValueError:
-                raise RecordingError(
-                    f"{text.path}: #{key} is {value!r}; expected a number: correct that line."
-                ) from None
+                said = f"#{key} is {value!r}; expected a number: correct that line."
+                raise RecordingError(f"{text.path}: {said}") from None
     raise RecordingError(
         f"{text.path} says no load, neither as a column load_n nor in its header as #load_n; expected one: add it "
         "(0 for a muscle that hangs free)."

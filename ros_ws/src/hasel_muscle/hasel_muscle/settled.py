@@ -1,6 +1,6 @@
 """From samples to settled frames: the law is one of balance, so what still rings or flows is left out."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from hasel_sim.muscle.muscle import Muscle
@@ -61,10 +61,6 @@ class SettledRun:
         if self.held == "load":
             return muscle.contraction(self.time, self.voltage, self.load, self.rest_load, self.used)
         return muscle.force(self.time, self.voltage, self.contraction, self.rest_load, self.used)
-
-    def only(self, chosen: np.ndarray) -> "SettledRun":
-        """The same with fewer frames that count; their history stays. chosen: [n]."""
-        return replace(self, used=self.used & chosen)
 
 
 def settled(recording: BenchRecording, settling: float = 1.0) -> SettledRun:
