@@ -8,8 +8,7 @@ import pytest
 from hasel_bringup.demo.processes import Processes
 from hasel_bringup.errors import BringupError
 from hasel_bringup.live_demo.rig import Rig
-from hasel_workbench.bench.browser import Browser, find_browser
-from hasel_workbench.bench.browser_page import BrowserPage
+from hasel_workbench.browser import Browser, BrowserPage, find_browser
 
 pytest.importorskip("nicegui", reason="NiceGUI is not installed: the extra `page` of hasel_workbench")
 pytestmark = pytest.mark.skipif(

@@ -1,17 +1,15 @@
 """From samples to settled frames: the law is one of balance, so what still rings or flows is left out."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from hasel_sim.muscle.muscle import Muscle
 from hasel_sysid.errors import SysidError
 
-from hasel_muscle.recording import BenchRecording, Held
+from hasel_muscle.bench_recording import BenchRecording, Held
 
-FRAME_S = 0.1
+_FRAME_S = 0.1
 """Samples are gathered in frames as long as this, unless they are farther apart."""
-SETTLING_S = 1.0
-"""A frame counts when the voltage has not changed for as long as this."""
 _SAME = 0.01
 """Voltages that differ by less than this share of the highest are one."""
 _FEWEST_FRAMES = 5
@@ -49,6 +47,11 @@ class SettledRun:
         return (self.contraction if self.held == "load" else self.load)[self.used]
 
     @property
+    def kept(self) -> np.ndarray:
+        """What the bench keeps, in the same frames, [used]: load [N], or contraction [m]."""
+        return (self.load if self.held == "load" else self.contraction)[self.used]
+
+    @property
     def unit(self) -> str:
         """Of `measured`."""
         return "m" if self.held == "load" else "N"
@@ -59,13 +62,12 @@ class SettledRun:
             return muscle.contraction(self.time, self.voltage, self.load, self.rest_load, self.used)
         return muscle.force(self.time, self.voltage, self.contraction, self.rest_load, self.used)
 
-    def only(self, chosen: np.ndarray) -> "SettledRun":
-        """The same with fewer frames that count; their history stays. chosen: [n]."""
-        return replace(self, used=self.used & chosen)
 
+def settled(recording: BenchRecording, settling: float = 1.0) -> SettledRun:
+    """Gather the frames; one counts when the voltage has not changed for `settling` [s].
 
-def settled(recording: BenchRecording, settling: float = SETTLING_S) -> SettledRun:
-    """Gather the frames. Raises SysidError for a recording in which the voltage is never held long enough."""
+    Raises SysidError for a recording in which the voltage is never held long enough.
+    """
     time, voltage, spread, contraction, load = _frames(recording)
     same = _SAME * float(np.abs(voltage).max())
     hold = _holds(voltage, spread, same)
@@ -82,7 +84,8 @@ def settled(recording: BenchRecording, settling: float = SETTLING_S) -> SettledR
             "expected lifts that are held: record steps (the preset three_lifts), or lower --settling"
         )
     resting = before & np.isfinite(contraction)
-    zero = float(np.median(contraction[resting])) if resting.any() and recording.held == "load" else 0.0
+    is_zeroed = recording.held == "load" and resting.any()
+    zero = float(np.median(contraction[resting])) if is_zeroed else 0.0
     noise, source = _noise(answer, before & used, used, hold)
     return SettledRun(
         name=recording.name,
@@ -97,9 +100,7 @@ def settled(recording: BenchRecording, settling: float = SETTLING_S) -> SettledR
         rest_load=float(np.nanmedian(load[before])) if before.any() else 0.0,
         noise=noise,
         noise_source=source,
-        zero_error=_MEDIAN * noise / np.sqrt(resting.sum())
-        if resting.any() and recording.held == "load"
-        else 0.0,
+        zero_error=_MEDIAN * noise / np.sqrt(resting.sum()) if is_zeroed else 0.0,
     )
 
 
@@ -112,16 +113,15 @@ def _filled(time: np.ndarray, series: np.ndarray) -> np.ndarray:
 def _frames(recording: BenchRecording) -> tuple[np.ndarray, ...]:
     """Time, voltage, its spread, contraction and load of every frame: medians, which no single wild sample moves."""
     step = float(np.median(np.diff(recording.time)))
-    width = max(FRAME_S, step)
+    width = max(_FRAME_S, step)
     number = np.floor(recording.time / width + 1e-9).astype(int)
     starts = np.flatnonzero(np.concatenate([[True], np.diff(number) > 0]))
     ends = [*starts[1:], len(number)]
 
     def gathered(series: np.ndarray, how) -> np.ndarray:
         parts = (series[a:b] for a, b in zip(starts, ends, strict=True))
-        return np.array(
-            [how(part[np.isfinite(part)]) if np.isfinite(part).any() else np.nan for part in parts]
-        )
+        known = (part[np.isfinite(part)] for part in parts)
+        return np.array([how(part) if len(part) else np.nan for part in known])
 
     voltage = gathered(recording.voltage, np.median)
     series = (gathered(each, np.median) for each in (recording.contraction, recording.load))

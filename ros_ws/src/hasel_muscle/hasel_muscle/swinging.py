@@ -1,19 +1,29 @@
 """How a load swings after every lift, and whether the muscle's law with the load's inertia says so."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
+from itertools import product
 
 import numpy as np
 from hasel_sim.muscle.muscle import Muscle
-from hasel_sim.muscle.swing import ForceTable, HangingLoad, force_table
+from hasel_sim.muscle.swing import HangingLoad, force_table
 from hasel_sysid.estimation.covariance import scatter_between_runs
 from scipy.optimize import least_squares
 
-from hasel_muscle.lifts import SAME, WINDOW_S, shows_swings, stretches_of
-from hasel_muscle.recording import BenchRecording
+from hasel_muscle.bench_recording import BenchRecording
 
+WINDOW_S = 0.5
+"""After a lift for as long as this it is compared."""
+_SAME = 0.01
+"""Voltages no further apart than this share of the largest are one."""
+_REST_S, _HELD_S = 0.3, 0.3
+"""A lift is from a rest as long as this to a voltage that is held as long as this."""
+_SLOWEST_SAMPLES = 200.0
+"""Samples per second below which no swing is seen."""
+_KEPT_S = 4e-3
+"""Samples are compared this far apart."""
 _FEWEST_LIFTS = 4
-_NAMES = ("damping", "slowness", "lag")
 _UNITS = {"damping": "N s/m", "slowness": "s/m", "lag": "s"}
 _START = np.array([1.0, 1.0, 0.005])
 _UPPER = np.array([100.0, 100.0, 0.2])
@@ -60,23 +70,15 @@ class Swinging:
 
     def __str__(self) -> str:
         values = ", ".join(
-            f"{name} {self.values[name]:.3g} ± {self.standard_errors[name]:.1g} {_UNITS[name]}"
-            for name in _NAMES
+            f"{name} {self.values[name]:.3g} ± {self.standard_errors[name]:.1g} {unit}"
+            for name, unit in _UNITS.items()
         )
-        seen = (
-            f"{1e3 * self.mean_error(False):.2f} mm off, {1e3 * self.mean_error(False, True):.2f} mm without"
-        )
-        unseen = self.mean_error(True)
-        others = (
-            ""
-            if np.isnan(unseen)
-            else (
-                f"; on unseen voltages {1e3 * unseen:.2f} mm, {1e3 * self.mean_error(True, True):.2f} mm without"
-            )
-        )
+        which = product((False, True), repeat=2)
+        seen, alone, unseen, unseen_alone = (f"{1e3 * self.mean_error(*each):.2f} mm" for each in which)
+        others = f"; on unseen voltages {unseen}, {unseen_alone} without"
         return (
             f"In the first {WINDOW_S:g} s of {len(self.lifts)} lifts the load swings: the law with its inertia "
-            f"({values}) is {seen}{others}."
+            f"({values}) is {seen} off, {alone} without{others if any(e.unseen for e in self.lifts) else ''}."
         )
 
     def to_json(self) -> dict:
@@ -98,48 +100,59 @@ class Swinging:
         }
 
 
-class _Swings:
-    """Recordings whose swings are simulated together, with one table of forces each."""
+@dataclass(frozen=True)
+class HeldStretch:
+    """A lift in a recording: level [V], numbers of the samples that are compared, contraction at rest before [m]."""
 
-    def __init__(self, recordings: Sequence[BenchRecording], muscle: Muscle) -> None:
-        self.muscle = muscle
-        self.recordings = [r for r in recordings if shows_swings(r)]
-        self.stretches = [stretches_of(r) for r in self.recordings]
-        self._tables: list[ForceTable] = []
-        self.loads = [float(np.nanmedian(r.load)) for r in self.recordings]
-        self.largest = [float(np.abs(r.voltage).max()) for r in self.recordings]
+    level: float
+    samples: np.ndarray
+    zero: float
 
-    @property
-    def tables(self) -> list[ForceTable]:
-        """The law of every recording's load, made when first asked for."""
-        if not self._tables:
-            pairs = zip(self.loads, self.largest, strict=True)
-            self._tables = [force_table(self.muscle, load, volts) for load, volts in pairs]
-        return self._tables
 
-    def simulated(self, numbers: np.ndarray) -> list[np.ndarray]:
-        """Contraction [m] of every recording."""
-        found = []
-        for recording, load, volts, table in zip(
-            self.recordings, self.loads, self.largest, self.tables, strict=True
-        ):
-            hanging = HangingLoad(self.muscle, load, volts, *numbers.tolist())
-            found.append(hanging.contraction(recording.time, recording.voltage, table))
-        return found
+def stretches_of(recording: BenchRecording) -> list[HeldStretch]:
+    """Lifts from rest to a voltage that is held, where a load hangs and samples are dense enough to see it swing."""
+    time, voltage = recording.time, np.abs(recording.voltage)
+    step, same = float(np.median(np.diff(time))), _SAME * float(voltage.max())
+    if recording.held != "load" or not 0 < step <= 1 / _SLOWEST_SAMPLES or same == 0:
+        return []
+    rising = np.flatnonzero((voltage[:-1] <= same) & (voltage[1:] > same)) + 1
+    kept = max(1, round(_KEPT_S / step))
+    found = []
+    for start in rising.tolist():
+        before = (time >= time[start] - _REST_S) & (time < time[start] - 1e-9)
+        held = (time >= time[start] + 0.02) & (time <= time[start] + _HELD_S)
+        window = np.flatnonzero((time >= time[start]) & (time <= time[start] + WINDOW_S))[::kept]
+        rest = recording.contraction[before]
+        if not before.any() or not held.any() or not np.isfinite(rest).any():
+            continue
+        level = float(np.median(voltage[held]))
+        quiet = voltage[before].max() <= same and time[start] - time[0] >= _REST_S
+        if quiet and np.ptp(voltage[held]) <= 2 * same and np.isfinite(recording.contraction[window]).any():
+            found.append(HeldStretch(float(f"{level:.3g}"), window, float(np.nanmedian(rest))))
+    return found
 
-    def lifts(self, numbers: np.ndarray, unseen: Sequence[float]) -> list[Lift]:
-        """All lifts."""
-        out = []
-        pairs = zip(self.recordings, self.stretches, self.loads, self.simulated(numbers), strict=True)
-        for recording, stretches, load, x in pairs:
-            levels = np.array([each.level for each in stretches])
-            settled = self.muscle.balanced(levels, np.full(len(levels), load), np.full(len(levels), load))
-            for each, alone in zip(stretches, settled.tolist(), strict=True):
-                time = recording.time[each.samples] - recording.time[each.samples[0]]
-                measured = recording.contraction[each.samples] - each.zero
-                known = bool(np.any(np.abs(np.array(unseen, dtype=float) - each.level) <= SAME * each.level))
-                out.append(Lift(each.level, time, measured, x[each.samples], alone, known))
-        return out
+
+class _SwungRecording:
+    """A recording with its lifts, and the law of the load that hangs."""
+
+    def __init__(self, recording: BenchRecording, stretches: list[HeldStretch], muscle: Muscle) -> None:
+        self.recording, self.stretches = recording, stretches
+        load, largest = float(np.nanmedian(recording.load)), float(np.abs(recording.voltage).max())
+        self._hanging = partial(HangingLoad, muscle, load, largest)
+        self._table = force_table(muscle, load, largest)
+        levels, loads = np.array([each.level for each in stretches]), np.full(len(stretches), load)
+        self._settled = muscle.balanced(levels, loads, loads).tolist()
+
+    def lifts(self, numbers: np.ndarray, unseen: Sequence[float]) -> Iterator[Lift]:
+        """All lifts, by these damping, slowness and lag."""
+        recording = self.recording
+        hanging = self._hanging(*numbers.tolist())
+        x = hanging.contraction(recording.time, recording.voltage, self._table)
+        for each, alone in zip(self.stretches, self._settled, strict=True):
+            time = recording.time[each.samples] - recording.time[each.samples[0]]
+            measured = recording.contraction[each.samples] - each.zero
+            known = any(abs(volts - each.level) <= _SAME * each.level for volts in unseen)
+            yield Lift(each.level, time, measured, x[each.samples], alone, known)
 
 
 def swinging(
@@ -149,22 +162,24 @@ def swinging(
 
     muscle: with its law fitted to settled frames, which stays; unseen: voltages [V] that are not fitted.
     """
-    swings = _Swings(recordings, muscle)
-    first = swings.lifts(np.zeros(3), unseen) if any(swings.stretches) else []
-    if sum(not lift.unseen for lift in first) < _FEWEST_LIFTS:
+    swung = [_SwungRecording(each, found, muscle) for each in recordings if (found := stretches_of(each))]
+
+    def lifts_by(numbers: np.ndarray) -> list[Lift]:
+        return [lift for one in swung for lift in one.lifts(numbers, unseen)]
+
+    if sum(not lift.unseen for lift in lifts_by(np.zeros(3))) < _FEWEST_LIFTS:
         return None
 
     def residual(x: np.ndarray) -> np.ndarray:
-        fitted = [lift for lift in swings.lifts(x * _START, unseen) if not lift.unseen]
+        fitted = [lift for lift in lifts_by(x * _START) if not lift.unseen]
         return np.concatenate([np.nan_to_num(lift.swinging - lift.measured) for lift in fitted])
 
-    found = least_squares(
-        residual, np.ones(3), bounds=(0.0, _UPPER / _START), diff_step=1e-2, x_scale=1.0, max_nfev=40
-    )
-    numbers = found.x * _START
-    lifts = swings.lifts(numbers, unseen)
+    ends = 0.0, _UPPER / _START
+    best = least_squares(residual, np.ones(3), bounds=ends, diff_step=1e-2, x_scale=1.0, max_nfev=40)
+    numbers = best.x * _START
+    lifts = lifts_by(numbers)
     fitted = [lift for lift in lifts if not lift.unseen]
     each = np.concatenate([np.full(len(lift.time), number) for number, lift in enumerate(fitted)])
-    errors = scatter_between_runs(found.jac, found.fun, each) * _START
-    pairs = list(zip(_NAMES, numbers.tolist(), errors.tolist(), strict=True))
-    return Swinging(tuple(lifts), {n: v for n, v, _ in pairs}, {n: e for n, _, e in pairs})
+    errors = scatter_between_runs(best.jac, best.fun, each) * _START
+    values, scatter = (dict(zip(_UNITS, each.tolist(), strict=True)) for each in (numbers, errors))
+    return Swinging(tuple(lifts), values, scatter)

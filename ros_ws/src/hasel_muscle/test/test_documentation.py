@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from hasel_muscle.read_csv import QUANTITIES
+from hasel_muscle.bench_recording import QUANTITIES
 from hasel_sim.muscle.effect import muscle_catalogue
 
 DOCS = Path(__file__).resolve().parents[4] / "docs"

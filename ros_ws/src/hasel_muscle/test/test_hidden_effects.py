@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from hasel_muscle.improve import improve_muscle
-from hasel_muscle.muscle_runs import read_bench
-from hasel_muscle.problem import bench_problem
-from hasel_muscle.result import BenchVerdict
+from hasel_muscle.bench_files import read_bench
+from hasel_muscle.bench_improvement import BenchVerdict, improve_muscle
+from hasel_muscle.bench_problem import BenchProblem
 from hasel_muscle.settled import settled
 from hasel_sim.model.muscle_file import load_muscle
 from hasel_sim.muscle.effect import muscle_catalogue
@@ -28,7 +27,7 @@ def found_for(tmp_path):
         rng = np.random.default_rng(bench.seed)
         nominal = load_muscle("peano_hasel").values
         bench.muscle = bench.muscle.with_values({n: v * rng.uniform(0.93, 1.07) for n, v in nominal.items()})
-        problem = bench_problem([settled(read_bench(bench.write_csv(tmp_path / f"{bench.seed}.csv")))])
+        problem = BenchProblem([settled(read_bench(bench.write_csv(tmp_path / f"{bench.seed}.csv")))])
         return improve_muscle(problem, load_muscle("peano_hasel"))
 
     return find

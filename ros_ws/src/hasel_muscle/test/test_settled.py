@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_muscle.muscle_runs import read_bench
+from hasel_muscle.bench_files import read_bench
 from hasel_muscle.settled import settled
 from hasel_sysid.errors import SysidError
 from numpy.testing import assert_allclose

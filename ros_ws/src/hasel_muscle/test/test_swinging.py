@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hasel_muscle.command import main
-from hasel_muscle.recording import BenchRecording
+from hasel_muscle.bench_muscle import main
+from hasel_muscle.bench_recording import BenchRecording
 from hasel_muscle.swinging import swinging
 from hasel_sim.model.muscle_file import load_muscle
 from hasel_sim.muscle.swing import GRAVITY, HangingLoad

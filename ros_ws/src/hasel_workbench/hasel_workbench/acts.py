@@ -1,24 +1,22 @@
 """What can be done with a session: each gives a step or a finding, and changes nothing."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from concurrent.futures import Executor
-from dataclasses import replace
+from contextlib import suppress
 from functools import partial
 
 from hasel_common.progress import Workload
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
-from hasel_sysid.answer.diagnosis import Diagnosis
 from hasel_sysid.answer.next_run import Suggestion, fitted_briefly, rivals, suggest
 from hasel_sysid.dataset import prepared
 from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation import FittedModel, identify
 from hasel_sysid.expected_work import USUAL_SPEED, plan_of_next_runs, work_of
-from hasel_sysid.improvement import diagnose
 from hasel_sysid.problem import Problem
 
 from hasel_workbench.cards import source_of
-from hasel_workbench.evaluate import Progress, evaluated
+from hasel_workbench.jobs import Progress
 from hasel_workbench.state import SessionState
 from hasel_workbench.step import Step
 
@@ -27,10 +25,28 @@ _SMALLER = (1.0, 0.5, 0.25)
 """Shares of an effect's typical size that are tried until one can be simulated."""
 
 
-def nothing_is_tried(state: SessionState) -> None:
-    """Raise SysidError while something is being tried."""
-    if state.trial is not None:
-        raise SysidError(f"'{state.trial.label}' is being tried; keep it or take it back first")
+def evaluated(
+    state: SessionState,
+    label: str,
+    model: Model,
+    pool: Executor,
+    progress: Progress,
+    did: tuple[str, ...],
+    fit: FittedModel | None = None,
+) -> Step:
+    """Simulate all runs with a model and its derivatives by all free parameters.
+
+    fit: of this very model, whose evaluation of the fitted runs is used. Raises SimulationError.
+    """
+    runs, unseen = state.experiments, state.unseen
+    progress("simulating", 0.0)
+    seen = fit.evaluation if fit is not None else Problem(runs, pool).evaluate(model, model.free)
+    progress("simulating", 0.6)
+    others = Problem(unseen, pool).evaluate(model, model.free) if unseen else None
+    progress("where it fails", 0.9)
+    step = Step(label, model, runs, unseen, seen, others, fit, did)
+    step.comparison  # noqa: B018  worked out here, where waiting is no harm
+    return step
 
 
 def size_of(state: SessionState) -> float:
@@ -44,12 +60,7 @@ def fitted(state: SessionState, pool: Executor, work: Workload) -> Step:
     model = prepared(shown.model, state.experiments)
     result = identify(Problem(state.experiments, pool, workload=work), model, "least_squares")
     label, did = (shown.label, (*shown.did, FIT)) if state.trial else ("fit", (FIT,))
-    return _evaluated(state, label, result.model, pool, lambda *_: work.check(), result, did)
-
-
-def diagnosed(state: SessionState, pool: Executor, only: Sequence[str] | None, work: Workload) -> Diagnosis:
-    """What the current step, which is fitted, may lack."""
-    return diagnose(Problem(state.experiments, pool, workload=work), state.current.fit, only)
+    return evaluated(state, label, result.model, pool, lambda *_: work.check(), did, result)
 
 
 def with_effect(
@@ -63,42 +74,39 @@ def with_effect(
     if state.diagnosis is not None and state.diagnosed == state.at:
         finding = next((each for each in state.diagnosis.findings if each.effect == effect), None)
     if finding is not None and finding.fit is not None:
-        values = finding.fit.model.values
-        return _evaluated(
-            state, label, finding.fit.model, pool, progress, finding.fit, (add, _values_line(values))
-        )
+        found = finding.fit.model
+        return evaluated(state, label, found, pool, progress, (add, _values_line(found.values)), finding.fit)
     model = current.model.with_effects(source)
-    for share in _SMALLER:
+
+    def at(share: float) -> Step:
         values = _sized(model, effect, share)
         if finding is not None and finding.expected and finding.is_plausible and share == 1.0:
             values |= {name: value for name, (value, _) in finding.expected.items()}
-        try:
-            tried = model.with_values(values)
-            return _evaluated(state, label, tried, pool, progress, None, (add, _values_line(values)))
-        except SimulationError:
-            if share == _SMALLER[-1]:
-                raise
-    raise AssertionError
+        did = (add, _values_line(values))
+        return evaluated(state, label, model.with_values(values), pool, progress, did)
+
+    for share in _SMALLER[:-1]:
+        with suppress(SimulationError):
+            return at(share)
+    return at(_SMALLER[-1])
 
 
 def without_effect(state: SessionState, effect: str, pool: Executor, progress: Progress) -> Step:
     """The current step without one of its effects."""
     model = state.current.model.without_effects(effect)
     did = (f"model = model.without_effects({effect!r})",)
-    return _evaluated(state, f"− {effect}", model, pool, progress, None, did)
+    return evaluated(state, f"− {effect}", model, pool, progress, did)
 
 
 def with_values(state: SessionState, values: Mapping[str, float], pool: Executor, progress: Progress) -> Step:
     """What is shown, with other values; those outside their bounds are moved onto them."""
     shown = state.shown
-    known = {name: shown.model.parameter(name) for name in values}
-    values = {
-        name: min(max(float(value), known[name].lower), known[name].upper) for name, value in values.items()
-    }
+    known = [(shown.model.parameter(name), float(value)) for name, value in values.items()]
+    values = {p.name: min(max(value, p.lower), p.upper) for p, value in known}
     model = shown.model.with_values(values, dict.fromkeys(values))
     label = shown.label if state.trial else "by hand"
     did = (*(shown.did if state.trial else ()), _values_line(values))
-    return _evaluated(state, label, model, pool, progress, None, did)
+    return evaluated(state, label, model, pool, progress, did)
 
 
 def suggestions(state: SessionState, pool: Executor, progress: Progress) -> tuple[Suggestion, ...]:
@@ -115,25 +123,6 @@ def suggestions(state: SessionState, pool: Executor, progress: Progress) -> tupl
             "no experiment of the library can be simulated with these explanations: plan it by hand"
         )
     return tuple(found)
-
-
-def filed(step: Step, label: str, file: str = "") -> Step:
-    """A step with the name that it has in the history and that of its model file; what was worked out of it stays."""
-    new = replace(step, label=label, file=file)
-    new.__dict__["comparison"] = step.comparison
-    return new
-
-
-def _evaluated(
-    state: SessionState,
-    label: str,
-    model: Model,
-    pool: Executor,
-    progress: Progress,
-    fit: FittedModel | None,
-    did: tuple[str, ...],
-) -> Step:
-    return evaluated(label, model, state.experiments, state.unseen, pool, progress, fit, did)
 
 
 def _sized(model: Model, effect: str, share: float) -> dict[str, float]:

@@ -1,44 +1,45 @@
-"""What is known of an effect, for the person who decides whether to try it."""
+"""What is known of an effect or a value, for the person who decides whether to try it."""
 
+import math
 from dataclasses import dataclass
 
-from hasel_sim.effects.base import Effect
+from hasel_sim.effects.base import Effect, EffectParameter
 from hasel_sim.model import Model
-from hasel_sim.parameter import value_with_error
 from hasel_sysid.answer.diagnosis import Diagnosis, Finding
 from hasel_sysid.candidates import candidate_effects
-from hasel_sysid.report.wording import of_effect
+from hasel_sysid.report.wording import meaning, of_effect, plausible
 
 
 @dataclass(frozen=True)
 class Card:
-    """effect: its id; physics: in a sentence; parameters: name with symbol and unit, plausible range with its source;
-    signature: in the residual; said, verdict, probability, error_removed, expected: of a diagnosis, empty or None
-    before one; on: whether the model has it.
-    """
+    """kind: the effect; on: whether the model has it; finding: what a diagnosis says of it, None before one."""
 
-    effect: str
-    place: str
-    physics: str
-    equation: str
-    parameters: tuple[tuple[str, str], ...]
-    signature: str
-    confused_with: tuple[str, ...]
-    separated_by: str
-    citation: str
-    on: bool = False
-    said: str = ""
-    verdict: str = ""
-    probability: float | None = None
-    error_removed: float | None = None
-    expected: str = ""
+    kind: Effect
+    on: bool
+    finding: Finding | None = None
+
+    @property
+    def effect(self) -> str:
+        """Its id."""
+        return self.kind.id
+
+    @property
+    def verdict(self) -> str:
+        """Of the diagnosis; empty before one."""
+        return "" if self.finding is None else self.finding.verdict.value
+
+    @property
+    def parameters(self) -> list[tuple[str, str]]:
+        """Name with symbol and unit, and plausible range with its source."""
+        units = {p.name: "" if p.unit == "1" else f" [{p.unit}]" for p in self.kind.parameters}
+        return [(f"{p.name} ({p.symbol}){units[p.name]}", of_effect(p)) for p in self.kind.parameters]
 
 
 def cards(model: Model, diagnosis: Diagnosis | None, only: tuple[str, ...] | None = None) -> list[Card]:
     """Of every effect that the model has or could have, the most probable first where a diagnosis has ranked them."""
     found = {} if diagnosis is None else {finding.effect: finding for finding in diagnosis.findings}
-    own = [_card(effect, None, True) for effect in model.effects]
-    others = [_card(effect, found.get(effect.id), False) for effect in candidate_effects(model, only)]
+    own = [Card(effect, True) for effect in model.effects]
+    others = [Card(effect, False, found.get(effect.id)) for effect in candidate_effects(model, only)]
     order = {name: number for number, name in enumerate(found)}
     return own + sorted(others, key=lambda card: order.get(card.effect, len(order)))
 
@@ -49,37 +50,58 @@ def source_of(model: Model, effect: str, only: tuple[str, ...] | None = None) ->
     return (known[effect].source or effect) if effect in known else effect
 
 
-def _card(effect: Effect, finding: Finding | None, on: bool) -> Card:
-    parameters = tuple(
-        (f"{p.name} ({p.symbol}){'' if p.unit == '1' else f' [{p.unit}]'}", of_effect(p))
-        for p in effect.parameters
-    )
-    told: dict = {}
-    if finding is not None:
-        told = {
-            "said": str(finding),
-            "verdict": finding.verdict.value,
-            "probability": finding.probability,
-            "error_removed": finding.error_removed,
-            "expected": _expected(finding),
-        }
-    return Card(
-        effect.id,
-        effect.place,
-        effect.physics,
-        effect.equation,
-        parameters,
-        effect.signature,
-        effect.confused_with,
-        effect.separated_by,
-        effect.citation,
-        on,
-        **told,
-    )
+_TIMES = 4.0
+"""A baseline parameter is dragged from a quarter of its value to four times it."""
 
 
-def _expected(finding: Finding) -> str:
-    return ", ".join(
-        f"{name.rpartition('.')[2]} = {value_with_error(value, error, finding.units[name])}"
-        for name, (value, error) in finding.expected.items()
-    )
+@dataclass(frozen=True)
+class Slider:
+    """name, unit and value of a parameter, the ends of its range, and its scale asinh((value - centre) / size): even
+    within a size of the centre, logarithmic beyond it, to both sides.
+    """
+
+    name: str
+    unit: str
+    value: float
+    lowest: float
+    highest: float
+    centre: float
+    size: float
+    meaning: str
+    plausible: str
+
+    @property
+    def share(self) -> float:
+        """Where the value lies between the ends of the scale, 0 to 1."""
+        values = (self.lowest, self.value, self.highest)
+        low, at, high = (math.asinh((value - self.centre) / self.size) for value in values)
+        return (at - low) / (high - low) if high > low else 0.0
+
+
+def sliders(model: Model) -> list[Slider]:
+    """Of every free parameter, those of effects first."""
+    effects = {f"{effect.id}.{each.name}": each for effect in model.effects for each in effect.parameters}
+    names = sorted(model.free, key=lambda name: name not in effects)
+    return [_slider(model, name, effects.get(name)) for name in names]
+
+
+def _slider(model: Model, name: str, declared: EffectParameter | None) -> Slider:
+    p = model.parameters[name]
+    low, high = p.lower, p.upper
+    if declared is None and p.value > 0:
+        low, high = max(low, p.value / _TIMES), min(high, p.value * _TIMES)
+    reach = _TIMES * abs(p.value) or 1.0
+    low = low if math.isfinite(low) else p.value - reach
+    high = high if math.isfinite(high) else p.value + reach
+    low, high = min(low, p.value), max(high, p.value)
+    centre, size = (0.0, abs(p.value)) if declared is None else _scale(declared)
+    size = size or high - low or 1.0
+    words = meaning(name, model), plausible(name, model)
+    return Slider(name, p.unit, p.value, low, high, centre, size, *words)
+
+
+def _scale(declared: EffectParameter) -> tuple[float, float]:
+    """Centre and size: the null and how far from it one would notice it; 0 and the least tried where it has no null."""
+    if declared.scan:
+        return 0.0, min((value for value in declared.scan if value > 0), default=declared.typical)
+    return declared.null, abs(declared.typical - declared.null)

@@ -13,7 +13,7 @@ from hasel_sim.parallel import executor
 from hasel_sysid.command_line.running import run_command, workers
 from hasel_sysid.errors import SysidError
 
-from hasel_workbench.options import workbench_parser
+from hasel_workbench.entry import workbench_parser
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -26,7 +26,7 @@ def run(options: argparse.Namespace) -> int:
     return run_command(lambda: _serve(options))
 
 
-def _serve(options: argparse.Namespace) -> int:
+def _serve(options: argparse.Namespace) -> None:
     if find_spec("nicegui") is None:
         raise SysidError(
             "the workbench needs NiceGUI 3, which is not installed: `pip install 'nicegui>=3,<4'` into the environment "
@@ -34,29 +34,25 @@ def _serve(options: argparse.Namespace) -> int:
         )
     from hasel_workbench.jobs import Jobs
     from hasel_workbench.live.rig import RunningRig
-    from hasel_workbench.page.server import opening, serve
+    from hasel_workbench.page.access import opening
+    from hasel_workbench.page.server import serve
     from hasel_workbench.recordings import ReadingChoices
     from hasel_workbench.workbench import Workbench
 
     certificate = _certificate(options)
-    told = opening(options.host, certificate, options.unencrypted)
-    if told:
+    if told := opening(options.host, certificate, options.unencrypted):
         print(f"note: {told}", file=sys.stderr)
     paths = [*options.recordings, *options.validate]
     drives = dict(zip(map(str, paths), drive_of_each(paths, options.drive), strict=True))
-    reading = ReadingChoices(
-        options.map, {path: Path(drive) for path, drive in drives.items() if drive is not None}
-    )
-    folder = options.output.resolve()
+    drives = {path: Path(drive) for path, drive in drives.items() if drive is not None}
+    reading = ReadingChoices(options.map, drives)
     jobs, rig = Jobs(), RunningRig()
     with ExitStack() as open_:
         open_.callback(signal.signal, signal.SIGTERM, signal.signal(signal.SIGTERM, _end))
         pool = open_.enter_context(workers(options))
-        hand = open_.enter_context(
-            executor(2)
-        )  # processes of their own: what is dragged never waits for a search
+        hand = open_.enter_context(executor(2))  # of its own: what is dragged never waits for a search
         effects = tuple(options.effects) if options.effects else None
-        session = Workbench(pool, hand, folder, options.model, effects, reading)
+        session = Workbench(pool, hand, options.output.resolve(), options.model, effects, reading)
         open_.callback(rig.close)
         if options.rig and (why := rig.connect(options.namespace)):
             print(f"note: {why}", file=sys.stderr)
@@ -69,11 +65,10 @@ def _serve(options: argparse.Namespace) -> int:
         if paths:
             jobs.start("load", begin)
         open_.callback(jobs.cancel)
-        visit = _visit if options.bench else None
-        browser = options.browser and not options.bench
-        port = 0 if options.bench else options.port
-        serve(session, jobs, rig, options.host, port, browser, visit, certificate)
-    return 0
+        if options.bench:
+            serve(session, jobs, rig, options.host, 0, False, _visit, certificate)
+        else:
+            serve(session, jobs, rig, options.host, options.port, options.browser, None, certificate)
 
 
 def _end(number: int, _frame: object) -> None:
@@ -93,7 +88,7 @@ def _certificate(options: argparse.Namespace) -> tuple[Path, Path] | None:
 
 
 def _visit(address: str) -> None:
-    from hasel_workbench.bench.measure import measure
+    from hasel_workbench.browser import measure
 
     try:
         measure(address, lambda line: print(line, flush=True))

@@ -1,12 +1,15 @@
-"""The curves of one run as one array of 32-bit numbers, row by row."""
+"""The curves of one run as one array of 32-bit numbers, and the map of where the model fails in all of them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from hasel_sysid.comparison import RunComparison
 from hasel_sysid.report.overlay import driven_stretches
+from hasel_sysid.residual_analysis.residual_tests import BINS
+from hasel_sysid.residual_analysis.run_series import RunSeries
 
 from hasel_workbench.state import SessionState
-from hasel_workbench.step import Step
 
 
 @dataclass(frozen=True)
@@ -40,25 +43,51 @@ class Curves:
 def curves(state: SessionState, run: str) -> Curves:
     """Of what is shown and, while something is being tried, of what it started from."""
     number = state.number_of(run)
-    shown, before = state.shown, state.current if state.trial else None
-    experiment = state.every[number]
+    shown, experiment = state.shown, state.every[number]
     time, measured = experiment.run.time, experiment.sin_theta
-    offset, error = _offset(shown, number)
-    rows = [time, measured - offset, shown.simulations[number].sin_theta]
-    error_before = None
-    if before is not None:
-        other, error_before = _offset(before, number)
-        rows.append(before.simulations[number].sin_theta + other - offset)
-    series = shown.comparison.runs[number].series
-    driven = (
-        ()
-        if series.drive_time is None
-        else driven_stretches(series.drive_time, series.drive_values, float(time[0]), float(time[-1]))
-    )
+    compared = shown.comparison.runs[number]
+    series, error, error_before = compared.series, compared.mean_absolute_error, None
+    rows = [time, measured - series.offset, shown.simulations[number].sin_theta]
+    if state.trial is not None:
+        other = state.current.comparison.runs[number]
+        error_before = other.mean_absolute_error
+        rows.append(state.current.simulations[number].sin_theta + other.series.offset - series.offset)
+    driven: Sequence[tuple[float, float, int]] = ()
+    if series.drive_time is not None:
+        ends = float(time[0]), float(time[-1])
+        driven = driven_stretches(series.drive_time, series.drive_values, *ends)
     unseen = number >= len(state.experiments)
     return Curves(run, unseen, np.array(rows, dtype=np.float32), tuple(driven), error, error_before)
 
 
-def _offset(step: Step, number: int) -> tuple[float, float]:
-    run = step.comparison.runs[number]
-    return run.series.offset, run.mean_absolute_error
+@dataclass(frozen=True)
+class MapRow:
+    """One run: mean of measured minus simulated sin theta by phase, [bins], NaN in a bin without a frame."""
+
+    run: str
+    mean: np.ndarray
+
+
+def failure_map(runs: Sequence[RunComparison]) -> list[MapRow]:
+    """A row for every run that has a cycle."""
+    profiles = ((run.name, run.analysis.profile) for run in runs)
+    return [MapRow(name, profile.mean) for name, profile in profiles if profile is not None]
+
+
+def stretch(series: RunSeries, cell: int) -> tuple[float, float]:
+    """Begin and end [s] of a cell of the map, in the cycle in which its error is largest.
+
+    A run without a cycle is one stretch.
+    """
+    first, last = float(series.time[0]), float(series.time[-1])
+    if series.cycle is None:
+        return first, last
+    inside = (series.cycle.phase(series.time) * BINS).astype(int) == cell
+    inside &= series.time >= series.cycle.start
+    width = series.cycle.period / BINS
+    if not inside.any():
+        begin = series.cycle.start + cell * width
+        return begin, min(begin + width, last)
+    worst = series.time[inside][int(np.argmax(np.abs(series.residual[inside])))]
+    begin = series.cycle.start + width * np.floor((worst - series.cycle.start) / width)
+    return max(first, float(begin)), min(last, float(begin + width))

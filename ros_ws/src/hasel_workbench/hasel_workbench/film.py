@@ -9,12 +9,13 @@ from hasel_sim.model import Model
 from hasel_sim.model_mesh import model_mesh
 from hasel_sim.run import Simulation
 from hasel_sysid.experiment import Experiment
-
-from hasel_workbench.measured_markers import measured_markers
+from hasel_sysid.report.shape import measured_tail
 
 _RING = (0, 4, 1, 5, 2, 6, 3, 7)
 """An element's nodes around its edge: corner, mid-side, corner …"""
 _FRAMES_PER_SECOND = 60.0
+_I = np.array([1.0, 1.0j])
+"""Makes complex numbers of vectors: their quotient is a turn and a stretch."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Film:
             "muscles": self.muscles,
             "rings": self.rings.tolist(),
             "muscle": self.muscle.tolist(),
-            "skin": self.skin[:, [0, 1, 2]].tolist(),
+            "skin": self.skin.tolist(),
         }
 
 
@@ -54,30 +55,24 @@ def film(model: Model, experiment: Experiment, simulation: Simulation, offset: f
     offset: of this run's measured sin theta, taken out before its direction is drawn.
     """
     mesh = model_mesh(model)
-    shown = _shown(simulation.time)
+    usual = float(np.median(np.diff(simulation.time))) if len(simulation.time) > 1 else 1.0
+    every = max(1, round(1.0 / (_FRAMES_PER_SECOND * usual))) if usual > 0 else 1
+    shown = np.arange(0, len(simulation.time), every)
     shapes = simulation.shapes[shown]
-    simulated = simulation.markers[shown][:, :3]
     measured = measured_markers(experiment, simulation.markers, offset, model)[shown]
     count = len(shapes)
     parts = [
         simulation.time[shown][:, None],
         simulation.contraction[shown],
-        simulated.reshape(count, -1),
+        simulation.markers[shown][:, :3].reshape(count, -1),
         measured.reshape(count, -1),
         shapes.reshape(count, -1),
         axial_strain(mesh, shapes),
     ]
     frames = np.concatenate(parts, axis=1).astype(np.float32)
     frames = frames[np.isfinite(shapes).all(axis=(1, 2))]
-    return Film(
-        experiment.name,
-        frames,
-        mesh.elements[:, _RING],
-        mesh.muscle,
-        mesh.skin,
-        shapes.shape[1],
-        simulation.contraction.shape[1],
-    )
+    outline = mesh.elements[:, _RING], mesh.muscle, mesh.skin
+    return Film(experiment.name, frames, *outline, shapes.shape[1], simulation.contraction.shape[1])
 
 
 def axial_strain(mesh: Mesh, shapes: np.ndarray) -> np.ndarray:
@@ -87,8 +82,29 @@ def axial_strain(mesh: Mesh, shapes: np.ndarray) -> np.ndarray:
     return np.linalg.norm(along, axis=-1) - 1.0
 
 
-def _shown(time: np.ndarray) -> np.ndarray:
-    """Numbers of the frames that are shown."""
-    usual = float(np.median(np.diff(time))) if len(time) > 1 else 1.0
-    every = max(1, round(1.0 / (_FRAMES_PER_SECOND * usual))) if usual > 0 else 1
-    return np.arange(0, len(time), every)
+def measured_markers(
+    experiment: Experiment, simulated: np.ndarray, offset: float, model: Model
+) -> np.ndarray:
+    """Head, middle and tail as measured, [m] [n, 3, 2], in the simulated body's frame; NaN where not measured.
+
+    simulated [m] [n, markers, 2]; offset: of the measured sin theta, taken out where only the angle is known.
+    A clamped body's markers lie where they were measured. A free body's place in the image is not simulated: its head
+    and middle marker are laid on the simulated ones, in size as in direction, and the tail shows what differs. Where
+    only the angle was recorded the tail is drawn at the simulated distance, in the measured direction.
+    """
+    head, middle = simulated[:, 0], simulated[:, 1]
+    recorded = experiment.recording.angle_markers
+    fixed = any(marker.fixed for marker in model.description.markers.values())
+    is_held = fixed or model.description.body.clamped
+    if recorded is not None and experiment.recording.marker_unit == "m" and is_held:
+        return recorded.copy()
+    if recorded is None:
+        end = measured_tail(simulated, experiment.sin_theta - offset)
+    else:
+        if experiment.recording.marker_unit == "px":
+            recorded = recorded * (1.0, -1.0)
+        first, second = recorded[:, 1] - recorded[:, 0], recorded[:, 2] - recorded[:, 1]
+        turned = ((middle - head) @ _I) * (second @ _I) / (first @ _I)
+        end = middle + np.stack([turned.real, turned.imag], axis=-1)
+    known = np.isfinite(end).all(axis=-1)[:, None]
+    return np.stack([np.where(known, head, np.nan), np.where(known, middle, np.nan), end], axis=1)

@@ -11,7 +11,8 @@ from hasel_recording import RecordingError
 from hasel_sim.errors import HaselSimError
 from hasel_sysid.errors import SysidError
 
-from hasel_workbench.evaluate import Progress
+Progress = Callable[[str, float], None]
+"""Called with a line of text and the share done, 0 to 1; it raises where the work is no longer wanted."""
 
 
 class Cancelled(Exception):  # noqa: N818  no error: somebody asked for it
@@ -38,7 +39,7 @@ class Said:
 
 
 class Jobs:
-    """on_end: called after every piece of work."""
+    """said: sentences for every page, the last ones."""
 
     def __init__(self) -> None:
         self.said: deque[Said] = deque(maxlen=50)
@@ -90,28 +91,19 @@ class Jobs:
             work(self._progress)
             if done:
                 self.say("positive", done)
-        except Cancelled:
-            self._say_cancelled()
         except (HaselSimError, SysidError, RecordingError) as error:
             self.say("negative", str(error))
         except BrokenProcessPool:
-            self.say(
-                "negative",
-                "a worker process ended early, perhaps for lack of memory; start again with --jobs 1",
-            )
+            lost = "a worker process ended early, perhaps for lack of memory; start again with --jobs 1"
+            self.say("negative", lost)
         except OSError as error:
-            self.say(
-                "negative",
-                f"{error.filename or 'a file'}: {error.strerror or error}; choose another --output",
-            )
+            why = f"{error.filename or 'a file'}: {error.strerror or error}"
+            self.say("negative", f"{why}; choose another --output")
         except BaseException as error:
             if self._cancel.is_set():  # what it works with may be closed by now
-                self._say_cancelled()
+                self.say("warning", f"{self._title}: cancelled, nothing was changed")
                 return
             self.say("negative", f"{self._title} failed, please report it: {type(error).__name__}: {error}")
             raise
         finally:
             self._thread = None
-
-    def _say_cancelled(self) -> None:
-        self.say("warning", f"{self._title}: cancelled, nothing was changed")

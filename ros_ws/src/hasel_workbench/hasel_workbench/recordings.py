@@ -2,6 +2,7 @@
 
 import warnings
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -51,21 +52,18 @@ def file_place(path: str | Path) -> str:
 def columns_of(path: str | Path) -> tuple[str, ...]:
     """Names of the columns of a file of rows where they are not understood; none of any other file."""
     path = Path(path)
-    if path.suffix.lower() not in TEXT_SUFFIXES:
-        return ()
-    try:
-        names = read_text(path).names
-    except (RecordingError, OSError):
-        return ()
-    return () if _are_understood(names, {}) else tuple(names)
+    if path.suffix.lower() in TEXT_SUFFIXES:
+        with suppress(RecordingError, OSError):
+            names = read_text(path).names
+            return () if _are_understood(names, {}) else tuple(names)
+    return ()
 
 
 def _are_understood(names: Sequence[str], mapping: Mapping[str, str]) -> bool:
-    try:
+    with suppress(RecordingError):
         understand(list(names), meant_names(mapping, names, "", all_here=False), "")
-    except RecordingError:
-        return False
-    return True
+        return True
+    return False
 
 
 def read(
@@ -95,20 +93,18 @@ def checked(
 
     No file is loaded twice, and files of one name get names that differ, as the commands name them.
     """
-    places = [place_of(each.recording) for each in known]
-    new: list[Recording] = []
+    places = {place_of(each.recording) for each in known}
+    new: dict[str, Recording] = {}
     found: list[Experiment] = []
     banners: list[Banner] = []
     for recording in recordings:
         place = place_of(recording)
-        if place in places:
+        if place in places or place in new:
             banners.append(Banner("warning", f"{recording.name} is loaded already.", place))
         else:
-            places.append(place)
-            new.append(recording)
-    names = _names([*(each.recording for each in known), *new])
-    for recording, name in zip(new, names[len(known) :], strict=True):
-        place = place_of(recording)
+            new[place] = recording
+    names = _names([*(each.recording for each in known), *new.values()])
+    for (place, recording), name in zip(new.items(), names[len(known) :], strict=True):
         try:
             with warnings.catch_warnings(record=True) as said:
                 warnings.simplefilter("always", RecordingWarning)
@@ -119,14 +115,14 @@ def checked(
         found.append(experiment)
         banners += [Banner("warning", str(each.message), place) for each in said]
         banners += [Banner(f.severity.value, str(f), place) for f in check_recording(experiment.recording)]
-    return [_called(each, name) for each, name in zip(known, names, strict=False)], found, banners
+    renamed = [
+        Experiment(replace(each.recording, name=name), replace(each.run, name=name))
+        for each, name in zip(known, names, strict=False)
+    ]
+    return renamed, found, banners
 
 
 def _names(recordings: Sequence[Recording]) -> list[str]:
     """Names that differ; one that is in no file keeps its own."""
     names = iter(distinct_names([each.path for each in recordings if each.path is not None]))
     return [each.name if each.path is None else next(names) for each in recordings]
-
-
-def _called(experiment: Experiment, name: str) -> Experiment:
-    return Experiment(replace(experiment.recording, name=name), replace(experiment.run, name=name))

@@ -1,4 +1,4 @@
-"""All that a session of the workbench knows; never changed, only replaced as a whole."""
+"""All that a session of the workbench knows, never changed, only replaced as a whole; and how its error fell."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
@@ -8,6 +8,7 @@ from hasel_sysid.answer.diagnosis import Diagnosis
 from hasel_sysid.answer.next_run import Suggestion
 from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment
+from hasel_sysid.report.content import StageRow
 
 from hasel_workbench.step import Step
 
@@ -77,9 +78,8 @@ class SessionState:
         """Number of a run among all of them. Raises SysidError for one that is not there."""
         names = [each.name for each in self.every]
         if run not in names:
-            raise SysidError(
-                f"there is no run '{run}'; expected one of: {', '.join(names) or 'none is loaded'}"
-            )
+            known = ", ".join(names) or "none is loaded"
+            raise SysidError(f"there is no run '{run}'; expected one of: {known}")
         return names.index(run)
 
     def with_banners(self, said: Sequence[Banner]) -> "SessionState":
@@ -94,3 +94,32 @@ class SessionState:
         """With one more step in the history, after the current one."""
         steps = (*self.kept, step) if self.steps else (step,)
         return replace(self, steps=steps, at=len(steps) - 1, trial=None)
+
+
+_RMS_TO_MEAN = 0.798
+"""Mean magnitude of Gaussian noise of unit standard deviation."""
+
+
+@dataclass(frozen=True)
+class Waterfall:
+    """stages: of all steps up to the current one, and of what is being tried, if anything is; noise_floor: mean |noise|
+    of sin theta, by the last diagnosis, else by the fastest part of the measured angle.
+    """
+
+    stages: tuple[StageRow, ...]
+    tried: bool
+    noise_floor: float
+
+
+def waterfall(state: SessionState) -> Waterfall:
+    """Of a session with at least one step."""
+    steps = [*state.kept, *([state.trial] if state.trial else [])]
+    stages = tuple(StageRow(step.label, step.error, step.error_unseen, step.file) for step in steps)
+    return Waterfall(stages, state.trial is not None, noise_floor(state))
+
+
+def noise_floor(state: SessionState) -> float:
+    """Mean magnitude of the noise of sin theta, as far as it is known."""
+    if state.diagnosis is not None:
+        return state.diagnosis.measured.mean_absolute
+    return _RMS_TO_MEAN * state.shown.comparison.where.noise

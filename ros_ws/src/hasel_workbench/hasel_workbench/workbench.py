@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager
 from dataclasses import replace
+from itertools import chain, count
 from pathlib import Path
 
 from hasel_common.progress import Workload
@@ -17,17 +18,20 @@ from hasel_sysid.command_line.inputs import chosen_model
 from hasel_sysid.comparison import with_amplitudes
 from hasel_sysid.errors import SysidError
 from hasel_sysid.expected_work import USUAL_SPEED, plan_of_diagnosis, plan_of_fit
-from hasel_sysid.experiment import Experiment
+from hasel_sysid.improvement import diagnose
+from hasel_sysid.problem import Problem
 
 from hasel_workbench import acts
 from hasel_workbench.cards import Card, cards
-from hasel_workbench.evaluate import Progress, evaluated, silent
-from hasel_workbench.export import export
-from hasel_workbench.ledger import StepLedger
-from hasel_workbench.prediction import Prediction, predicted
+from hasel_workbench.jobs import Progress
 from hasel_workbench.recordings import ReadingChoices, checked, file_place, place_of, read
+from hasel_workbench.session_files import StepLedger, export
 from hasel_workbench.state import SessionState
-from hasel_workbench.step import Step
+from hasel_workbench.step import Prediction, Step, predicted
+
+
+def silent(_text: str, _share: float) -> None:
+    """The progress of who does not wait."""
 
 
 class Workbench:
@@ -125,21 +129,22 @@ class Workbench:
     def diagnose(self, progress: Progress = silent) -> None:
         """Rank the effects that the current model may lack; fits it first where that was not done."""
         with self._change() as state:
-            acts.nothing_is_tried(state)
+            if state.trial is not None:
+                raise SysidError(f"'{state.trial.label}' is being tried; keep it or take it back first")
             plan = plan_of_diagnosis(acts.size_of(state), len(effects_of(state.current.model, self.effects)))
             work = Workload(plan, usual_speed=USUAL_SPEED, tell=progress)
             if state.current.fit is None:
                 state = self._kept(state, acts.fitted(state, self.pool, work))
                 self._commit(state)
-            found = acts.diagnosed(state, self.pool, self.effects, work)
+            problem = Problem(state.experiments, self.pool, workload=work)
+            found = diagnose(problem, state.current.fit, self.effects)
             self._commit(replace(state, diagnosis=found, diagnosed=state.at, suggestions=()))
 
     def switch_on(self, effect: str, progress: Progress = silent) -> None:
         """Try the current model with an effect, at the values that the diagnosis found, else at typical ones."""
         with self._change() as state:
-            self._commit(
-                replace(state, trial=acts.with_effect(state, effect, self.effects, self.pool, progress))
-            )
+            trial = acts.with_effect(state, effect, self.effects, self.pool, progress)
+            self._commit(replace(state, trial=trial))
 
     def switch_off(self, effect: str, progress: Progress = silent) -> None:
         """Try the current model without an effect that it has."""
@@ -231,22 +236,13 @@ class Workbench:
         self._commit(state)
         if not found:
             return
-        count = len(state.experiments)
-        fitted = tuple(known[:count]) if unseen else (*known[:count], *found)
-        others = (*known[count:], *found) if unseen else tuple(known[count:])
+        first = len(state.experiments)
+        fitted = tuple(known[:first]) if unseen else (*known[:first], *found)
+        others = (*known[first:], *found) if unseen else tuple(known[first:])
         state = replace(state, experiments=fitted, unseen=others)
-        if not fitted:
-            self._commit(state)
-            return
-        self._commit(self._judged_anew(state, model, progress))
+        self._commit(self._judged_anew(state, model, progress) if fitted else state)
 
-    def _regroup(
-        self,
-        state: SessionState,
-        fitted: Sequence[Experiment],
-        unseen: Sequence[Experiment],
-        progress: Progress,
-    ) -> None:
+    def _regroup(self, state: SessionState, fitted: list, unseen: list, progress: Progress) -> None:
         if not fitted:
             raise SysidError("no run to fit would be left; expected one at least: load another one first")
         state = replace(state, experiments=tuple(fitted), unseen=tuple(unseen))
@@ -257,25 +253,26 @@ class Workbench:
         state = replace(state, trial=None, diagnosis=None, suggestions=())
         if not state.steps:
             first = with_amplitudes(model, state.every)
-            step = evaluated("start", first, state.experiments, state.unseen, self.pool, progress)
-            return self._kept(state, step)
+            return self._kept(state, acts.evaluated(state, "start", first, self.pool, progress, ()))
         steps = []
         for number, step in enumerate(state.steps):
             progress(f"{step.label} against all runs", number / len(state.steps))
-            again = evaluated(
-                step.label, step.model, state.experiments, state.unseen, self.pool, did=step.did
-            )
+            again = acts.evaluated(state, step.label, step.model, self.pool, silent, step.did)
             steps.append(replace(again, file=step.file))
         return replace(state, steps=tuple(steps))
 
     def _kept(self, state: SessionState, step: Step) -> SessionState:
-        step = acts.filed(step, _unlike(step.label, [each.label for each in state.kept]))
-        return state.with_step(acts.filed(step, step.label, self._ledger.keep(step)))
+        """With one more step, whose label is numbered where another one is called so already."""
+        taken = [each.label for each in state.kept]
+        labels = chain([step.label], (f"{step.label} ({number})" for number in count(2)))
+        label = next(each for each in labels if each not in taken)
+        new = replace(step, label=label, file=self._ledger.keep(replace(step, label=label)))
+        new.__dict__["comparison"] = step.comparison  # what was worked out stays
+        return state.with_step(new)
 
     def _go(self, state: SessionState, number: int) -> None:
-        self._ledger.note(
-            "taken back" if number < state.at else "restored", state.steps[max(number, state.at)]
-        )
+        what = "taken back" if number < state.at else "restored"
+        self._ledger.note(what, state.steps[max(number, state.at)])
         self._commit(replace(state, at=number))
 
     @contextmanager
@@ -290,12 +287,3 @@ class Workbench:
     def _commit(self, state: SessionState) -> None:
         self.state = state
         self.version += 1
-
-
-def _unlike(label: str, taken: Sequence[str]) -> str:
-    """The label, numbered where another step is called so already."""
-    number, found = 1, label
-    while found in taken:
-        number += 1
-        found = f"{label} ({number})"
-    return found

@@ -13,9 +13,8 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
-from hasel_workbench.bench.browser import Browser, find_browser
-from hasel_workbench.bench.browser_page import BrowserPage
-from hasel_workbench.page.redirect_file import RedirectFile
+from hasel_workbench.browser import Browser, BrowserPage, find_browser
+from hasel_workbench.page.access import RedirectFile
 
 pytest.importorskip("nicegui", reason="NiceGUI is not installed: the extra `page` of hasel_workbench")
 pytestmark = [

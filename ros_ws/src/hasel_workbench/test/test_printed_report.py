@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from hasel_sysid.report.content import ParameterRow, RankedRow, ReportContent, RunOverlay, StageRow
 from hasel_sysid.report.write import write_report
-from hasel_workbench.bench.browser import Browser, find_browser
+from hasel_workbench.browser import Browser, find_browser
 
 pytestmark = pytest.mark.skipif(
     find_browser() is None, reason="no browser is installed: apt install chromium"

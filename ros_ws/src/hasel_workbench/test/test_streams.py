@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from hasel_sim.model import load_model
 from hasel_sim.model_mesh import model_mesh
-from hasel_workbench.curves import curves
-from hasel_workbench.failure_map import failure_map, stretch
+from hasel_workbench.curves import curves, failure_map, stretch
 from hasel_workbench.film import axial_strain, film
 
 RUN = "fit_5500V_2.0Hz"

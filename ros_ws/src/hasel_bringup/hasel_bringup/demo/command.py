@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
-from hasel_muscle import command as bench_muscle
+from hasel_muscle import bench_muscle
 from hasel_recording import RecordingError, read_recording
 from hasel_sysid.command_line import fit, improve, measured_fish
 from hasel_sysid.command_line.running import MISLEADING

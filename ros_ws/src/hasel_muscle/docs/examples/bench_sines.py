@@ -12,12 +12,12 @@ it may where the voltage changes the muscle's stiffness at twice the load's own 
 import json
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from pathlib import Path
 
 import numpy as np
-from hasel_muscle.muscle_runs import read_bench
-from hasel_muscle.recording import BenchRecording
+from hasel_muscle.bench_files import read_bench
+from hasel_muscle.bench_recording import BenchRecording
 from hasel_sim.model.muscle_file import load_muscle
 from hasel_sim.muscle.muscle import Muscle
 from hasel_sim.muscle.swing import HangingLoad
@@ -59,11 +59,8 @@ class SineStretch:
     simulated: SineBeat
 
     def __str__(self) -> str:
-        pairs = [
-            (1e3 * getattr(self.measured, name), 1e3 * getattr(self.simulated, name))
-            for name in ("mean", "peak_to_peak", "once", "half")
-        ]
-        told = "".join(f" | {seen:6.2f} {said:6.2f}" for seen, said in pairs)
+        pairs = zip(astuple(self.measured), astuple(self.simulated), strict=True)
+        told = "".join(f" | {1e3 * seen:6.2f} {1e3 * said:6.2f}" for seen, said in pairs)
         return f"{self.frequency:5.1f} Hz to {self.highest:4.0f} V{told}"
 
 

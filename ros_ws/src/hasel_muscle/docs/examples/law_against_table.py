@@ -12,10 +12,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from hasel_muscle.improve import fit_muscle
-from hasel_muscle.muscle_runs import muscle_for, settled_runs
-from hasel_muscle.problem import BenchProblem, as_muscle, bench_problem
-from hasel_muscle.stroke_table import Rival, rival_table
+from hasel_muscle.bench_files import muscle_for, settled_runs
+from hasel_muscle.bench_improvement import fit_muscle
+from hasel_muscle.bench_problem import BenchProblem, as_muscle
+from hasel_muscle.law_check import Rival, rival_table
 from hasel_sim.muscle.muscle import Muscle
 
 SETTLING_S = 1.0
@@ -41,7 +41,7 @@ def compared(every: BenchProblem, muscle: Muscle, kept: np.ndarray) -> Rival | N
 def main(arguments: list[str]) -> None:
     """Print a line per split."""
     path, *effects = arguments
-    every = bench_problem(settled_runs([Path(path)], SETTLING_S))
+    every = BenchProblem(settled_runs([Path(path)], SETTLING_S))
     muscle = muscle_for(None, [Path(path)]).with_effects(*effects)
     print("mean error on the voltages left out, mm |   law | table")
     for words, kept in splits(np.asarray(every.voltages)):

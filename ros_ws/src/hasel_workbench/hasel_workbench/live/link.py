@@ -17,7 +17,7 @@ from hasel_sysid.errors import SysidError
 from rclpy.action import ActionClient
 from std_srvs.srv import Trigger
 
-from hasel_workbench.evaluate import Progress
+from hasel_workbench.jobs import Progress
 from hasel_workbench.live.stream import KINDS, LiveStream
 
 _STOP_S, _ANSWER_S, _LOOK_S = 1.0, 30.0, 0.05
@@ -64,7 +64,7 @@ class RigLink:
 
     def load(self, model: Path) -> str:
         """Let the simulator take a model file. Raises SysidError."""
-        answer = self._answer(self._load.call_async(LoadModel.Request(model=str(model.resolve()))), _ANSWER_S)
+        answer = self._answer(self._load.call_async(LoadModel.Request(model=str(model.resolve()))))
         if not answer.success:
             raise SysidError(answer.message)
         return answer.message
@@ -81,9 +81,8 @@ class RigLink:
             self._share = message.feedback.progress
 
         self._share = 0.0
-        handle = self._answer(
-            self._experiments.send_goal_async(RunExperiment.Goal(**goal), feedback_callback=shown), _ANSWER_S
-        )
+        sent = self._experiments.send_goal_async(RunExperiment.Goal(**goal), feedback_callback=shown)
+        handle = self._answer(sent)
         if not handle.accepted:
             raise SysidError("the driver refuses the run; arm it with its own tools, and see what it says")
         result = handle.get_result_async()
@@ -99,11 +98,11 @@ class RigLink:
             raise SysidError(f"the run failed: {answer.message}")
         return f"{answer.message} {answer.recording}"
 
-    def _answer(self, future: Any, seconds: float) -> Any:
-        end = time.monotonic() + seconds
+    def _answer(self, future: Any) -> Any:
+        end = time.monotonic() + _ANSWER_S
         while not future.done():
             if time.monotonic() > end:
-                raise SysidError(f"no answer within {seconds:g} s; is the rig still there?")
+                raise SysidError(f"no answer within {_ANSWER_S:g} s; is the rig still there?")
             time.sleep(_LOOK_S)
         return future.result()
 

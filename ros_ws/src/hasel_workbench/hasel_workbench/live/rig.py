@@ -1,15 +1,17 @@
-"""The rig as the page knows it: nobody, or the nodes that are heard."""
+"""The rig as the page knows it: nobody, or the nodes that are heard; a simulator and a command line for it."""
 
+import os
+import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hasel_recording import Recording
+from hasel_recording import HASEL_PAIR, Recording
 from hasel_sysid.answer.next_run import Manoeuvre
 from hasel_sysid.errors import SysidError
 
-from hasel_workbench.evaluate import Progress
-from hasel_workbench.live.simulator import OwnSimulator
+from hasel_workbench.jobs import Progress
 from hasel_workbench.live.stream import LiveStream
 
 if TYPE_CHECKING:
@@ -116,3 +118,62 @@ class RunningRig:
             if time.monotonic() > end:
                 raise SysidError(f"no simulator was heard within {_START_S:g} s of its start")
             time.sleep(_LOOK_S)
+
+
+_PATIENCE_S = 10.0
+
+
+class OwnSimulator:
+    """namespace: of the rig; domain: of ROS, None: the user's. It ends with `close`."""
+
+    def __init__(self, namespace: str, domain: int | None = None) -> None:
+        self._namespace, self._domain = namespace, domain
+        self._process: subprocess.Popen | None = None
+        self._log = Path()
+
+    def start(self, model: Path) -> None:
+        """Begin to simulate a model file; what the process says is in simulator.log beside it."""
+        self.close()
+        self._log = model.with_name("simulator.log")
+        own = {} if self._domain is None else {"ROS_DOMAIN_ID": str(self._domain)}
+        file = model.resolve()
+        given = ["-r", f"__ns:={self._namespace}", "-p", f"model:={file}", "-p", f"own_files:={file.parent}"]
+        command = [sys.executable, "-m", "hasel_sim.live.start_simulator", "--ros-args", *given]
+        env = {**os.environ, "PYTHONUNBUFFERED": "1", **own}
+        with self._log.open("w") as output:
+            self._process = subprocess.Popen(
+                command, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT, env=env
+            )
+
+    def check(self) -> None:
+        """Raise SysidError with its last words where it has ended by itself."""
+        if self._process is not None and self._process.poll() is not None:
+            lines = self._log.read_text(errors="replace").split("\n")
+            said = next((line for line in reversed(lines) if line.strip()), "it said nothing")
+            raise SysidError(f"the simulator that was started has ended: {said} (all of it: {self._log})")
+
+    def close(self) -> None:
+        """End it, as Ctrl-C does."""
+        process, self._process = self._process, None
+        if process is None:
+            return
+        process.terminate()
+        try:
+            process.wait(_PATIENCE_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def goal_line(manoeuvre: Manoeuvre) -> str:
+    """`ros2 action send_goal …`; empty where no rig of this kind can make the run."""
+    if manoeuvre.load_factor is not None or manoeuvre.channels != HASEL_PAIR:
+        return ""
+    fields = ", ".join(f"{name}: {_yaml(value)}" for name, value in manoeuvre.goal().items())
+    action = "/hasel/run_experiment hasel_interfaces/action/RunExperiment"
+    return f'ros2 action send_goal --feedback {action} "{{{fields}}}"'
+
+
+def _yaml(value: object) -> str:
+    quoted = f"'{value}'" if isinstance(value, str) else str(value)
+    return f"{value:g}" if isinstance(value, float) else quoted

@@ -26,9 +26,7 @@ class LiveStream:
     def __init__(self) -> None:
         epochs = Epochs()
         self._epoch = {kind: StreamEpoch(epochs, _LATE_S) for kind in KINDS}
-        self._samples: dict[str, deque[tuple[float, float, float]]] = {
-            kind: deque(maxlen=_KEPT) for kind in KINDS
-        }
+        self._samples: dict[str, deque] = {kind: deque(maxlen=_KEPT) for kind in KINDS}
         self.count = dict.fromkeys(KINDS, 0)
         self._pairing, self._heard = Pairing(_GAP_S), Heard(_RESET_S)
         self._errors = RunningErrors(_RESET_S, WINDOW_S)

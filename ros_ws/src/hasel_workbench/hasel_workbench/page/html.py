@@ -1,46 +1,58 @@
-"""Tables, sliders and cards as plain HTML, so that a screen reader and a keyboard find their way in them."""
+"""Tables, sliders, cards and the waterfall as plain HTML, so that a screen reader and a keyboard find their way."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from html import escape
 
 import numpy as np
 from hasel_sim.parameter import value_with_error
 from hasel_sysid.comparison import RunComparison
-from hasel_sysid.report.wording import error_text
+from hasel_sysid.report.wording import change_text, error_text
+from nicegui import ui
 
-from hasel_workbench.cards import Card
-from hasel_workbench.failure_map import MapRow
-from hasel_workbench.sliders import Slider
+from hasel_workbench.cards import Card, Slider
+from hasel_workbench.curves import MapRow
+from hasel_workbench.state import Waterfall
+
+
+def markup(text: str) -> ui.html:
+    """An element of the page; whoever makes the text escapes what comes from outside."""
+    return ui.html(text, sanitize=False)
+
+
+def section(label: str, title: str, css: str = "") -> ui.element:
+    """A card of the page with a heading, to be filled in a `with`; label: for screen readers."""
+    card = ui.element("section").classes(f"wb-card {css}").props(f'aria-label="{label}"')
+    with card:
+        markup(f"<h2>{title}</h2>")
+    return card
+
+
+def button(text: str, on_click: Callable[[], object], look: str = "outline") -> ui.button:
+    """A flat or outlined button of this text."""
+    return ui.button(text, on_click=on_click).props(f"dense no-caps {look}")
 
 
 def runs_table(runs: Sequence[RunComparison]) -> str:
     """One row per run: a button that shows it, its drive and its error."""
-    rows = "".join(
-        f'<tr data-row="{escape(run.name)}"><td><button class="run" data-run="{escape(run.name)}">{escape(run.name)}'
-        f"</button>{' <span class=chip>unseen</span>' if run.unseen else ''}</td>"
-        f"<td>{escape(_drive(run))}</td>"
-        f'<td class="number">{error_text(run.mean_absolute_error)}</td><td class="acts">{_acts(run)}</td></tr>'
-        for run in runs
-    )
+    rows = "".join(map(_run_row, runs))
     head = '<tr><th>run</th><th>drive</th><th class=number title="mean |Δ sin θ|">error</th><th></th></tr>'
     return f'<table class="runs"><thead>{head}</thead><tbody>{rows}</tbody></table>'
 
 
-def _acts(run: RunComparison) -> str:
-    """Two buttons: fit it or never fit it, and do without it."""
-    name = escape(run.name)
-    act, word = ("fit", "fit") if run.unseen else ("unseen", "unseen")
-    said = f"fit {name} from now on" if run.unseen else f"never fit {name}"
-    return (
-        f'<button data-act="{act}" data-of="{name}" title="{said}" aria-label="{said}">{word}</button>'
-        f'<button data-act="remove" data-of="{name}" title="remove {name}" aria-label="remove {name}">✕</button>'
-    )
-
-
-def _drive(run: RunComparison) -> str:
+def _run_row(run: RunComparison) -> str:
+    """With two buttons: fit it or never fit it, and do without it."""
+    name, chip = escape(run.name), " <span class=chip>unseen</span>" if run.unseen else ""
     frequency = f", {run.series.frequency:.2g} Hz" if run.series.frequency else ""
-    return f"{run.series.level_text}{frequency}"
+    act, said = ("fit", f"fit {name} from now on") if run.unseen else ("unseen", f"never fit {name}")
+    return (
+        f'<tr data-row="{name}"><td><button class="run" data-run="{name}">{name}</button>{chip}</td>'
+        f"<td>{escape(run.series.level_text + frequency)}</td>"
+        f'<td class="number">{error_text(run.mean_absolute_error)}</td><td class="acts">'
+        f'<button data-act="{act}" data-of="{name}" title="{said}" aria-label="{said}">{act}</button>'
+        f'<button data-act="remove" data-of="{name}" title="remove {name}" aria-label="remove {name}">✕</button>'
+        "</td></tr>"
+    )
 
 
 def failure_map_table(rows: Sequence[MapRow]) -> str:
@@ -73,12 +85,8 @@ def _cell(row: MapRow, number: int, value: float, largest: float) -> str:
     )
 
 
-def sliders_list(shown: Sequence[Slider]) -> str:
-    """A slider for every parameter; its value is moved by mouse or keyboard."""
-    return "".join(_slider(each) for each in shown)
-
-
-def _slider(each: Slider) -> str:
+def slider_row(each: Slider) -> str:
+    """A slider and a number field for a parameter; its value is moved by mouse or keyboard."""
     unit = "" if each.unit == "1" else f" {each.unit}"
     hint = " · ".join(filter(None, [each.meaning, each.plausible and f"plausible {each.plausible}"]))
     name, said = escape(each.name), escape(each.name + unit)
@@ -95,35 +103,86 @@ def _slider(each: Slider) -> str:
 
 def card_text(card: Card) -> str:
     """What is known of an effect."""
+    effect = card.kind
     rows = [
-        ("equation", f"<code>{escape(card.equation)}</code>"),
-        *(
-            (f"parameter {escape(name)}", f"plausible {escape(plausible)}")
-            for name, plausible in card.parameters
-        ),
-        ("signature", escape(card.signature)),
-        ("looks like", escape(", ".join(card.confused_with))),
-        ("separated by", escape(card.separated_by)),
-        ("source", escape(card.citation)),
+        ("equation", f"<code>{escape(effect.equation)}</code>"),
+        *((f"parameter {escape(name)}", f"plausible {escape(known)}") for name, known in card.parameters),
+        ("signature", escape(effect.signature)),
+        ("looks like", escape(", ".join(effect.confused_with))),
+        ("separated by", escape(effect.separated_by)),
+        ("source", escape(effect.citation)),
     ]
-    said = f"<p class=said>{escape(card.said)}</p>" if card.said else ""
+    said = "" if card.finding is None else f"<p class=said>{escape(str(card.finding))}</p>"
     listed = "".join(f"<dt>{name}</dt><dd>{text}</dd>" for name, text in rows if text)
     return f"{said}<dl>{listed}</dl>"
 
 
 def parameter_table(before, after) -> str:
     """Values of the first step's and of the shown model, side by side."""
+
+    def shown(parameter) -> str:
+        return value_with_error(parameter.value, parameter.standard_error, parameter.unit)
+
     rows = "".join(
-        f"<tr><td>{escape(name)}</td><td class=number>"
-        + (
-            value_with_error(before[name].value, before[name].standard_error, p.unit)
-            if name in before
-            else "–"
-        )
-        + f"</td><td class=number>{value_with_error(p.value, p.standard_error, p.unit)}</td></tr>"
+        f"<tr><td>{escape(name)}</td><td class=number>{shown(before[name]) if name in before else '–'}</td>"
+        f"<td class=number>{shown(p)}</td></tr>"
         for name, p in after.items()
     )
     return (
         "<table class=values><thead><tr><th>parameter</th><th class=number>at the start</th><th class=number>now</th>"
         f"</tr></thead><tbody>{rows}</tbody></table>"
     )
+
+
+_WIDTH, _HEIGHT, _LEFT, _TOP, _BOTTOM = 360, 210, 6, 36, 42
+
+
+def waterfall_svg(falling: Waterfall) -> str:
+    """Fitted and, where there are any, unseen runs at one scale; what is being tried is hatched."""
+    groups = [("fitted runs", "fitted", [s.error for s in falling.stages])]
+    if all(stage.error_unseen is not None for stage in falling.stages):
+        groups.append(("unseen runs", "unseen", [s.error_unseen for s in falling.stages]))
+    highest = max(error for *_, errors in groups for error in errors)
+    drawn = "".join(_group(*group, highest, falling) for group in groups)
+    return f'<div class="wb-waterfalls">{drawn}</div>'
+
+
+def _group(title: str, kind: str, errors: Sequence[float], highest: float, falling: Waterfall) -> str:
+    labels = [stage.label for stage in falling.stages]
+    pitch = (_WIDTH - 2 * _LEFT) / max(len(errors) + (len(errors) > 1), 3)
+    most = max(4, int(pitch / 6.2))
+    scale = (_HEIGHT - _TOP - _BOTTOM) / (1.06 * highest)
+
+    def y(error: float) -> float:
+        return _HEIGHT - _BOTTOM - scale * error
+
+    said = "; ".join(f"{label} {error_text(error)}" for label, error in zip(labels, errors, strict=True))
+    parts = [
+        f'<svg class="waterfall" viewBox="0 0 {_WIDTH} {_HEIGHT}" role="img" '
+        f'aria-label="Mean error on {title}, step by step: {escape(said)}">',
+        f'<text class="title" x="{_LEFT}" y="14">{title}</text>',
+    ]
+    bars = [(0.0, errors[0], f"total {kind}", error_text(errors[0]), labels[0])]
+    for number, (before, after) in enumerate(zip(errors, errors[1:], strict=False), start=1):
+        sort = "drop" if after <= before else "rise"
+        tried = " tried" if falling.tried and number == len(errors) - 1 else ""
+        bars.append((before, after, sort + tried, change_text(after - before), labels[number]))
+    if len(errors) > 1:
+        bars.append((0.0, errors[-1], f"total {kind}", error_text(errors[-1]), "left over"))
+    for number, (before, after, css, text, label) in enumerate(bars):
+        left, top = _LEFT + number * pitch, y(max(before, after))
+        height = max(1.0, abs(before - after) * scale)
+        middle, short = left + 0.45 * pitch, label if len(label) <= most else label[: most - 1] + "…"
+        parts.append(
+            f'<rect class="{css}" x="{left:.1f}" y="{top:.1f}" width="{0.9 * pitch:.1f}" height="{height:.1f}"/>'
+            f'<text class="number" x="{middle:.1f}" y="{top - 4:.1f}">{text}</text>'
+            f'<text class="label" x="{middle:.1f}" y="{_HEIGHT - _BOTTOM + 14}">'
+            f"{escape(short)}<title>{escape(label)}</title></text>"
+        )
+    floor = y(falling.noise_floor)
+    if floor > _TOP:
+        ends = f'x1="{_LEFT}" x2="{_WIDTH - _LEFT}" y1="{floor:.1f}" y2="{floor:.1f}"'
+        parts.append(f'<line class="noise" {ends}/>')
+    note = f"dashed: noise floor {error_text(falling.noise_floor)}"
+    parts.append(f'<text class="noise" x="{_LEFT}" y="{_HEIGHT - 4}">{note}</text>')
+    return "".join(parts) + "</svg>"

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from html import escape
+from itertools import chain, count
 from pathlib import Path
 
 from hasel_sysid.errors import SysidError
@@ -9,20 +10,16 @@ from hasel_sysid.report.wording import error_text
 from nicegui import ui
 from nicegui.events import GenericEventArguments, MultiUploadEventArguments
 
-from hasel_workbench.evaluate import Progress
-from hasel_workbench.jobs import Jobs
+from hasel_workbench.jobs import Jobs, Progress
 from hasel_workbench.live.rig import RunningRig
-from hasel_workbench.page.columns_panel import ColumnsPanel
-from hasel_workbench.page.effects_panel import EffectsPanel
-from hasel_workbench.page.history_panel import HistoryPanel
-from hasel_workbench.page.live_panel import LivePanel
-from hasel_workbench.page.runs_panel import RunsPanel
-from hasel_workbench.page.toolbar import Toolbar
-from hasel_workbench.page.view_panel import view_panel
-from hasel_workbench.waterfall import noise_floor
+from hasel_workbench.page.html import button, markup
+from hasel_workbench.page.model_panels import EffectsPanel, HistoryPanel, Toolbar
+from hasel_workbench.page.runs_panels import ColumnsPanel, LivePanel, RunsPanel, view_panel
+from hasel_workbench.state import noise_floor
 from hasel_workbench.workbench import Workbench
 
 _LOOK_S = 0.2
+_LONGEST_NAME = 120
 
 
 class Page:
@@ -38,7 +35,7 @@ class Page:
         """Lay it out, and begin to look for changes."""
         self.dark = ui.dark_mode(None)
         with ui.element("header").classes("wb-head"):
-            ui.html("<h1>HASEL workbench</h1>", sanitize=False)
+            markup("<h1>HASEL workbench</h1>")
             self._numbers()
             with ui.element("div").classes("wb-corner"):
                 darker = ui.button(icon="dark_mode", on_click=self._darker)
@@ -65,13 +62,10 @@ class Page:
 
     def do(self, title: str, work: Callable[[Progress], object], done: str = "") -> None:
         """Begin long work; where something else is under way, say so."""
-        try:
-            self.jobs.start(title, work, done)
-        except SysidError as error:
-            ui.notify(str(error), type="warning")
+        self.at_once(lambda: self.jobs.start(title, work, done))
 
     def at_once(self, act: Callable[[], object]) -> None:
-        """Do what takes no time."""
+        """Do what takes no time; what cannot be done is told."""
         try:
             act()
         except SysidError as error:
@@ -91,33 +85,29 @@ class Page:
     def _numbers(self) -> None:
         state = self.session.state
         if not state.steps:
-            ui.html("<p>Drop recordings to begin, or open Live beside a running rig.</p>", sanitize=False)
+            markup("<p>Drop recordings to begin, or open Live beside a running rig.</p>")
             return
         shown = state.shown
-        unseen = (
-            ""
-            if shown.error_unseen is None
-            else _number("wb-error-unseen", shown.error_unseen, "unseen runs")
-        )
-        effects = " + ".join((shown.model.name, *shown.effects))
-        ui.html(
-            f'<div class="wb-numbers" aria-live="polite"><div><b>{escape(effects)}</b><small>model'
-            f"{', tried: ' + escape(state.trial.label) if state.trial else ''}</small></div>"
-            f"{_number('wb-error', shown.error, 'mean |Δ sin θ|, fitted runs')}{unseen}"
-            f"{_number('wb-noise', noise_floor(state), 'noise floor')}</div>",
-            sanitize=False,
-        )
+        tried = f", tried: {escape(state.trial.label)}" if state.trial else ""
+        model = escape(" + ".join((shown.model.name, *shown.effects)))
+        numbers = [("wb-error", shown.error, "mean |Δ sin θ|, fitted runs")]
+        if shown.error_unseen is not None:
+            numbers.append(("wb-error-unseen", shown.error_unseen, "unseen runs"))
+        numbers.append(("wb-noise", noise_floor(state), "noise floor"))
+        cells = [(f'<b id="{name}">{error_text(value)}</b>', label) for name, value, label in numbers]
+        cells = [(f"<b>{model}</b>", f"model{tried}"), *cells]
+        text = "".join(f"<div>{bold}<small>{label}</small></div>" for bold, label in cells)
+        markup(f'<div class="wb-numbers" aria-live="polite">{text}</div>')
 
     @ui.refreshable_method
     def banners(self) -> None:
         """What must be seen before any number."""
         found = self.session.state.banners
         for banner in found:
-            text = f"<b>{banner.severity}</b> {escape(banner.text)}"
-            ui.html(text, sanitize=False).classes(f"wb-banner {banner.severity}").props('role="alert"')
+            shown = markup(f"<b>{banner.severity}</b> {escape(banner.text)}")
+            shown.classes(f"wb-banner {banner.severity}").props('role="alert"')
         if found:
-            dismiss = ui.button("I have read these", on_click=lambda: self.at_once(self.session.dismiss))
-            dismiss.props("dense flat no-caps")
+            button("I have read these", lambda: self.at_once(self.session.dismiss), "flat")
 
     def _look(self) -> None:
         """What has changed since the last look?"""
@@ -164,19 +154,9 @@ class Page:
         self.jobs.say("negative", await self.rig.stop())
 
 
-LONGEST_NAME = 120
-
-
 def free_path(folder: Path, name: str) -> Path:
     """A path in a folder, of the end of this name, that no file has yet; the folder is numbered where one has it."""
-    name = Path(name.replace("\0", "")).name[-LONGEST_NAME:]
+    name = Path(name.replace("\0", "")).name[-_LONGEST_NAME:]
     name = name if name.strip(".") else "recording"
-    path, number = folder / name, 1
-    while path.exists():
-        number += 1
-        path = folder.with_name(f"{folder.name}_{number}") / name
-    return path
-
-
-def _number(identity: str, value: float, label: str) -> str:
-    return f'<div><b id="{identity}">{error_text(value)}</b><small>{label}</small></div>'
+    folders = chain([folder], (folder.with_name(f"{folder.name}_{number}") for number in count(2)))
+    return next(path for path in (each / name for each in folders) if not path.exists())

@@ -1,6 +1,7 @@
 """What the page's canvases fetch: arrays of 32-bit numbers."""
 
 import asyncio
+import json
 import reprlib
 from collections import OrderedDict
 from typing import Any
@@ -14,14 +15,12 @@ from hasel_sim.run import Simulation
 from hasel_sysid.errors import SysidError
 from pydantic import FiniteFloat
 
-from hasel_workbench.curves import curves
-from hasel_workbench.failure_map import stretch
+from hasel_workbench.curves import curves, stretch
 from hasel_workbench.film import film
 from hasel_workbench.live.rig import RunningRig
 from hasel_workbench.live.stream import KINDS
-from hasel_workbench.packet import packet
-from hasel_workbench.prediction import beyond_first_order
 from hasel_workbench.state import SessionState
+from hasel_workbench.step import beyond_first_order
 from hasel_workbench.workbench import Workbench
 
 _KEPT_FILMS = 40
@@ -34,11 +33,14 @@ def add_routes(app: FastAPI, session: Workbench, rig: RunningRig) -> None:
 
     @data.get("/curves/{run}")
     def of_run(run: str) -> Response:
-        return _bytes(_curves(session.state, run))
+        made = curves(session.state, run)
+        return _bytes(packet(made.header(), made.rows))
 
     @data.get("/stretch/{run}/{cell}")
     def of_cell(run: str, cell: int) -> Response:
-        return _bytes(_stretch(session.state, run, cell))
+        state = session.state
+        begin, end = stretch(state.shown.comparison.runs[state.number_of(run)].series, cell)
+        return _bytes(packet({"begin": begin, "end": end}, np.zeros(0)))
 
     @data.get("/film/{run}")
     async def moving(run: str) -> Response:
@@ -61,15 +63,21 @@ def add_routes(app: FastAPI, session: Workbench, rig: RunningRig) -> None:
         found = await asyncio.wrap_future(session.true(run, values))
         foretold = session.predict(run, values).sin_theta
         before = state.shown.simulations[state.number_of(run)].sin_theta
-        header = {
-            "film": len(found.sin_theta),
-            "beyond": beyond_first_order(foretold, found.sin_theta, before),
-        }
+        beyond = beyond_first_order(foretold, found.sin_theta, before)
+        header = {"film": len(found.sin_theta), "beyond": beyond}
         return _bytes(packet(header, found.sin_theta) + _film(state, run, found))
 
     @data.post("/live")
     async def heard(seen: dict[str, int]) -> Response:
-        return _bytes(_heard(rig, seen))
+        count, rows, error = dict(rig.stream.count), rig.stream.since(seen), rig.stream.error
+        header = {
+            "said": rig.said(),
+            "seen": count,
+            "counts": {kind: len(rows[kind]) for kind in KINDS},
+            "error": None if error is None else error.mean_absolute,
+            "recent": None if error is None else error.recent,
+        }
+        return _bytes(packet(header, np.concatenate([rows[kind] for kind in KINDS])))
 
     app.include_router(data)
 
@@ -99,17 +107,6 @@ def _unexpected(found: dict[str, Any]) -> str:
     return f"The request's {place} is {reprlib.repr(found['input'])}: {found['msg']}."
 
 
-def _curves(state: SessionState, run: str) -> bytes:
-    made = curves(state, run)
-    return packet(made.header(), made.rows)
-
-
-def _stretch(state: SessionState, run: str, cell: int) -> bytes:
-    number = state.number_of(run)
-    begin, end = stretch(state.shown.comparison.runs[number].series, cell)
-    return packet({"begin": begin, "end": end}, np.zeros(0))
-
-
 def _film(state: SessionState, run: str, simulation: Simulation) -> bytes:
     number = state.number_of(run)
     offset = state.shown.comparison.runs[number].series.offset
@@ -117,17 +114,14 @@ def _film(state: SessionState, run: str, simulation: Simulation) -> bytes:
     return packet(made.header(), made.frames)
 
 
-def _heard(rig: RunningRig, seen: dict[str, int]) -> bytes:
-    count, rows, error = dict(rig.stream.count), rig.stream.since(seen), rig.stream.error
-    header = {
-        "said": rig.said(),
-        "seen": count,
-        "counts": {kind: len(rows[kind]) for kind in KINDS},
-        "error": None if error is None else error.mean_absolute,
-        "recent": None if error is None else error.recent,
-    }
-    return packet(header, np.concatenate([rows[kind] for kind in KINDS]))
-
-
 def _bytes(content: bytes) -> Response:
     return Response(content, media_type="application/octet-stream", headers={"Cache-Control": "no-store"})
+
+
+def packet(header: dict, numbers: np.ndarray) -> bytes:
+    """Length of the header (little-endian, 4 bytes), the header as JSON padded with blanks to a multiple of four bytes,
+    and the numbers, little-endian, row by row.
+    """
+    text = json.dumps(header, ensure_ascii=False, separators=(",", ":")).encode()
+    text += b" " * (-len(text) % 4)
+    return len(text).to_bytes(4, "little") + text + np.ascontiguousarray(numbers, dtype="<f4").tobytes()

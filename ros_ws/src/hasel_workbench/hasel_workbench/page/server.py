@@ -5,6 +5,7 @@ import secrets
 import socket
 import webbrowser
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from threading import Thread
 
@@ -14,36 +15,13 @@ from nicegui import app, background_tasks, run, ui
 
 from hasel_workbench.jobs import Jobs
 from hasel_workbench.live.rig import RunningRig
-from hasel_workbench.page.door import Door
+from hasel_workbench.page.access import LOOPBACK, Door, RedirectFile
 from hasel_workbench.page.page import Page
-from hasel_workbench.page.redirect_file import RedirectFile
 from hasel_workbench.page.routes import add_routes
 from hasel_workbench.workbench import Workbench
 
 _STATIC = Path(__file__).with_name("static")
 _SCRIPTS = ("packet.js", "body.js", "curves.js", "tuning.js", "live.js", "bench.js")
-LOOPBACK = ("127.0.0.1", "localhost", "::1")
-
-
-def opening(host: str, certificate: tuple[Path, Path] | None, unencrypted: bool) -> str:
-    """What listening at a host opens, in one sentence; '' for this machine only.
-
-    Raises SysidError where others on the network would be let in without a certificate and without being told so.
-    """
-    if host in LOOPBACK:
-        return ""
-    opens = (
-        f"--host {host} opens the workbench to the network: whoever has its address with the token can run experiments "
-        "on the rig and read recordings and effect files"
-    )
-    if certificate is not None:
-        return f"{opens}."
-    if not unencrypted:
-        raise SysidError(
-            f"{opens}, and without encryption everybody on the way can read the token; give --certificate FILE --key "
-            "FILE, or say --unencrypted where you trust the network"
-        )
-    return f"{opens}; without encryption everybody on the way can read the token."
 
 
 def serve(
@@ -96,29 +74,19 @@ def serve(
                 app.shutdown()
 
     app.on_startup(lambda: background_tasks.create(opened()))
-    ui.run(
-        host=host,
-        port=port,
-        reload=False,
-        show=False,
-        dark=None,
-        title="HASEL workbench",
-        favicon="〰️",
-        show_welcome_message=False,
-        **({} if certificate is None else {"ssl_certfile": certificate[0], "ssl_keyfile": certificate[1]}),
-    )
+    secure = {} if certificate is None else {"ssl_certfile": certificate[0], "ssl_keyfile": certificate[1]}
+    quiet = {"reload": False, "show": False, "show_welcome_message": False}
+    ui.run(host=host, port=port, dark=None, title="HASEL workbench", favicon="〰️", **quiet, **secure)
 
 
 async def _until_open(host: str, port: int) -> None:
     """Wait until the server answers."""
     while True:
         await asyncio.sleep(0.05)
-        try:
+        with suppress(OSError):
             _, writer = await asyncio.open_connection(host, port)
-        except OSError:
-            continue
-        writer.close()
-        return
+            writer.close()
+            return
 
 
 def _free_port(host: str, port: int) -> int:

@@ -1,1 +1,0 @@
-"""What a page of the workbench takes, measured in a real browser."""
