@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from hasel_bringup.demo.processes import Processes
 from hasel_bringup.errors import BringupError
-from hasel_bringup.live_demo.rig import Rig
+from hasel_bringup.experimenter import Experimenter
+from hasel_bringup.processes import Processes
 from hasel_workbench.bench.browser import Browser, find_browser
 from hasel_workbench.bench.browser_page import BrowserPage
 
@@ -42,7 +42,7 @@ def _button(text: str) -> str:
 class Desk:
     """Somebody with a virtual rig, a terminal and the page, on which Live is open."""
 
-    def __init__(self, processes: Processes, rig: Rig, page: BrowserPage) -> None:
+    def __init__(self, processes: Processes, rig: Experimenter, page: BrowserPage) -> None:
         self.processes, self.rig, self.page = processes, rig, page
 
     def run(self, voltage: float, frequency: float, periods: int) -> float:
@@ -127,7 +127,7 @@ def desk(tmp_path, environment, domain, monkeypatch) -> Iterator[Desk]:
         processes.start("hasel_bringup", "virtual_rig", "--ros-args", "-p", hidden)
         effects = ("--effects", "quadratic_drag,linear_drag", "--output", str(tmp_path / "workbench"))
         processes.start("hasel_workbench", "workbench", "--no-browser", "--port", "0", *effects)
-        rig = Rig(processes.check, domain)
+        rig = Experimenter(processes.check, domain)
         try:
             with Browser() as browser:
                 page = browser.open(_address(processes, rig))
@@ -138,7 +138,7 @@ def desk(tmp_path, environment, domain, monkeypatch) -> Iterator[Desk]:
     assert not _left_over(tmp_path)
 
 
-def _address(processes: Processes, rig: Rig) -> str:
+def _address(processes: Processes, rig: Experimenter) -> str:
     output = processes.output("workbench")
     found = re.compile(r"http://127\.0\.0\.1:\d+/\?token=\S+")
     rig.until(lambda: found.search(output.read_text()), _PATIENCE_S, "the workbench did not come up")
