@@ -23,13 +23,8 @@ ENTRIES = [
     for file in sorted(set(FOLDER.glob("*.yaml")) - {FOLDER / "diagnostics.yaml"})
     for node, content in yaml.safe_load(file.read_text()).items()
 ]
-BRANCHES = {
-    name: branch
-    for name, branch in yaml.safe_load((FOLDER / "diagnostics.yaml").read_text())["analyzers"][
-        "ros__parameters"
-    ].items()
-    if isinstance(branch, dict)
-}
+DIAGNOSTICS = yaml.safe_load((FOLDER / "diagnostics.yaml").read_text())["analyzers"]["ros__parameters"]
+BRANCHES = {name: branch for name, branch in DIAGNOSTICS.items() if isinstance(branch, dict)}
 NODES = {
     Part.SUPPLY: ("hasel_driver", "supply"),
     Part.TRACKING: ("hasel_tracker", "camera"),

@@ -10,7 +10,7 @@ from pathlib import Path
 from ament_index_python.packages import get_package_share_directory
 from rich.console import Console
 
-from hasel_bringup.demonstrations.live_session import Commands, Session
+from hasel_bringup.demonstrations.live_session import Session
 from hasel_bringup.experimenter import Experimenter
 from hasel_bringup.processes import OWN_DOMAIN, Processes, alone_in
 
@@ -46,8 +46,7 @@ def _run(options: argparse.Namespace) -> None:
             start_nodes(processes, folder, options.hidden, options.seed)
         rig = Experimenter(processes.check, domain)
         try:
-            commands = Commands(processes, console)
-            Session(rig, commands, folder, console).run(options.runs)
+            Session(rig, processes, folder, console).run(options.runs)
         finally:
             rig.close()
 

@@ -33,34 +33,11 @@ _AFTER_S = 100.0  # of it for what comes after the search
 _LEAST_S = 300.0  # for the search, however busy the machine: cut shorter it may not come to the effect
 
 
-class Commands:
-    """Commands of hasel_sysid in processes of their own, as a user types them.
-
-    Runs one after the other and shows for how long it has been working.
-    """
-
-    def __init__(self, processes: Processes, console: Console) -> None:
-        self._processes, self._console = processes, console
-
-    def run(self, name: str, *arguments: str) -> None:
-        """Raises BringupError when the command fails."""
-        self._processes.start("hasel_sysid", name, *arguments)
-        os.setpriority(os.PRIO_PROCESS, self._processes.process_id(name), _NICENESS)
-        begun = time.monotonic()
-        with self._console.status("") as status:
-            while not self._processes.ended(name):
-                status.update(f"{name} has been working for {time.monotonic() - begun:.0f} s")
-                time.sleep(0.1)
-        code = self._processes.finish(name, 1.0)
-        if code not in (0, MISLEADING):
-            raise BringupError(f"{name} failed with exit code {code}; see {self._processes.output(name)}")
-
-
 class Session:
     """The steps in order; each tells what it does, and how long it took."""
 
-    def __init__(self, rig: Experimenter, commands: Commands, folder: Path, console: Console) -> None:
-        self._rig, self._commands, self._folder, self._console = rig, commands, folder, console
+    def __init__(self, rig: Experimenter, processes: Processes, folder: Path, console: Console) -> None:
+        self._rig, self._processes, self._folder, self._console = rig, processes, folder, console
         self._begun = time.monotonic()
 
     def run(self, runs: int | None = None) -> None:
@@ -90,6 +67,19 @@ class Session:
         self._step("Watch the error live, before and after", self._watch)
         if self._goal_file.is_file():
             self._step("One more run", lambda: self._measure("suggested", self._goal()))
+
+    def _command(self, name: str, *arguments: str) -> None:
+        """Run a command of hasel_sysid, as a user types it, and show for how long it has been working."""
+        self._processes.start("hasel_sysid", name, *arguments)
+        os.setpriority(os.PRIO_PROCESS, self._processes.process_id(name), _NICENESS)
+        begun = time.monotonic()
+        with self._console.status("") as status:
+            while not self._processes.ended(name):
+                status.update(f"{name} has been working for {time.monotonic() - begun:.0f} s")
+                time.sleep(0.1)
+        code = self._processes.finish(name, 1.0)
+        if code not in (0, MISLEADING):
+            raise BringupError(f"{name} failed with exit code {code}; see {self._processes.output(name)}")
 
     def _get_ready(self) -> None:
         self._rig.await_nodes()
@@ -131,7 +121,7 @@ class Session:
 
     def _improve(self, fitted: Sequence[Path], unseen: Sequence[Path]) -> None:
         left = _WHOLE_S - _AFTER_S - (time.monotonic() - self._begun)
-        self._commands.run(
+        self._command(
             "improve",
             *map(str, fitted),
             "--validate",
@@ -181,7 +171,7 @@ class Session:
         if len(rivals) < 2:
             self._say("No two explanations are left between which a run could decide.")
             return
-        self._commands.run(
+        self._command(
             "suggest", *map(str, fitted), "--effects", ",".join(rivals), "--output", str(self._folder)
         )
         goal = self._goal()

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -63,70 +64,56 @@ class VirtualBodyNode(Node):
             self._angles.publish(message)
 
 
-class RigSupply:
-    """The driver on a virtual board: starts both, in processes of their own; as a context manager, ends both.
+@contextlib.contextmanager
+def supply_and_driver(namespace: str) -> Iterator[Callable[[], None]]:
+    """The driver on a virtual board, in processes of their own; gives a check that raises BringupError once one ended.
 
     namespace: of the driver, such as /hasel.
     """
+    processes: list[subprocess.Popen] = []
 
-    def __init__(self, namespace: str) -> None:
-        self._namespace = namespace
-
-    def __enter__(self) -> "RigSupply":
-        self._folder = tempfile.TemporaryDirectory(prefix="hasel_")
-        port = Path(self._folder.name) / "supply"
-        self._processes = [self._start("hasel_driver.virtual_supply", "--link", str(port))]
-        try:
-            self._wait_for(port)
-            self._processes.append(
-                self._start(
-                    "hasel_driver.driver_node",
-                    "--ros-args",
-                    *("-r", f"__ns:={self._namespace}"),
-                    *("-p", f"port:={port}"),
-                    *("-p", "history_file:=" + str(port.with_name("history.jsonl"))),
-                    *("-p", f"state_folder:={port.parent}"),
-                )
-            )
-        except BringupError:
-            self.__exit__()
-            raise
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        for process in reversed(self._processes):
-            process.terminate()
-        for process in self._processes:
-            try:
-                process.wait(5.0)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
-        self._folder.cleanup()
-
-    def check(self) -> None:
-        """Raise BringupError when one of the two has ended."""
-        if any(process.poll() is not None for process in self._processes):
+    def check() -> None:
+        if any(process.poll() is not None for process in processes):
             raise BringupError(
                 "the driver or its virtual board has ended; see its message above, or run without them: --body-only"
             )
 
-    @staticmethod
-    def _start(module: str, *arguments: str) -> subprocess.Popen:
-        return subprocess.Popen(
-            [sys.executable, "-m", module, *arguments],
-            stdin=subprocess.DEVNULL,
-            stdout=None if module.endswith("_node") else subprocess.DEVNULL,
+    with tempfile.TemporaryDirectory(prefix="hasel_") as folder:
+        port = Path(folder) / "supply"
+        board = ("hasel_driver.virtual_supply", "--link", str(port))
+        driver = (
+            *("hasel_driver.driver_node", "--ros-args", "-r", f"__ns:={namespace}", "-p", f"port:={port}"),
+            *("-p", "history_file:=" + str(port.with_name("history.jsonl"))),
+            *("-p", f"state_folder:={port.parent}"),
         )
+        try:
+            processes.append(_module(*board, stdout=subprocess.DEVNULL))
+            _await_port(port, processes[0])
+            processes.append(_module(*driver))
+            yield check
+        finally:
+            for process in reversed(processes):
+                process.terminate()
+            for process in processes:
+                try:
+                    process.wait(5.0)
+                except subprocess.TimeoutExpired:
+                    process.kill()
+                    process.wait()
 
-    def _wait_for(self, port: Path) -> None:
-        end = time.monotonic() + _PATIENCE_S
-        while not port.exists():
-            if time.monotonic() > end or self._processes[0].poll() is not None:
-                raise BringupError(
-                    "the virtual supply did not open its port; run `ros2 run hasel_driver virtual_supply` to see why"
-                )
-            time.sleep(0.05)
+
+def _module(*words: str, stdout: int | None = None) -> subprocess.Popen:
+    return subprocess.Popen([sys.executable, "-m", *words], stdin=subprocess.DEVNULL, stdout=stdout)
+
+
+def _await_port(port: Path, board: subprocess.Popen) -> None:
+    end = time.monotonic() + _PATIENCE_S
+    while not port.exists():
+        if time.monotonic() > end or board.poll() is not None:
+            raise BringupError(
+                "the virtual supply did not open its port; run `ros2 run hasel_driver virtual_supply` to see why"
+            )
+        time.sleep(0.05)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -139,6 +126,5 @@ def _node(options: argparse.Namespace, stack: contextlib.ExitStack) -> VirtualBo
     """The body's node and, for as long as `stack` is open, a virtual supply that it watches."""
     node = VirtualBodyNode()
     if not options.body_only:
-        supply = stack.enter_context(RigSupply(node.get_namespace()))
-        node.create_timer(1.0, supply.check)
+        node.create_timer(1.0, stack.enter_context(supply_and_driver(node.get_namespace())))
     return node
