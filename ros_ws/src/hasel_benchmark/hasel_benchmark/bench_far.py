@@ -24,7 +24,7 @@ from scipy.optimize import brentq
 
 from hasel_benchmark.bench_hidden.laboratory import seen
 from hasel_benchmark.bench_hidden.run_cases import answer
-from hasel_benchmark.benchmark_commands import BODIES, SHIFTS, SIZES, told
+from hasel_benchmark.benchmark_commands import BODIES, SIZES, told
 
 NOISES = (2e-5, 3e-4, 3e-3)
 _BEAM_DAMPING_S = 0.004
@@ -49,9 +49,7 @@ class FarCase:
         return f"{self.effect}{self.shift:+g}-{self.body}-{self.noise:g}-{self.seed}"
 
 
-def far_cases(
-    effects: Sequence[str] = tuple(SIZES), shifts: Sequence[float] = SHIFTS, bodies: Sequence[str] = BODIES
-) -> list[FarCase]:
+def far_cases(effects: Sequence[str], shifts: Sequence[float], bodies: Sequence[str]) -> list[FarCase]:
     """All of them that a value within the effect's plausible range brings about; the noise goes round."""
     found = []
     for number, (effect, shift) in enumerate((e, s) for e in effects for s in shifts):

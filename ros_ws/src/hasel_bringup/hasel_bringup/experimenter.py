@@ -146,17 +146,16 @@ class Experimenter:
             self.pause(0.5)
         return cleared
 
-    def run_experiment(self, goal: Mapping[str, Any], seconds: float) -> str:
-        """Drive the muscles and return the supply's own recording. Raises BringupError when it fails."""
+    def run_experiment(self, goal: Mapping[str, Any], seconds: float) -> None:
+        """Drive the muscles. Raises BringupError when it fails."""
         sent = self._actions.send_goal_async(RunExperiment.Goal(**goal))
         self.until(sent.done, _ANSWER_S, "run_experiment did not answer")
         if not sent.result().accepted:
             raise BringupError("the driver refuses the experiment: another one is running")
-        result = sent.result().get_result_async()
-        self.until(result.done, seconds + _ANSWER_S, "the experiment did not end")
-        if not result.result().result.success:
-            raise ExperimentFailedError(f"the experiment failed: {result.result().result.message}")
-        return result.result().result.recording
+        future = sent.result().get_result_async()
+        self.until(future.done, seconds + _ANSWER_S, "the experiment did not end")
+        if not (result := future.result().result).success:
+            raise ExperimentFailedError(f"the experiment failed: {result.message}")
 
     def await_frames(self, count: int, since: int) -> int:
         """Wait until `count` frames after the first `since` were tracked; how many were lost if some do not come."""

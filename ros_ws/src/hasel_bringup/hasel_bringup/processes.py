@@ -11,13 +11,9 @@ from ament_index_python.packages import PackageNotFoundError, get_package_prefix
 from hasel_bringup.errors import BringupError
 
 OWN_DOMAIN = 1 + os.getpid() % 100
-"""A ROS domain in which this process and those that it starts are by themselves."""
+ALONE = {"ROS_DOMAIN_ID": str(OWN_DOMAIN), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+"""Variables of processes that are by themselves with this one: in a ROS domain that no rig in the house hears."""
 _PATIENCE_S = 20.0
-
-
-def alone_in(domain: int) -> dict[str, str]:
-    """The variables of processes that hear one another in a ROS domain, and no other machine."""
-    return {"ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
 
 
 def executable(package: str, name: str) -> Path:

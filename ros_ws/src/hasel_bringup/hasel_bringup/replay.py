@@ -27,6 +27,7 @@ from hasel_bringup.errors import BringupError
 _PAUSE_S = 10.0
 """Between two recordings; so long that every node takes them for two runs."""
 _SETTLED_S = 1.0
+_ARRIVAL_S = 10.0
 _MUSCLES = [channel.name for channel in HASEL_PAIR]
 _UNKNOWN_PAIR = [math.nan] * 2
 
@@ -153,12 +154,12 @@ class ReplayNode(Node):
             self._publish(frame)
             done(number)
 
-    def finish(self, seconds: float = 10.0) -> None:
+    def finish(self) -> None:
         """Wait until every message has arrived. Raises BringupError when one has not."""
         for sent in (self._states, self._angles):
-            if not sent.wait_for_all_acked(Duration(seconds=seconds)):
+            if not sent.wait_for_all_acked(Duration(seconds=_ARRIVAL_S)):
                 raise BringupError(
-                    f"not all of {sent.topic_name} arrived within {seconds:g} s; a subscriber is too slow or was "
+                    f"not all of {sent.topic_name} arrived within {_ARRIVAL_S:g} s; a subscriber is too slow or was "
                     "stopped: replay again with a lower --rate"
                 )
 

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 from hasel_common.endpoints import Role, subscription
 from hasel_common.topics import ERROR, MEASURED, SIMULATED, STATE
-from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
 from hasel_recording.message_fields import nanoseconds
 from hasel_sysid.sysid_parameters import PARAMETERS
 
 from hasel_bringup.experimenter import Experimenter
-from hasel_bringup.processes import OWN_DOMAIN, Processes, alone_in
+from hasel_bringup.processes import ALONE, OWN_DOMAIN, Processes
+from hasel_bringup.recorder import RECORDED
 
 NODES = {
     "virtual_supply": ("hasel_driver", "--link", "{folder}/port"),
@@ -38,14 +38,12 @@ _MEMORY_PERIOD_S = 5.0
 class Soak:
     """Counts everything between two kills; `problems` says what was not as it should be."""
 
-    def __init__(self, folder: Path, seconds: float, domain: int) -> None:
+    def __init__(self, folder: Path, seconds: float) -> None:
         self._folder, self._seconds = folder, seconds
-        environment = alone_in(domain)
-        os.environ.update(environment)
-        self._processes = Processes(folder, environment)
+        os.environ.update(ALONE)
+        self._processes = Processes(folder, ALONE)
         self._stamps: dict[str, list[int]] = defaultdict(list)
         self._memory: dict[str, list[tuple[float, float]]] = defaultdict(list)
-        self._domain = domain
         self.problems: list[str] = []
 
     def run(self) -> None:
@@ -53,11 +51,9 @@ class Soak:
         with self._processes:
             for name in NODES:
                 self._start(name)
-            self._rig = Experimenter(self._processes.check, self._domain)
+            self._rig = Experimenter(self._processes.check, OWN_DOMAIN)
             try:
-                for topic, kind in {
-                    STATE: SupplyState, MEASURED: BendingAngle, SIMULATED: BendingAngle, ERROR: RunningError,
-                }.items():  # fmt: skip
+                for topic, kind in RECORDED.items():
                     subscription(self._rig.node, kind, topic, self._note(topic), Role.EVERY_SAMPLE)
                 self._until_all_speak("the start")
                 self._watch("the first half", self._seconds / 2)
@@ -162,7 +158,7 @@ def between_states(frames: np.ndarray, states: np.ndarray, gap: float) -> np.nda
 
 def run(options: argparse.Namespace) -> int:
     """Run the command with these options; returns its exit code, 1 when something was not as it should be."""
-    soak = Soak(options.output.resolve(), 60.0 * options.minutes, OWN_DOMAIN)
+    soak = Soak(options.output.resolve(), 60.0 * options.minutes)
     try:
         soak.run()
     except KeyboardInterrupt:

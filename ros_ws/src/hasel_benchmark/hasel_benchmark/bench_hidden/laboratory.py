@@ -43,11 +43,11 @@ class Laboratory:
     floor_fitted: float
     floor_unseen: float
 
-    def write(self, folder: Path, suffix: str = ".csv") -> None:
-        """Write every run to a file of its name; a CSV file holds exact switches only if they lie on frames."""
+    def write(self, folder: Path) -> None:
+        """Write every run to a CSV file of its name; it holds exact switches only if they lie on frames."""
         folder.mkdir(parents=True, exist_ok=True)
         for measured in (*self.fitted, *self.unseen):
-            write_recording(measured.recording, folder / f"{measured.name}{suffix}")
+            write_recording(measured.recording, folder / f"{measured.name}.csv")
 
 
 def measure(

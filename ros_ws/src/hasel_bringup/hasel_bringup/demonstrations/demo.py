@@ -23,7 +23,7 @@ from rich.markup import escape
 
 from hasel_bringup.errors import BringupError
 from hasel_bringup.experimenter import Experimenter
-from hasel_bringup.processes import OWN_DOMAIN, Processes, alone_in
+from hasel_bringup.processes import ALONE, OWN_DOMAIN, Processes
 
 _REPLAYED = "val_5200V_2.5Hz.csv"
 _PATIENCE_S = 60.0
@@ -142,7 +142,7 @@ class Demo:
 
     def _live(self, *models: Path) -> None:
         frames = int(read_recording(self.replayed).valid.sum())
-        with LiveError(models[0], self.output, OWN_DOMAIN) as live:
+        with LiveError(models[0], self.output) as live:
             for model in models:
                 live.load(model)
                 error = live.of(self.replayed, frames)
@@ -223,19 +223,17 @@ class LiveError:
     """The error that simulator, identification and replay come to, as three processes on DDS.
 
     As a context manager, starts simulator and identification; `of` replays a recording through them.
-
-    domain: a ROS domain of its own, so that no rig in the house hears the replay.
     """
 
-    def __init__(self, model: Path, folder: Path, domain: int) -> None:
-        self._model, self._folder, self._domain = model, folder, domain
-        self._processes = Processes(folder, alone_in(domain))
+    def __init__(self, model: Path, folder: Path) -> None:
+        self._model, self._folder = model, folder
+        self._processes = Processes(folder, ALONE)
         self._connected = False
         self._last, self._compared = RunningError(), 0
 
     def __enter__(self) -> "LiveError":
         hint = f"; is a firewall between local processes? see {self._processes.output('simulator')}"
-        self._rig = Experimenter(self._processes.check, self._domain, "hasel_demo", hint)
+        self._rig = Experimenter(self._processes.check, OWN_DOMAIN, "hasel_demo", hint)
         subscription(self._rig.node, RunningError, ERROR, self._on_error, Role.EVERY_SAMPLE)
         subscription(self._rig.node, DiagnosticArray, DIAGNOSTICS, self._on_diagnostics, Role.DIAGNOSTICS)
         model = ("--ros-args", "-p", f"model:={self._model}")
@@ -260,11 +258,11 @@ class LiveError:
         if not answer.success:
             raise BringupError(answer.message)
 
-    def of(self, recording: Path, frames: int, rate: str = "1") -> float:
+    def of(self, recording: Path, frames: int) -> float:
         """Mean |Δ sin θ| over the frames of a recording, as published at its last frame."""
         self._compared = 0
         listeners = ("--expect", "hasel_simulator", "hasel_sysid")
-        self._processes.start("hasel_bringup", "replay", str(recording), "--rate", rate, *listeners)
+        self._processes.start("hasel_bringup", "replay", str(recording), *listeners)
         failure = f"not all {frames} frames were compared"
         self._rig.until(lambda: self._compared == frames, _PATIENCE_S, failure)
         self._processes.finish("replay", _PATIENCE_S)

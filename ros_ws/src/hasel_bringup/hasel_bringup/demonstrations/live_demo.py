@@ -12,7 +12,7 @@ from rich.console import Console
 
 from hasel_bringup.demonstrations.live_session import Session
 from hasel_bringup.experimenter import Experimenter
-from hasel_bringup.processes import OWN_DOMAIN, Processes, alone_in
+from hasel_bringup.processes import ALONE, OWN_DOMAIN, Processes
 
 _NICENESS = 5  # of all but supply and driver, which stop themselves when they are held up
 
@@ -33,9 +33,9 @@ def _run(options: argparse.Namespace) -> None:
     folder = _fresh(options.output)
     console = Console(highlight=False)
     domain = None if options.attach else OWN_DOMAIN
-    environment = {} if options.attach else alone_in(OWN_DOMAIN)
+    environment = {} if options.attach else ALONE
+    os.environ.update(environment)
     if not options.attach:
-        os.environ.update(environment)
         console.print(
             f"A ROS domain of its own, so that no real rig hears it: ROS_DOMAIN_ID={domain} "
             "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST ros2 topic echo /hasel/error",
