@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_benchmark.bench_far.far_case import FarCase, baseline, measure, observed, swings
+from hasel_benchmark.bench_far import FarCase, baseline, measure, observed, swings
 from hasel_bringup.hidden_truth.truth import NUMERICS
 from hasel_sysid.improvement import improve
 from hasel_sysid.problem import Problem

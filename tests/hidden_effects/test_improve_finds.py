@@ -1,10 +1,10 @@
 """A quick part of the benchmark: the six shorter runs are fitted, a third of the cost of all nine."""
 
 import pytest
-from hasel_benchmark.bench_hidden.case import Case
-from hasel_benchmark.bench_hidden.explain import explain
-from hasel_benchmark.bench_hidden.generate import measure
-from hasel_benchmark.bench_hidden.judge import judge
+from hasel_benchmark.bench_hidden.hidden_cases import Case
+from hasel_benchmark.bench_hidden.laboratory import measure
+from hasel_benchmark.bench_hidden.outcome import judge
+from hasel_benchmark.bench_hidden.run_cases import explain
 from hasel_bringup.hidden_truth.plan import FITTED
 
 SHORT = [box for box in FITTED if box.frequency > 1]

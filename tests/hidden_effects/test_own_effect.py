@@ -12,7 +12,7 @@ from hasel_recording import Recording, write_recording
 from hasel_sim.parallel import simulate_all
 from hasel_sysid.command_line.improve import main
 
-OWN = Path(hasel_benchmark.__file__).parent / "bench_hidden" / "unlisted" / "cubic_drag.py"
+OWN = Path(hasel_benchmark.__file__).parent / "bench_hidden" / "unlisted_effects.py"
 COEFFICIENT = 600.0
 
 

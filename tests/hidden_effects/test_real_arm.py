@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hasel_benchmark.bench_hidden.explain import answer
+from hasel_benchmark.bench_hidden.run_cases import answer
 from hasel_sim.model import load_model
 from hasel_sysid.dataset import for_model, load_experiments
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from hasel_benchmark.bench_hidden.explain import answer
+from hasel_benchmark.bench_hidden.run_cases import answer
 from hasel_sim.model import load_model
 from hasel_sysid.dataset import load_experiments, prepared
 from hasel_sysid.improvement import improve

@@ -5,7 +5,7 @@ import signal
 from pathlib import Path
 
 import pytest
-from hasel_bringup.demo.processes import Processes
+from hasel_bringup.processes import Processes
 from hasel_interfaces.srv import FitModel
 
 RUNS = sorted(

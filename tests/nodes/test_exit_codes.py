@@ -3,7 +3,7 @@
 import signal
 
 import pytest
-from hasel_bringup.demo.processes import Processes
+from hasel_bringup.processes import Processes
 
 NODES = {
     "simulator": ("hasel_sim", ": simulation"),

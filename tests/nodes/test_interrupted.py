@@ -5,7 +5,7 @@ import signal
 import time
 
 import pytest
-from hasel_bringup.demo.processes import Processes
+from hasel_bringup.processes import Processes
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import contextlib
 import time
 
 import pytest
-from hasel_bringup.demo.processes import Processes
+from hasel_bringup.processes import Processes
 from lifecycle_msgs.msg import State
 from lifecycle_msgs.srv import GetState
 from rclpy.client import Client

@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 import pytest
-from hasel_bringup.demo.processes import executable
+from hasel_bringup.processes import executable
 from hasel_recording import read_recording
 from hasel_recording.bag import read_file
 from hasel_recording.mcap_recorder import HEADER_RECORD

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_bringup.demo.processes import Processes
+from hasel_bringup.processes import Processes
 from hasel_common.endpoints import Role
 from hasel_interfaces.msg import Actuation, BendingAngle, SupplyState
 from rcl_interfaces.srv import GetParameters

@@ -5,7 +5,7 @@ import time
 
 import numpy as np
 import pytest
-from hasel_bringup.demo.processes import Processes
+from hasel_bringup.processes import Processes
 from hasel_interfaces.msg import SupplyState
 from hasel_sim.model import load_model, save_model
 

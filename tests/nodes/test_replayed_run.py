@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hasel_bringup.demo.processes import Processes
+from hasel_bringup.processes import Processes
 from hasel_interfaces.srv import FitModel, LoadModel
 from hasel_sim.model import load_model, save_model
 from hasel_sim.parallel import SerialExecutor

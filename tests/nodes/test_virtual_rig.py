@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_bringup.demo.processes import Processes
+from hasel_bringup.processes import Processes
 from hasel_interfaces.msg import Actuation, SupplyState
 
 from tests.nodes.listener import stamp_ns

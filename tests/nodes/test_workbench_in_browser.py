@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from hasel_bringup.demo.processes import Processes
 from hasel_bringup.errors import BringupError
-from hasel_bringup.live_demo.rig import Rig
+from hasel_bringup.experimenter import Experimenter
+from hasel_bringup.processes import Processes
 from hasel_workbench.browser import Browser, BrowserPage, find_browser
 
 pytest.importorskip("nicegui", reason="NiceGUI is not installed: the extra `page` of hasel_workbench")
@@ -41,7 +41,7 @@ def _button(text: str) -> str:
 class Desk:
     """Somebody with a virtual rig, a terminal and the page, on which Live is open."""
 
-    def __init__(self, processes: Processes, rig: Rig, page: BrowserPage) -> None:
+    def __init__(self, processes: Processes, rig: Experimenter, page: BrowserPage) -> None:
         self.processes, self.rig, self.page = processes, rig, page
 
     def run(self, voltage: float, frequency: float, periods: int) -> float:
@@ -126,7 +126,7 @@ def desk(tmp_path, environment, domain, monkeypatch) -> Iterator[Desk]:
         processes.start("hasel_bringup", "virtual_rig", "--ros-args", "-p", hidden)
         effects = ("--effects", "quadratic_drag,linear_drag", "--output", str(tmp_path / "workbench"))
         processes.start("hasel_workbench", "workbench", "--no-browser", "--port", "0", *effects)
-        rig = Rig(processes.check, domain)
+        rig = Experimenter(processes.check, domain)
         try:
             with Browser() as browser:
                 page = browser.open(_address(processes, rig))
@@ -137,7 +137,7 @@ def desk(tmp_path, environment, domain, monkeypatch) -> Iterator[Desk]:
     assert not _left_over(tmp_path)
 
 
-def _address(processes: Processes, rig: Rig) -> str:
+def _address(processes: Processes, rig: Experimenter) -> str:
     output = processes.output("workbench")
     found = re.compile(r"http://127\.0\.0\.1:\d+/\?token=\S+")
     rig.until(lambda: found.search(output.read_text()), _PATIENCE_S, "the workbench did not come up")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hasel_bringup.demo.processes import Processes
+from hasel_bringup.processes import Processes
 from hasel_interfaces.msg import SupplyState
 from hasel_sim.model import load_model, save_model
 from hasel_sysid.answer.next_run import Manoeuvre

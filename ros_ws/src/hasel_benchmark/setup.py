@@ -20,11 +20,11 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "bench_cluster = hasel_benchmark.entry:bench_cluster",
-            "bench_far = hasel_benchmark.entry:bench_far",
-            "bench_fits = hasel_benchmark.entry:bench_fits",
-            "bench_hidden = hasel_benchmark.entry:bench_hidden",
-            "bench_recordings = hasel_benchmark.entry:bench_recordings",
+            "bench_cluster = hasel_benchmark.benchmark_commands:bench_cluster",
+            "bench_far = hasel_benchmark.benchmark_commands:bench_far",
+            "bench_fits = hasel_benchmark.benchmark_commands:bench_fits",
+            "bench_hidden = hasel_benchmark.benchmark_commands:bench_hidden",
+            "bench_recordings = hasel_benchmark.benchmark_commands:bench_recordings",
         ]
     },
 )

@@ -31,15 +31,15 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "bench = hasel_bringup.bench:main",
-            "demo = hasel_bringup.entry:demo",
-            "lifecycle_manager = hasel_bringup.entry:lifecycle_manager",
-            "live_demo = hasel_bringup.entry:live_demo",
-            "recorder = hasel_bringup.entry:recorder",
-            "replay = hasel_bringup.entry:replay",
-            "soak = hasel_bringup.entry:soak",
-            "virtual_camera = hasel_bringup.entry:virtual_camera",
-            "virtual_rig = hasel_bringup.entry:virtual_rig",
+            "bench = hasel_bringup.bench_all:main",
+            "demo = hasel_bringup.bringup_commands:demo",
+            "lifecycle_manager = hasel_bringup.bringup_commands:lifecycle_manager",
+            "live_demo = hasel_bringup.bringup_commands:live_demo",
+            "recorder = hasel_bringup.bringup_commands:recorder",
+            "replay = hasel_bringup.bringup_commands:replay",
+            "soak = hasel_bringup.bringup_commands:soak",
+            "virtual_camera = hasel_bringup.bringup_commands:virtual_camera",
+            "virtual_rig = hasel_bringup.bringup_commands:virtual_rig",
         ]
     },
 )

@@ -3,10 +3,9 @@
 import re
 from pathlib import Path
 
-from hasel_benchmark.bench_far.constants_far_off import BODIES, SIZES
-from hasel_benchmark.bench_hidden.case_list import NOTHING_PER_SEED, list_cases
-from hasel_benchmark.bench_hidden.options import DISCRETISATIONS, KINDS
-from hasel_benchmark.bench_hidden.unlisted import UNLISTED
+from hasel_benchmark.bench_hidden.hidden_cases import NOTHING_PER_SEED, list_cases
+from hasel_benchmark.bench_hidden.unlisted_effects import UNLISTED
+from hasel_benchmark.benchmark_commands import BODIES, DISCRETISATIONS, KINDS, SIZES
 from hasel_bringup.hidden_truth.truth import NUMERICS
 from hasel_sim.effects.registry import find_effects
 

@@ -4,9 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-from hasel_bringup.recorder.recorder_parameters import PARAMETERS as RECORDER
-from hasel_bringup.virtual_camera.camera_parameters import PARAMETERS as CAMERA
-from hasel_bringup.virtual_rig.body_parameters import PARAMETERS as BODY
+from hasel_bringup.bringup_parameters import RECORDER, VIRTUAL_BODY, VIRTUAL_CAMERA
 
 PACKAGE = Path(__file__).resolve().parents[1]
 DOCS = Path(__file__).resolve().parents[4] / "docs"
@@ -23,7 +21,8 @@ def test_commands_are_listed():
 
 
 @pytest.mark.parametrize(
-    ("node", "table"), [("recorder", RECORDER), ("virtual_camera", CAMERA), ("virtual_rig", BODY)]
+    ("node", "table"),
+    [("recorder", RECORDER), ("virtual_camera", VIRTUAL_CAMERA), ("virtual_rig", VIRTUAL_BODY)],
 )
 def test_parameters_are_those_of_the_nodes(node, table):
     """Every parameter has its row with default, unit and meaning, and no row is about another."""

@@ -6,7 +6,7 @@ pytest.importorskip("rclpy", reason="ROS 2 is not there")
 pytest.importorskip("hasel_interfaces", reason="the workspace is not built")
 
 import rclpy
-from hasel_bringup.recorder.recorder_node import RecorderNode
+from hasel_bringup.recorder import RecorderNode
 from hasel_recording.bag import read_file
 from rclpy.parameter import Parameter
 from std_srvs.srv import Trigger

@@ -6,38 +6,25 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from hasel_sim.errors import ModelError, SimulationError
 from hasel_sim.parallel import executor, worker_count
 from hasel_sysid.command_line.running import PACKAGES as IDENTIFYING
 
-from hasel_benchmark.bench_hidden.case import Case
-from hasel_benchmark.bench_hidden.case_list import list_cases, quick_cases
-from hasel_benchmark.bench_hidden.explain import explain
-from hasel_benchmark.bench_hidden.options import KINDS, PAGE, parser
-from hasel_benchmark.bench_hidden.outcome import Outcome, outcome_from_dict
-from hasel_benchmark.bench_hidden.page import as_json, as_markdown, outcomes_of
+from hasel_benchmark.bench_hidden.hidden_cases import Case, list_cases, quick_cases
+from hasel_benchmark.bench_hidden.outcome import Outcome
 from hasel_benchmark.bench_hidden.paired import group_sizes, paired, times
-from hasel_benchmark.bench_hidden.run_cases import run_cases
+from hasel_benchmark.bench_hidden.results_page import as_json, as_markdown, outcomes_of
+from hasel_benchmark.bench_hidden.run_cases import explain, outcome_in, run_cases
+from hasel_benchmark.benchmark_commands import KINDS, PAGE
 from hasel_benchmark.errors import BenchmarkError
 
 PACKAGES = (*IDENTIFYING, "hasel_bringup", "hasel_benchmark")
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command; returns its exit code."""
-    return run(parser().parse_args(arguments))
-
-
 def run(options: argparse.Namespace) -> int:
-    """Run the command with these options; returns its exit code."""
-    try:
-        return _bench(options)
-    except (BenchmarkError, ModelError, SimulationError) as error:
-        print(error, file=sys.stderr)
-        return 1
+    """Run the command with these options; returns its exit code.
 
-
-def _bench(options: argparse.Namespace) -> int:
+    Raises BenchmarkError where they cannot be followed, ModelError or SimulationError where nothing can be simulated.
+    """
     cases = _cases(options)
     if not cases:
         raise BenchmarkError("No case is left to run; choose other --effects or another kind with --only.")
@@ -49,12 +36,12 @@ def _bench(options: argparse.Namespace) -> int:
         )
     before = _outcomes_at(options.against) if options.against else {}
     page = options.page or _default_page(options)
-    known = _known(page) if options.resume else {}
+    known = _told_on(page.with_suffix(".json")) if options.resume else {}
     outcomes: list[Outcome] = []
     stopped = False
     try:
         with executor(options.jobs, options.scheduler, PACKAGES) as pool:
-            at_once = _at_once(options, cases)
+            at_once = len(cases) if options.scheduler else worker_count(options.jobs)
             cores = worker_count(options.jobs) if options.alone else 1
             for outcome in run_cases(cases, explain, pool, options.output, _say, at_once, known, cores):
                 outcomes.append(outcome)
@@ -71,12 +58,10 @@ def _bench(options: argparse.Namespace) -> int:
 def _outcomes_at(path: Path) -> dict[str, Outcome]:
     """Of an earlier run, by the name of their case. Raises BenchmarkError where there are none."""
     if path.is_dir():
-        found = [
-            outcome_from_dict(json.loads(file.read_text())["outcome"]) for file in path.glob("**/*.json")
-        ]
+        found = [outcome_in(file) for file in path.glob("**/*.json")]
         known = {outcome.case: outcome for outcome in found}
     else:
-        known = outcomes_of(json.loads(path.read_text())) if path.is_file() else {}
+        known = _told_on(path)
     if not known:
         raise BenchmarkError(
             f"{path} holds no outcomes; expected an output folder of bench_hidden, or the JSON beside its page."
@@ -84,14 +69,9 @@ def _outcomes_at(path: Path) -> dict[str, Outcome]:
     return known
 
 
-def _known(page: Path) -> dict[str, Outcome]:
-    """What the page to be written already tells, from its JSON."""
-    path = page.with_suffix(".json")
+def _told_on(path: Path) -> dict[str, Outcome]:
+    """What a page already tells, from the JSON beside it."""
     return outcomes_of(json.loads(path.read_text())) if path.is_file() else {}
-
-
-def _at_once(options: argparse.Namespace, cases: Sequence[Case]) -> int:
-    return len(cases) if options.scheduler else worker_count(options.jobs)
 
 
 def _cases(options: argparse.Namespace) -> list[Case]:

@@ -1,13 +1,17 @@
 """What became of one case: the answer of `improve` beside what only the benchmark knows."""
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from hasel_sim.effects.registry import catalogue
 
-from hasel_benchmark.bench_hidden.set_up_faults import FAULTS
-from hasel_benchmark.bench_hidden.share import NORMAL_95
+from hasel_benchmark.bench_hidden.hidden_cases import FAULTS, Case
+from hasel_benchmark.bench_hidden.laboratory import Laboratory
 
+NORMAL_95 = 1.96
+"""Standard deviations of a normal distribution within which 95 % lie."""
 VISIBLE_SHARE = 0.5
 """A hidden effect is visible when the fitted baseline's excess rms is at least this share of the noise's."""
 
@@ -136,10 +140,6 @@ class Outcome:
         """The same on unseen runs."""
         return _removed(self.mae_unseen, self.floor_unseen)
 
-    def as_dict(self) -> dict:
-        """For JSON."""
-        return asdict(self)
-
 
 def alike(first: str, second: str, groups: Sequence[Sequence[str]]) -> bool:
     """Whether one of the stated groups holds both."""
@@ -152,10 +152,56 @@ def _removed(error: tuple[float, float], floor: float) -> float:
 
 
 def outcome_from_dict(content: dict) -> Outcome:
-    """Read back what `as_dict` wrote."""
+    """Read back what was kept as JSON."""
     lists = {
         name: tuple(content[name]) for name in ("hidden", "missing", "ranked", "mae_fitted", "mae_unseen")
     }
     groups = tuple(tuple(group) for group in content["groups"])
     estimates = tuple(Estimate(**one) for one in content["estimates"])
     return Outcome(**{**content, **lists, "groups": groups, "estimates": estimates})
+
+
+def judge(case: Case, laboratory: Laboratory, answer: dict, seconds: float) -> Outcome:
+    """answer: what `improve --json` writes; seconds: how long it took."""
+    stages, verdict = answer["stages"], answer["verdict"]
+    return Outcome(
+        **_told_by(case),
+        status=verdict["status"],
+        missing=tuple(verdict["missing"]),
+        ranked=tuple(entry["effect"] for entry in answer["ranking"]),
+        groups=tuple(tuple(group) for group in answer["indistinguishable"]),
+        mae_fitted=(stages[0]["mae_fit"], stages[-1]["mae_fit"]),
+        mae_unseen=(stages[0]["mae_validation"], stages[-1]["mae_validation"]),
+        floor_fitted=laboratory.floor_fitted,
+        floor_unseen=laboratory.floor_unseen,
+        estimates=_estimates(laboratory.values, stages[-1]["parameters"]),
+        seconds=seconds,
+        set_up=verdict.get("set_up") or "",
+        probability=float(answer["ranking"][0].get("probability", np.nan)) if answer["ranking"] else np.nan,
+    )
+
+
+def failed(case: Case, failure: str) -> Outcome:
+    """The outcome of a case without an answer."""
+    return Outcome(**_told_by(case), failure=failure)
+
+
+def _told_by(case: Case) -> dict[str, Any]:
+    own = {name: getattr(case, name) for name in ("kind", "size", "colour", "numerics", "fault")}
+    return {"case": case.name, "hidden": case.effects, **own}
+
+
+def _estimates(values: dict[str, dict[str, float]], fitted: dict[str, dict]) -> tuple[Estimate, ...]:
+    """Parameters that have a value without effect; one that has none (a relaxation time) says nothing of its size."""
+    own = [
+        (f"{identity}.{p.name}", values[identity][p.name])
+        for identity in values
+        if identity in catalogue()
+        for p in catalogue()[identity].parameters
+        if not p.scan
+    ]
+    return tuple(
+        Estimate(name, fitted[name]["value"], fitted[name].get("std"), truth)
+        for name, truth in own
+        if name in fitted
+    )

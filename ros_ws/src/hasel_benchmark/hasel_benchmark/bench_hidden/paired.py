@@ -41,8 +41,7 @@ class Paired:
 
 def paired(before: Mapping[str, Outcome], after: Sequence[Outcome]) -> list[Paired]:
     """Every line on the cases that both answered; outcomes of the earlier search by the name of their case."""
-    both = [(before[o.case], o) for o in after if o.case in before]
-    both = [(old, new) for old, new in both if not (old.failure or new.failure)]
+    both = _answered_by_both(before, after)
     found = []
     for line in LINES:
         counted = [(old, new) for old, new in both if line.among(old) and line.among(new)]
@@ -60,9 +59,16 @@ def paired(before: Mapping[str, Outcome], after: Sequence[Outcome]) -> list[Pair
     return found
 
 
+def _answered_by_both(
+    before: Mapping[str, Outcome], after: Sequence[Outcome]
+) -> list[tuple[Outcome, Outcome]]:
+    both = [(before[o.case], o) for o in after if o.case in before]
+    return [(old, new) for old, new in both if not (old.failure or new.failure)]
+
+
 def group_sizes(before: Mapping[str, Outcome], after: Sequence[Outcome]) -> str:
     """Mean size of the stated group in both, where one visible effect is hidden."""
-    both = [(before[o.case], o) for o in after if o.case in before and not o.failure]
+    both = _answered_by_both(before, after)
     sizes = [(old.group_size, new.group_size) for old, new in both if is_seen(old) and is_seen(new)]
     if not sizes:
         return "no case has a group in both"
@@ -72,7 +78,7 @@ def group_sizes(before: Mapping[str, Outcome], after: Sequence[Outcome]) -> str:
 
 def times(before: Mapping[str, Outcome], after: Sequence[Outcome]) -> str:
     """Seconds of both on the cases that both answered, and of a case their median ratio."""
-    both = [(before[o.case].seconds, o.seconds) for o in after if o.case in before and not o.failure]
+    both = [(old.seconds, new.seconds) for old, new in _answered_by_both(before, after)]
     finite = np.array([pair for pair in both if np.isfinite(pair).all()]).reshape(-1, 2)
     if not len(finite):
         return "no case was timed by both"

@@ -4,26 +4,45 @@ import json
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 from hasel_sim.errors import SimulationError
+from hasel_sim.model import Model, load_model
 from hasel_sim.parallel import SerialExecutor
+from hasel_sysid.dataset import prepared
 from hasel_sysid.errors import SysidError
+from hasel_sysid.experiment import Experiment
+from hasel_sysid.improvement import improve
+from hasel_sysid.problem import Problem
 
-from hasel_benchmark.bench_hidden.case import Case
-from hasel_benchmark.bench_hidden.generate import Laboratory, measure
-from hasel_benchmark.bench_hidden.judge import failed, judge
-from hasel_benchmark.bench_hidden.outcome import Outcome, outcome_from_dict
+from hasel_benchmark.bench_hidden.hidden_cases import Case
+from hasel_benchmark.bench_hidden.laboratory import Laboratory, measure
+from hasel_benchmark.bench_hidden.outcome import Outcome, failed, judge, outcome_from_dict
 
 Explain = Callable[[Laboratory, Executor], dict]
 """What is judged: from measurements to the content of `improve --json`."""
 
 
-def kept_outcome(case: Case, folder: Path) -> Outcome | None:
+def explain(laboratory: Laboratory, pool: Executor) -> dict:
+    """The content of `improve --json` for these measurements, starting from the default swimmer."""
+    return answer(load_model("swimmer"), laboratory.fitted, laboratory.unseen, pool)
+
+
+def answer(
+    model: Model,
+    fitted: Sequence[Experiment],
+    unseen: Sequence[Experiment],
+    pool: Executor,
+    only: Sequence[str] | None = None,
+) -> dict:
+    """The content of `improve --json` for these experiments, starting from a model; only: candidate effects."""
+    return improve(Problem(fitted, pool), prepared(model, fitted), Problem(unseen, pool), only).to_json()
+
+
+def outcome_in(file: Path) -> Outcome | None:
     """What an earlier run left about a case."""
-    path = folder / f"{case.name}.json"
-    return outcome_from_dict(json.loads(path.read_text())["outcome"]) if path.is_file() else None
+    return outcome_from_dict(json.loads(file.read_text())["outcome"]) if file.is_file() else None
 
 
 def run_case(case: Case, explain: Explain, pool: Executor, cores: int = 1) -> tuple[Outcome, dict, dict]:
@@ -40,11 +59,8 @@ def run_case(case: Case, explain: Explain, pool: Executor, cores: int = 1) -> tu
         answer = explain(laboratory, pool)
     except (SysidError, SimulationError) as error:
         return failed(case, f"improve gave up: {error}"), laboratory.values, {}
-    return (
-        replace(judge(case, laboratory, answer, time.perf_counter() - start), cores=cores),
-        laboratory.values,
-        answer,
-    )
+    outcome = judge(case, laboratory, answer, time.perf_counter() - start)
+    return replace(outcome, cores=cores), laboratory.values, answer
 
 
 def run_cases(
@@ -63,7 +79,9 @@ def run_cases(
     has, all of which every case has to itself in its turn; known: outcomes by name of the case.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    kept = {case.name: kept_outcome(case, folder) or (known or {}).get(case.name) for case in cases}
+    kept = {
+        case.name: outcome_in(folder / f"{case.name}.json") or (known or {}).get(case.name) for case in cases
+    }
     yield from (outcome for outcome in kept.values() if outcome is not None)
     todo = [case for case in cases if kept[case.name] is None]
     begin = time.perf_counter()
@@ -94,12 +112,7 @@ def _beside_each_other(
 
 
 def _keep(case: Case, outcome: Outcome, values: dict, answer: dict, folder: Path) -> None:
-    content = {
-        "case": case.as_dict(),
-        "hidden_values": values,
-        "outcome": outcome.as_dict(),
-        "answer": answer,
-    }
+    content = {"case": asdict(case), "hidden_values": values, "outcome": asdict(outcome), "answer": answer}
     unfinished = folder / f"{case.name}.part"
     unfinished.write_text(json.dumps(content, indent=1))
     unfinished.replace(folder / f"{case.name}.json")

@@ -2,13 +2,17 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
 
 import numpy as np
+from scipy.stats import binomtest
 
 from hasel_benchmark.bench_hidden.outcome import Outcome
-from hasel_benchmark.bench_hidden.share import wilson_interval
 
 CORES_OF_THE_TIME_BARS = 2
+EDGES = (0.0, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0)
+"""Of the bins of stated probabilities."""
 
 
 @dataclass(frozen=True)
@@ -71,31 +75,14 @@ class Line:
     most: float | None = None
 
 
-def is_seen(o: Outcome) -> bool:
-    """Whether one effect of the catalogue is hidden, and to be seen."""
-    return o.kind == "single" and o.visible
+def _visible(*kinds: str) -> Callable[[Outcome], bool]:
+    return lambda o: o.kind in kinds and o.visible
 
 
-def _strong(o: Outcome) -> bool:
-    return o.kind == "strong" and o.visible
-
-
-def _both(o: Outcome) -> bool:
-    return o.kind == "pair" and o.visible
-
-
-def _explicable(o: Outcome) -> bool:
-    return is_seen(o) or _both(o)
-
-
-def _unlisted(o: Outcome) -> bool:
-    return o.kind == "unlisted" and o.visible
-
-
-def _faulty(o: Outcome) -> bool:
-    return o.kind == "set_up"
-
-
+is_seen = _visible("single")
+"""Whether one effect of the catalogue is hidden, and to be seen."""
+_strong, _both, _unlisted = map(_visible, ("strong", "pair", "unlisted"))
+_explicable = _visible("single", "pair")
 LINES = (
     Line("one visible effect hidden: named first", is_seen, lambda o: o.right, least=0.95),
     Line("… or within the stated group", is_seen, lambda o: o.right_within_group, least=0.98),
@@ -134,8 +121,17 @@ LINES = (
         lambda o: o.exact,
         least=0.9,
     ),
-    Line("a fault of the set-up hidden: named", _faulty, lambda o: o.fault_named, least=0.95),
-    Line("… and what is beside it exactly as it is", _faulty, lambda o: o.fault_named and o.exact),
+    Line(
+        "a fault of the set-up hidden: named",
+        lambda o: o.kind == "set_up",
+        lambda o: o.fault_named,
+        least=0.95,
+    ),
+    Line(
+        "… and what is beside it exactly as it is",
+        lambda o: o.kind == "set_up",
+        lambda o: o.fault_named and o.exact,
+    ),
     Line(
         "no fault of the set-up hidden: one reported",
         lambda o: not o.fault,
@@ -150,60 +146,39 @@ def bars(outcomes: Sequence[Outcome]) -> list[Bar]:
     """The numbers of all cases that have an answer."""
     answered = [o for o in outcomes if not o.failure]
     seen, explicable = ([o for o in answered if among(o)] for among in (is_seen, _explicable))
-    sizes = [o.group_size for o in seen]
     covered = [e.covered for o in explicable if o.all_named for e in o.estimates if e.covered is not None]
-    removed = (
-        ("fitted", [o.removed_fitted for o in explicable], 0.95),
-        ("unseen", [o.removed_unseen for o in explicable], 0.9),
-    )
     return [
-        *(share_of(line, answered) for line in LINES),
-        Bar(
-            "size of the stated group (mean)",
-            float(np.mean(sizes)) if sizes else None,
-            None,
-            None,
-            len(seen),
-            "",
+        *(
+            _share(line.what, [line.holds(o) for o in answered if line.among(o)], line.least, line.most)
+            for line in LINES
         ),
+        _figure("size of the stated group (mean)", np.mean, [o.group_size for o in seen], unit=""),
         _share("95 % intervals that cover the truth", covered, least=0.93, most=0.97),
         *(
-            _median(f"excess error removed, {which} runs (median)", own, least=bar)
-            for which, own, bar in removed
+            _figure(f"excess error removed, {which} runs (median)", np.median, own, least)
+            for which, own, least in (
+                ("fitted", [o.removed_fitted for o in explicable], 0.95),
+                ("unseen", [o.removed_unseen for o in explicable], 0.9),
+            )
         ),
         *_times(answered),
     ]
-
-
-def share_of(line: Line, outcomes: Iterable[Outcome]) -> Bar:
-    """Of the cases that a line is about, how many it holds for."""
-    return _share(line.what, [line.holds(o) for o in outcomes if line.among(o)], line.least, line.most)
 
 
 def _times(outcomes: Sequence[Outcome]) -> list[Bar]:
     """How long `improve` took, by the number of cores that it had; the bars are for two."""
     found = []
     for cores in sorted({o.cores for o in outcomes}):
-        barred = cores == CORES_OF_THE_TIME_BARS
+        median_s, tail_s = (40, 150) if cores == CORES_OF_THE_TIME_BARS else (None, None)
         own = [o for o in outcomes if o.cores == cores]
-        hard = [o.seconds for o in own if o.kind in ("pair", "unlisted")]
+        every, hard = [o.seconds for o in own], [o.seconds for o in own if o.kind in ("pair", "unlisted")]
         words = f"time of one improve on {cores} core{'s' if cores > 1 else ''}"
-        found.append(
-            _median(f"{words} (median)", [o.seconds for o in own], most=40 if barred else None, unit="s")
-        )
-        tail = float(np.percentile(hard, 95)) if hard else None
-        found.append(
-            Bar(
-                f"{words}, pairs and effects of no catalogue (95th percentile)",
-                tail,
-                None,
-                150 if barred else None,
-                len(hard),
-                "s",
-            )
-        )
-        longest = max(o.seconds for o in own)
-        found.append(Bar(f"{words} (longest)", longest, None, None, len(own), "s"))
+        beyond = f"{words}, pairs and effects of no catalogue (95th percentile)"
+        found += [
+            _figure(f"{words} (median)", np.median, every, most=median_s, unit="s"),
+            _figure(beyond, partial(np.percentile, q=95), hard, most=tail_s, unit="s"),
+            _figure(f"{words} (longest)", max, every, unit="s"),
+        ]
     return found
 
 
@@ -212,19 +187,26 @@ def _share(
 ) -> Bar:
     if not held:
         return Bar(what, None, least, most, 0)
-    share = float(np.mean(held))
-    return Bar(what, share, least, most, len(held), interval=wilson_interval(share, len(held)))
+    interval = wilson_interval(sum(held), len(held))
+    return Bar(what, float(np.mean(held)), least, most, len(held), interval=interval)
 
 
-def _median(
+def wilson_interval(holds: int, count: int) -> tuple[float, float]:
+    """In which the true share lies with 95 %, where `holds` of `count` cases hold."""
+    low, high = binomtest(holds, count).proportion_ci(method="wilson")
+    return float(low), float(high)
+
+
+def _figure(
     what: str,
+    of: Callable[[Sequence[float]], float],
     values: Iterable[float],
     least: float | None = None,
     most: float | None = None,
     unit: str = "%",
 ) -> Bar:
     finite = [value for value in values if np.isfinite(value)]
-    return Bar(what, float(np.median(finite)) if finite else None, least, most, len(finite), unit)
+    return Bar(what, float(of(finite)) if finite else None, least, most, len(finite), unit)
 
 
 def confusion(outcomes: Sequence[Outcome]) -> dict[str, dict[str, int]]:
@@ -240,3 +222,40 @@ def confusion(outcomes: Sequence[Outcome]) -> dict[str, dict[str, int]]:
             named = o.first or ("none of them" if o.reports_something else "nothing")
         row[named] = row.get(named, 0) + 1
     return table
+
+
+@dataclass(frozen=True)
+class Bin:
+    """Answers whose stated probability lies between two edges: how many, its mean, and how many were right."""
+
+    low: float
+    high: float
+    count: int
+    stated: float
+    right: int
+
+    @property
+    def share(self) -> float:
+        """Of right ones."""
+        return self.right / self.count
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """In which the true share lies with 95 %."""
+        return wilson_interval(self.right, self.count)
+
+
+def reliability(outcomes: Sequence[Outcome]) -> list[Bin]:
+    """Bins of the probability of the effect ranked first; where nothing is said to be missing, none was given."""
+    answers = [
+        (o.probability, o.right)
+        for o in outcomes
+        if not o.failure and o.kind != "pair" and o.first and np.isfinite(o.probability)
+    ]
+    found = []
+    for low, high in pairwise(EDGES):
+        inside = [(p, right) for p, right in answers if low <= p < high or (high == EDGES[-1] and p >= high)]
+        if inside:
+            stated = float(np.mean([p for p, _ in inside]))
+            found.append(Bin(low, high, len(inside), stated, sum(right for _, right in inside)))
+    return found

@@ -1,11 +1,10 @@
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import pytest
-from hasel_benchmark.bench_hidden.case import Case
-from hasel_benchmark.bench_hidden.generate import Laboratory
-from hasel_benchmark.bench_hidden.judge import judge
-from hasel_benchmark.bench_hidden.outcome import Estimate, outcome_from_dict
+from hasel_benchmark.bench_hidden.hidden_cases import Case
+from hasel_benchmark.bench_hidden.laboratory import Laboratory
+from hasel_benchmark.bench_hidden.outcome import Estimate, judge, outcome_from_dict
 
 FLOOR = 0.0024
 
@@ -102,7 +101,7 @@ def test_interval_covers_within_two_standard_errors():
 def test_survives_being_kept_in_a_file():
     """What is written as JSON is read back the same."""
     found = outcome(["quadratic_drag"])
-    assert outcome_from_dict(json.loads(json.dumps(found.as_dict()))) == found
+    assert outcome_from_dict(json.loads(json.dumps(asdict(found)))) == found
 
 
 @pytest.mark.parametrize(

@@ -6,8 +6,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from hasel_benchmark.bench_hidden import command, run_cases
-from hasel_benchmark.bench_hidden.case import Case
-from hasel_benchmark.bench_hidden.generate import Laboratory
+from hasel_benchmark.bench_hidden.hidden_cases import Case
+from hasel_benchmark.bench_hidden.laboratory import Laboratory
+from hasel_benchmark.benchmark_commands import bench_hidden
 from hasel_sim.errors import SimulationError
 from hasel_sim.parallel import SerialExecutor
 from hasel_sysid.errors import SysidError
@@ -111,14 +112,14 @@ def test_failures_are_outcomes(tmp_path):
 def test_command_refuses_to_mix_with_earlier_results(tmp_path, capsys):
     """A folder that holds results needs --resume, said in one sentence."""
     run(CASES[:1], tmp_path)
-    assert command.main(["--quick", "--output", str(tmp_path)]) == 1
+    assert bench_hidden(["--quick", "--output", str(tmp_path)]) == 1
     assert "--resume" in capsys.readouterr().err
 
 
 def test_command_writes_the_page(tmp_path, monkeypatch):
     """Results go to a page and a JSON file beside it."""
     monkeypatch.setattr(command, "explain", lambda laboratory, pool: ANSWER)
-    assert command.main(["--quick", "--jobs", "1", "--output", str(tmp_path)]) == 0
+    assert bench_hidden(["--quick", "--jobs", "1", "--output", str(tmp_path)]) == 0
     assert "nothing hidden, coloured noise: something reported | 0 % (0–79) | ≤ 2 % | yes" in (
         tmp_path / "hidden_effects.md"
     ).read_text(encoding="utf-8")
@@ -130,10 +131,10 @@ def test_command_goes_on_from_the_page_alone(tmp_path, monkeypatch, measured):
     monkeypatch.setattr(command, "explain", lambda laboratory, pool: ANSWER)
     page = tmp_path / "page.md"
     asked = ["--quick", "--jobs", "1", "--page", str(page), "--output"]
-    assert command.main([*asked, str(tmp_path / "here")]) == 0
+    assert bench_hidden([*asked, str(tmp_path / "here")]) == 0
     first = page.read_text(encoding="utf-8")
     measured.clear()
-    assert command.main([*asked, str(tmp_path / "elsewhere"), "--resume"]) == 0
+    assert bench_hidden([*asked, str(tmp_path / "elsewhere"), "--resume"]) == 0
     assert (measured, page.read_text(encoding="utf-8")) == ([], first)
 
 
@@ -141,7 +142,7 @@ def test_command_hides_what_nobody_has_looked_at(tmp_path, monkeypatch, measured
     """With --first-seed the draws are others, of all kinds, and the page is not the one of the whole benchmark."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(command, "explain", lambda laboratory, pool: ANSWER)
-    assert command.main(["--seeds", "2", "--first-seed", "6", "--jobs", "1", "--output", "fresh"]) == 0
+    assert bench_hidden(["--seeds", "2", "--first-seed", "6", "--jobs", "1", "--output", "fresh"]) == 0
     for kind in ("single", "pair", "unlisted"):
         assert {case.seed for case in measured if case.kind == kind} == {6, 7}
     assert (tmp_path / "fresh" / "hidden_effects.md").is_file()
@@ -150,5 +151,5 @@ def test_command_hides_what_nobody_has_looked_at(tmp_path, monkeypatch, measured
 def test_command_refuses_a_seed_below_zero(capsys):
     """Said in one sentence."""
     with pytest.raises(SystemExit):
-        command.main(["--first-seed", "-1"])
+        bench_hidden(["--first-seed", "-1"])
     assert "'-1' is no seed; give a whole number, 0 or more" in capsys.readouterr().err

@@ -9,6 +9,7 @@ from hasel_bringup.errors import BringupError
 
 if TYPE_CHECKING:
     import numpy as np
+    from hasel_sim.effects.base import EffectParameter
     from hasel_sim.model import Model
 
 RANDOM, NOTHING = "random", "none"
@@ -29,17 +30,18 @@ def check_hidden(words: Iterable[str]) -> None:
     """Raises BringupError for a word that is neither none, random, an effect that moves the body, nor name=value."""
     for word in words:
         name, separator, value = word.partition("=")
-        if separator and _is_number(value):
+        if separator:
+            try:
+                float(value)
+            except ValueError:
+                raise BringupError(
+                    f"'{word}' cannot be hidden; expected a number behind '=', as in quadratic_drag.coefficient=0.25"
+                ) from None
             name = name.rpartition(".")[0]
-        elif separator:
-            raise BringupError(
-                f"'{word}' cannot be hidden; expected a number behind '=', as in quadratic_drag.coefficient=0.25"
-            )
         if name not in ("", RANDOM, NOTHING) and name not in (known := hideable()):
             raise BringupError(
                 f"'{word}' cannot be hidden; expected {NOTHING}, {RANDOM}, name=value or an effect that moves the "
-                f"body: "
-                f"{nearest_name(name, known)}"
+                f"body: {nearest_name(name, known)}"
             )
 
 
@@ -48,8 +50,6 @@ def hidden_values(words: Sequence[str], generator: "np.random.Generator") -> dic
 
     Raises BringupError for a word that says nothing.
     """
-    from hasel_bringup.hidden_truth.drawn_values import draw_hidden_values
-
     check_hidden(words)
     values: dict[str, float] = {}
     for word in words:
@@ -61,6 +61,41 @@ def hidden_values(words: Sequence[str], generator: "np.random.Generator") -> dic
             drawn = draw_hidden_values(effect, 1.0, generator)
             values.update({f"{effect}.{parameter}": value for parameter, value in drawn.items()})
     return values
+
+
+def draw_hidden_values(
+    source: str, size: float, generator: "np.random.Generator", spread_null: bool = False
+) -> dict[str, float]:
+    """Value of every parameter of an effect, by name, within 10 % of its size.
+
+    source: the effect's id or path/to/file.py:Class; size: in typical values, negative for the other sign;
+    spread_null: a parameter that is typically at its null value lies within 10 % of that.
+    """
+    from hasel_sim.effects.registry import find_effects
+
+    effect = find_effects((source,))[0]
+    return {p.name: _value(p, size, generator, spread_null) for p in effect.parameters}
+
+
+def both_signs(source: str) -> bool:
+    """Whether an effect's first parameter can plausibly lie on either side of its null value."""
+    from hasel_sim.effects.registry import find_effects
+
+    first = find_effects((source,))[0].parameters[0]
+    return first.lower < first.null < first.upper
+
+
+def _value(p: "EffectParameter", size: float, generator: "np.random.Generator", spread_null: bool) -> float:
+    jitter = generator.uniform(0.9, 1.1)
+    if p.scan:
+        low, high = p.scan[1], p.scan[-2]
+        return float(low * (high / low) ** generator.uniform())
+    if spread_null and p.typical == p.null:
+        return float(p.null * jitter)
+    away = size * (p.typical - p.null) * jitter
+    if p.lower >= p.null:
+        away = abs(away)
+    return float(min(max(p.null + away, p.lower), p.upper))
 
 
 def with_hidden(model: "Model", values: Mapping[str, float]) -> "Model":
@@ -76,17 +111,9 @@ def with_hidden(model: "Model", values: Mapping[str, float]) -> "Model":
             model = model.with_effects(effect)
         parameter = model.parameter(name)
         if not parameter.lower <= value <= parameter.upper:
+            unit = "" if parameter.unit == "1" else f" {parameter.unit}"
             raise ModelError(
-                f"{name} = {value:g} {parameter.unit} is out of range; expected {parameter.lower:g} to "
-                f"{parameter.upper:g}"
+                f"{name} = {value:g}{unit} is out of range; expected {parameter.lower:g} to {parameter.upper:g}"
             )
         model = model.with_values({name: value})
     return model
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True

@@ -1,9 +1,13 @@
 """The simulator that plays the measured swimmer: other mesh, time step and muscle law than the model's."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from hasel_sim.model import Model, load_model
+from hasel_sim.parameter import value_with_error
+
+from hasel_bringup.hidden_truth.hidden import NOTHING, hidden_values, with_hidden
 
 _LAW_VOLTAGES = np.arange(250.0, 6001.0, 250.0)
 """[V]; dense enough that interpolation between them does not matter."""
@@ -39,6 +43,7 @@ NUMERICS = {
 }
 """What the fitted model leaves of noise-free runs with nothing hidden, as a share of the noise's rms: 7 % for `near`,
 39 % for `coarse`, 8 % for `converged`."""
+_LIVE = TruthNumerics("live", 1.6, 2, steps_per_second=480.0)  # the model: 1.0, 1 and 240
 
 
 @dataclass(frozen=True)
@@ -83,3 +88,31 @@ def truth_model(
         identity = model.effects[-1].id
         model = model.with_values({f"{identity}.{parameter}": value for parameter, value in chosen.items()})
     return model
+
+
+@dataclass(frozen=True)
+class Secret:
+    """What the virtual swimmer has beyond the model; nobody is told before the end.
+
+    values: by the name of their parameter; muscles and numerics: of the truth, other than the model's."""
+
+    values: Mapping[str, float]
+    muscles: Muscles
+    numerics: TruthNumerics
+
+    def model(self) -> Model:
+        """The swimmer that the camera sees. Raises ModelError for a value that it cannot have."""
+        return with_hidden(truth_model(self.numerics, self.muscles), self.values)
+
+    def __str__(self) -> str:
+        model = self.model()
+        parts = [
+            f"{name} = {value_with_error(value, None, model.parameter(name).unit)}"
+            for name, value in self.values.items()
+        ]
+        return ", ".join(parts) or NOTHING
+
+
+def draw_secret(hidden: Sequence[str], generator: np.random.Generator) -> Secret:
+    """A swimmer with what `hidden` says, and muscles of its own. Raises BringupError for a word that says nothing."""
+    return Secret(hidden_values(hidden, generator), draw_muscles(generator), _LIVE)

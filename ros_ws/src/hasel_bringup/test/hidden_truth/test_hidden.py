@@ -66,7 +66,7 @@ def test_a_word_that_says_nothing_is_refused(word, expected):
     ("word", "expected"),
     [
         ("quadratic_drag.coeficient=1", "quadratic_drag.coefficient"),
-        ("quadratic_drag.coefficient=-1", "out of range"),
+        ("quadratic_drag.coefficient=-1", "= -1 is out of range"),
     ],
 )
 def test_a_value_that_no_swimmer_has_is_refused(swimmer, word, expected):

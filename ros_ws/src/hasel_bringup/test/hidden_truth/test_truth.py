@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from hasel_bringup.hidden_truth.plan import FITTED
-from hasel_bringup.hidden_truth.truth import NOMINAL, NUMERICS, draw_muscles, truth_model
+from hasel_bringup.hidden_truth.truth import NOMINAL, NUMERICS, draw_muscles, draw_secret, truth_model
 from hasel_sim.drive.sloped_box import target_contraction
 from hasel_sim.model import load_model
 from hasel_sim.model_mesh import model_mesh
@@ -46,3 +46,19 @@ def test_bends_like_the_model():
     model = load_model("swimmer").with_levels(truth.levels).with_values(truth.values)
     difference = simulate(truth, run).sin_theta - simulate(model, run).sin_theta
     assert 1e-5 < np.sqrt(np.mean(difference**2)) < 0.003
+
+
+@pytest.mark.parametrize(
+    ("hidden", "said"),
+    [
+        (["quadratic_drag.coefficient=0.25"], "quadratic_drag.coefficient = 0.25"),
+        (
+            ["charging_lag.charge_time=0.07", "slope=0.4"],
+            "charging_lag.charge_time = 0.07 s, slope = 0.4 1/s",
+        ),
+        (["none"], "none"),
+    ],
+)
+def test_a_secret_is_told_with_units_where_there_are_any(hidden, said):
+    """A ratio has none."""
+    assert str(draw_secret(hidden, np.random.default_rng(0))) == said

@@ -1,1 +1,0 @@
-"""How much sooner two workers of a Dask cluster answer than one."""

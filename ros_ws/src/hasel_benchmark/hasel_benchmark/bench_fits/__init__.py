@@ -1,1 +1,0 @@
-"""Does a fit reach the likelihood of the truth, from its standard starts and from the true values?"""

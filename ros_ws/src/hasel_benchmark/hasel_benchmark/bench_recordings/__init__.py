@@ -1,1 +1,0 @@
-"""What `improve` costs for more and more recordings."""
