@@ -23,12 +23,12 @@ class RigSupply:
     def __enter__(self) -> "RigSupply":
         self._folder = tempfile.TemporaryDirectory(prefix="hasel_")
         port = Path(self._folder.name) / "supply"
-        self._processes = [self._start("hasel_driver.virtual_supply", "--link", str(port))]
+        self._processes = [self._start("hasel_driver.virtual.virtual_supply", "--link", str(port))]
         try:
             self._wait_for(port)
             self._processes.append(
                 self._start(
-                    "hasel_driver.driver_node",
+                    "hasel_driver.nodes.driver_node",
                     "--ros-args",
                     *("-r", f"__ns:={self._namespace}"),
                     *("-p", f"port:={port}"),

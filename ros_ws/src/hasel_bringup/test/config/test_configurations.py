@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from hasel_driver.parameters import PARAMETERS as DRIVER
+from hasel_driver.nodes.parameters import PARAMETERS as DRIVER
 from hasel_sim.live.live_model import live_model
 from hasel_sim.simulator_node import PARAMETERS as SIMULATOR
 from hasel_sysid.sysid_node import PARAMETERS as SYSID
