@@ -7,10 +7,9 @@ from hasel_common.topics import EMERGENCY_STOP, TOPIC_TYPES, relative
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from rclpy.topic_endpoint_info import TopicEndpointInfo
 from std_msgs.msg import Bool
 
-from hasel_driver.nodes.middleware import IDENTIFIER_BYTES, UNNAMED, IdentifiedSubscription, full_name
+from hasel_driver.nodes.middleware import UNNAMED, IdentifiedSubscription, full_name, publishers_of
 
 TYPE = TOPIC_TYPES[EMERGENCY_STOP]
 DEPTH = 100
@@ -94,11 +93,11 @@ class StopTopic:
 
     def present(self) -> dict[bytes, str]:
         """Names of the publishers that exist, by identifier."""
-        return {bytes(info.endpoint_gid[:IDENTIFIER_BYTES]): full_name(info) for info in self._publishers()}
+        return publishers_of(self._node, relative(EMERGENCY_STOP))
 
     def unheard(self) -> str | None:
         """Why a publisher that exists cannot be heard; None if all can."""
-        publishers = self._publishers()
+        publishers = self._node.get_publishers_info_by_topic(relative(EMERGENCY_STOP))
         for info in publishers:
             if info.topic_type != TYPE:
                 return f"{full_name(info)} publishes {info.topic_type} on {self.topic}, {TYPE} is expected"
@@ -112,9 +111,6 @@ class StopTopic:
         """Stop listening."""
         for subscription in self._subscriptions:
             subscription.destroy()
-
-    def _publishers(self) -> list[TopicEndpointInfo]:
-        return self._node.get_publishers_info_by_topic(relative(EMERGENCY_STOP))
 
     def _take(self, publisher: bytes, sequence: int, message: Bool) -> None:
         name = self.present().get(publisher, UNNAMED)

@@ -68,7 +68,7 @@ def preset(name: str) -> Preset:
 
 
 def read_waveform(path: Path) -> FileWaveform:
-    """The drive in a CSV file.
+    """The drive in a CSV file of time_s, voltage_upper_v and voltage_lower_v, each row holding until the next.
 
     Raises:
         RecordingError: it cannot be read, or lacks a column.

@@ -33,8 +33,9 @@ FEEDBACK_PERIOD_S = 0.1
 
 
 class ClientWatch:
-    """Notes the action's clients of now; which of them sent the goal ROS does not tell, so each of them must stay.
+    """Whether whoever asked for an experiment is still there.
 
+    Notes the action's clients of now; which of them sent the goal ROS does not tell, so each of them must stay.
     A client that ends is noticed at once, one that is killed when its lease with the middleware runs out (20 s).
     """
 
@@ -62,7 +63,9 @@ class ClientWatch:
 
 
 class OneAtATime:
-    """Between the acceptance of a goal and its begin other goals may arrive: the promise keeps them out.
+    """A place for one: promised when a goal is accepted, taken when it begins.
+
+    Between the two other goals may arrive: the promise keeps them out.
 
     A goal whose acceptance could not be sent never begins, so a promise lapses after `PROMISE_S`.
     """

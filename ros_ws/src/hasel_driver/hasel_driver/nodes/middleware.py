@@ -78,6 +78,12 @@ def full_name(info: TopicEndpointInfo) -> str:
     return f"{info.node_namespace.rstrip('/')}/{info.node_name}"
 
 
+def publishers_of(node: Node, topic: str) -> dict[bytes, str]:
+    """The nodes that publish a topic, by the identifier of their publisher."""
+    publishers = node.get_publishers_info_by_topic(topic)
+    return {bytes(info.endpoint_gid[:IDENTIFIER_BYTES]): full_name(info) for info in publishers}
+
+
 class _Identifier(ctypes.Structure):
     _fields_ = [("implementation", ctypes.c_char_p), ("data", ctypes.c_uint8 * IDENTIFIER_BYTES)]
 

@@ -205,7 +205,7 @@ def _check_overrides(node: "Node") -> None:
 def check_files(node_name: str, full_name: str, arguments: Sequence[str]) -> None:
     """Raises LimitError for a section of a parameter file that names this node in another namespace only.
 
-    arguments: the process's command line.
+    ROS would ignore it without a word, limits and all. arguments: the process's command line.
     """
     import yaml
 

@@ -18,7 +18,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
 from hasel_driver.nodes.emergency_stop import StopHolders, StopTopic
-from hasel_driver.nodes.middleware import IDENTIFIER_BYTES, UNNAMED, IdentifiedSubscription, full_name
+from hasel_driver.nodes.middleware import UNNAMED, IdentifiedSubscription, publishers_of
 from hasel_driver.nodes.other_drivers import NOT_TOLD, Rivals
 from hasel_driver.protocol.faults import Fault, FaultCode, RefusedError
 from hasel_driver.safety.supply_thread import request_realtime
@@ -73,8 +73,7 @@ class UrgentInputs:
 
     def commanders(self) -> dict[bytes, str]:
         """The nodes that publish commands, by the identifier of their publisher; a node started anew counts once."""
-        publishers = self._node.get_publishers_info_by_topic(self._commands.topic_name)
-        found = {bytes(info.endpoint_gid[:IDENTIFIER_BYTES]): full_name(info) for info in publishers}
+        found = publishers_of(self._node, self._commands.topic_name)
         latest = {name: identifier for identifier, name in found.items()}
         return {one: name for one, name in found.items() if name == UNNAMED or latest[name] == one}
 
@@ -89,17 +88,12 @@ class UrgentInputs:
     def _take_command(self, publisher: bytes, _: int, command: Actuation) -> None:
         name = self._names.get(publisher)
         if name is None or name == UNNAMED:
-            name = self._names[publisher] = self._name(publisher)
+            present = publishers_of(self._node, self._commands.topic_name)
+            name = self._names[publisher] = present.get(publisher, UNNAMED)
         stamp = command.header.stamp
         made_s = stamp.sec + stamp.nanosec * 1e-9
         age_s = time.time() - made_s if made_s else 0.0  # `ros2 topic pub` by hand leaves the stamp empty
         self._on_command(publisher, name, tuple(command.voltage), age_s)
-
-    def _name(self, publisher: bytes) -> str:
-        for info in self._node.get_publishers_info_by_topic(self._commands.topic_name):
-            if bytes(info.endpoint_gid[:IDENTIFIER_BYTES]) == publisher:
-                return full_name(info)
-        return UNNAMED
 
 
 @dataclass

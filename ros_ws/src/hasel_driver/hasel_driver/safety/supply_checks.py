@@ -26,15 +26,16 @@ HOST_TRIP_S = 0.05  # the board's own trips come first
 
 @dataclass
 class MonitorWatch:
-    """Fed with magnitudes, in the sign of what is asked for, while the source is connected; as in the firmware."""
+    """Whether one channel's measured voltage follows what was asked for: a blind monitor proves nothing.
+
+    Fed with magnitudes, in the sign of what is asked for, while the source is connected; as in the firmware.
+    """
 
     _low_s: float = 0.0
     _stuck_v: float = 0.0
     _anchor_v: float = 0.0  # asked for when the measured voltage moved last
     _risen_s: float = 0.0  # for which it should have risen
-    _fallen_s: float = (
-        0.0  # and fallen, without a break: a converter cannot sink, so a ripple need not be followed
-    )
+    _fallen_s: float = 0.0  # and fallen, without a break: no converter sinks, a ripple need not be followed
 
     def step(self, asked_v: float, reached_v: float, measured_v: float, duration_s: float) -> str | None:
         """What is wrong with `measured_v`, when `asked_v` was in force for `duration_s`; or None.

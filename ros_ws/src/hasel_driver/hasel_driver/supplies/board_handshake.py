@@ -23,7 +23,10 @@ _Message = TypeVar("_Message", wire.Reply, wire.Event, wire.Telemetry)
 
 
 class PulseSight:
-    """Takes the reports from the begin of the pulse on; the highest magnitudes of each channel count."""
+    """What was seen of a test pulse, so that one that proves nothing says where it saw no load.
+
+    Takes the reports from the begin of the pulse on; the highest magnitudes of each channel count.
+    """
 
     def __init__(self) -> None:
         self._most: list[tuple[int, int]] | None = None  # V and µA, of each channel

@@ -24,7 +24,10 @@ OFF, DIRECT_CURRENT = 0, 1  # values of SSwMode
 
 
 class ShvpsChannel:
-    """Keeps `values` (by POLLED's names) up to date; commands wait for the answer of the one before."""
+    """One SHVPS board (Peta-pico-Voltron, HardwareX 2018): one command at a time, each answered by one value.
+
+    Keeps `values` (by POLLED's names) up to date; commands wait for the answer of the one before.
+    """
 
     def __init__(self, port: SerialPort) -> None:
         self.port = port

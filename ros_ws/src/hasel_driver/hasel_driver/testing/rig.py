@@ -26,8 +26,9 @@ VIRTUAL_SUPPLY = [sys.executable, "-m", "hasel_driver.virtual.virtual_supply"]
 
 
 class Punctuality:
-    """Measures in the background how late a thread is woken, and a byte is passed on by a pseudo-terminal.
+    """Whether this machine kept time: a test against the clock proves nothing on one that did not.
 
+    Measures in the background how late a thread is woken, and a byte is passed on by a pseudo-terminal.
     The latter needs a worker of the kernel, which on a busy virtual machine can be a second late where threads are
     not. Others may add what they were late.
     """

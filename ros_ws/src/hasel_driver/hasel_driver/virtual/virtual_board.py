@@ -44,7 +44,7 @@ SETTINGS: dict[str, tuple[int, int, int]] = {
 
 
 class Latch(Enum):
-    """In the board's EEPROM."""
+    """What outlives a reset, in the EEPROM: a fault that only its proof, or the interlock seen open, takes away."""
 
     UNPROVEN = auto()
     DISAGREED = auto()

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import Enum
 
 from hasel_driver.protocol.limits import DISCHARGED_V, PULSE_V
@@ -82,7 +82,9 @@ class VirtualBridge:
         self._dwell_ms += 1
         polarity = Contact.POSITIVE if wanted_v > 0 else Contact.NEGATIVE if wanted_v < 0 else Contact.GROUND
         if self.contact is Contact.OPEN:
-            self._leave_open(polarity, dead_time_ms)
+            if self._dwell_ms > dead_time_ms:
+                # A source that was just opened is followed by ground, never by the other source.
+                self._move(Contact.GROUND if self._opened_from.sign else polarity)
         elif self.contact is Contact.GROUND:
             discharged = abs(measured_v) < DISCHARGED_V
             if polarity is not Contact.GROUND and discharged and self._dwell_ms > dead_time_ms:
@@ -95,19 +97,13 @@ class VirtualBridge:
         else:
             self.release()
 
-    def _leave_open(self, polarity: Contact, dead_time_ms: int) -> None:
-        if self._dwell_ms <= dead_time_ms:
-            return
-        # A source that was just opened is followed by ground, never by the other source.
-        self._move(Contact.GROUND if self._opened_from.sign else polarity)
-
     def _move(self, contact: Contact) -> None:
         self._opened_from, self.contact, self._dwell_ms = self.contact, contact, 0
 
 
 @dataclass
 class GroundEvidence:
-    """One channel's: its voltage fell faster than leakage alone would have let it."""
+    """One channel's: its voltage fell faster than leakage alone would have let it; as in the firmware."""
 
     proven: bool = False
     kept: float = 1.0  # share of its voltage that a muscle keeps for LEAK_MS with nothing connected
@@ -153,8 +149,8 @@ class GroundProof:
     pulse_v: float = PULSE_V
     _phase: str = "charge"
     _phase_ms: int = 0
-    _charged_v: tuple[float, ...] = field(default=(0.0, 0.0))
-    _kept_v: tuple[float, ...] = field(default=(0.0, 0.0))
+    _charged_v: tuple[float, ...] = (0.0, 0.0)
+    _kept_v: tuple[float, ...] = (0.0, 0.0)
 
     @property
     def wanted_v(self) -> float:
