@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_driver.waveform_file import read_waveform
+from hasel_driver.nodes.experiment_goal import read_waveform
 from hasel_sim.swimming.boxes import Boxes, waveform_rows
 
 

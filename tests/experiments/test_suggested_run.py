@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hasel_driver.waveform import Waveform
+from hasel_driver.protocol.waveform import Waveform
 from hasel_sysid.answer.next_run import Manoeuvre
 
 

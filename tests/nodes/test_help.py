@@ -27,7 +27,7 @@ def start(entry: str, *arguments: str) -> subprocess.CompletedProcess:
 @pytest.mark.parametrize(
     ("entry", "parameter"),
     [
-        ("hasel_driver.start_driver:main", "port:="),
+        ("hasel_driver.start:driver_node", "port:="),
         ("hasel_tracker.tracker_commands:tracker_node", "source:="),
         ("hasel_sim.live.start_simulator:main", "model:=swimmer"),
         ("hasel_sysid.live.start_sysid:main", "window:=5.0"),
@@ -35,7 +35,7 @@ def start(entry: str, *arguments: str) -> subprocess.CompletedProcess:
         ("hasel_bringup.bringup_commands:recorder", "folder:=recordings"),
         ("hasel_bringup.bringup_commands:virtual_camera", "hidden:=[random]"),
         ("hasel_bringup.bringup_commands:replay", "--rate"),
-        ("hasel_driver.virtual_supply:main", "--link"),
+        ("hasel_driver.virtual.virtual_supply:main", "--link"),
     ],
 )
 def test_help_starts_nothing(entry, parameter):

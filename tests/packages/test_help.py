@@ -18,7 +18,7 @@ NODES = {
     "hasel_bringup recorder",
     "hasel_bringup virtual_camera",
     "hasel_bringup virtual_rig",
-    "hasel_driver driver_node",
+    "hasel_driver.nodes.driver_node",
     "hasel_sim simulator",
     "hasel_sysid sysid",
     "hasel_tracker tracker_node",

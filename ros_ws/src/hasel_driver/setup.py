@@ -6,7 +6,7 @@ setup(
     name=PACKAGE,
     version="0.2.0",
     packages=find_packages(exclude=["test"]),
-    package_data={PACKAGE: ["py.typed", "*.xml"]},
+    package_data={PACKAGE: ["py.typed", "nodes/*.xml"]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml", "README.md", "CHANGELOG.rst"]),
@@ -22,14 +22,14 @@ setup(
     license="Apache-2.0",
     entry_points={
         "console_scripts": [
-            "bench = hasel_driver.start_bench:main",
-            "console = hasel_driver.start_console:main",
-            "calibrate = hasel_driver.calibrate:main",
-            "driver_node = hasel_driver.start_driver:main",
-            "prove = hasel_driver.prove:main",
-            "stored_charge = hasel_driver.stored_charge:main",
-            "virtual_shvps = hasel_driver.virtual_shvps:main",
-            "virtual_supply = hasel_driver.virtual_supply:main",
+            "bench = hasel_driver.start:bench",
+            "console = hasel_driver.start:console",
+            "calibrate = hasel_driver.tools.calibrate_supply:main",
+            "driver_node = hasel_driver.start:driver_node",
+            "prove = hasel_driver.tools.prove:main",
+            "stored_charge = hasel_driver.tools.stored_charge:main",
+            "virtual_shvps = hasel_driver.virtual.virtual_shvps:main",
+            "virtual_supply = hasel_driver.virtual.virtual_supply:main",
         ]
     },
 )

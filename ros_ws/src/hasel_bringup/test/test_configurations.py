@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 import yaml
 from hasel_common.diagnostics import Part
-from hasel_driver.parameters import PARAMETERS as DRIVER
+from hasel_driver.nodes.parameters import PARAMETERS as DRIVER
 from hasel_sim.live.live_simulator import live_model
 from hasel_sim.live.simulator_node import PARAMETERS as SIMULATOR
 from hasel_sysid.live.sysid_node import PARAMETERS as SYSID

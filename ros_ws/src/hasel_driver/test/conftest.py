@@ -7,7 +7,6 @@ import time
 from pathlib import Path
 
 import pytest
-from hasel_driver.testing.bench import Bench
 from hasel_driver.testing.conversation import Conversation
 from hasel_driver.testing.hooks import (
     GROUNDING_TIMES_S,
@@ -17,7 +16,7 @@ from hasel_driver.testing.hooks import (
     pytest_runtest_protocol,  # noqa: F401
     pytest_terminal_summary,  # noqa: F401
 )
-from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Rig
+from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Bench, Rig
 
 FIRMWARE = Path(__file__).parents[1] / "firmware"
 NEEDED_FILES = {
@@ -142,7 +141,7 @@ def ros():
 @pytest.fixture
 def start_driver(ros):
     """Starts driver nodes that end with the test."""
-    from hasel_driver.testing.driver_process import DriverProcess
+    from hasel_driver.testing.ros_client import DriverProcess
 
     started = []
 
@@ -167,7 +166,7 @@ def shared_rig(rig_command):
 @pytest.fixture(scope="module")
 def shared_process(ros, shared_rig):
     """A node for all of a module's tests."""
-    from hasel_driver.testing.driver_process import DriverProcess
+    from hasel_driver.testing.ros_client import DriverProcess
 
     driver = DriverProcess(ros, shared_rig.port)
     yield driver
@@ -190,7 +189,7 @@ def provoke(driver, shared_rig, ros, grounded_in_time):
 
     Its `how` may return the moment (monotonic) [s] of the fault, where that is not the begin.
     """
-    from hasel_driver.mode import Mode
+    from hasel_driver.protocol.status import Mode
 
     def inject(how, code) -> None:
         driver.arm()

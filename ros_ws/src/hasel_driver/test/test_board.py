@@ -5,11 +5,10 @@ import random
 import time
 
 import pytest
-from hasel_driver import protocol
-from hasel_driver.ground import Ground
-from hasel_driver.mode import Mode
-from hasel_driver.virtual_board import SETTINGS
-from hasel_driver.waveform import MUSCLES, POLARITIES, SHAPES, Waveform
+from hasel_driver.protocol import wire
+from hasel_driver.protocol.status import Ground, Mode
+from hasel_driver.protocol.waveform import MUSCLES, POLARITIES, SHAPES, Waveform
+from hasel_driver.virtual.virtual_board import SETTINGS
 
 WORDS = [
     "SET",
@@ -29,10 +28,10 @@ WORDS = [
 
 def test_boots_commanded_to_ground_and_says_so(board):
     """A reset ends in STANDBY, commanded to ground but not proven, with a banner that names firmware and protocol."""
-    assert board.events[0].words[:5] == ("BOOT", *protocol.IDENTITY)
+    assert board.events[0].words[:5] == ("BOOT", *wire.IDENTITY)
     report = board.report()
     assert (report.mode, report.ground, report.fault_code) == (Mode.STANDBY, Ground.COMMANDED, 0)
-    assert board.ask("GET", "IDENTITY") == (True, "IDENTITY " + " ".join(protocol.IDENTITY))
+    assert board.ask("GET", "IDENTITY") == (True, "IDENTITY " + " ".join(wire.IDENTITY))
 
 
 @pytest.mark.parametrize("name", SETTINGS)
@@ -130,7 +129,7 @@ def test_a_garbled_command_is_a_fault_while_armed(board, rig):
     board.arm()
     board.ask("SET", "VOLTAGE", 3000, 3000)
     rig.await_live(True)
-    line = bytearray(protocol.encode_command(board.after(1), "SET", "VOLTAGE", 3000, 3000))
+    line = bytearray(wire.encode_command(board.after(1), "SET", "VOLTAGE", 3000, 3000))
     line[17] ^= 1
     board.send(bytes(line))
     assert board.reply() == (False, "CHECKSUM")
@@ -144,7 +143,7 @@ def test_a_line_that_is_no_command_is_a_fault_while_armed(board, rig, text):
     board.arm()
     board.ask("SET", "VOLTAGE", 3000, 3000)
     rig.await_live(True)
-    board.send(protocol.encode(text))
+    board.send(wire.encode(text))
     assert board.reply() == (False, "SYNTAX")
     rig.await_live(False)
     assert board.report().fault_code == 6
@@ -156,7 +155,7 @@ def test_random_bytes_neither_arm_nor_hang_the_board(board, rig):
     for _ in range(60):
         board.send(generator.randbytes(generator.randrange(1, 150)))
         words = " ".join(generator.choices(WORDS, k=generator.randrange(12)))
-        board.send(b"\n" + protocol.encode(f">{generator.randrange(300):03d} {words}"))
+        board.send(b"\n" + wire.encode(f">{generator.randrange(300):03d} {words}"))
         time.sleep(0.02)  # as long as the line needs for them
     board.send(b"\n")
     board.forget(0.5)
@@ -194,8 +193,7 @@ def test_reversal_breaks_before_it_makes(firmware_rig, converse, dead_time_ms):
 
 
 @pytest.mark.parametrize(
-    ("shape", "polarity", "muscles"),
-    list(zip(SHAPES, ("alternating", *POLARITIES), MUSCLES, strict=True)),
+    ("shape", "polarity", "muscles"), list(zip(SHAPES, ("alternating", *POLARITIES), MUSCLES, strict=True))
 )
 def test_waveform_on_the_board_is_the_documented_one(board, shape, polarity, muscles):
     """Asked-for voltages in the telemetry follow the reference waveform, to its end and back to ARMED."""

@@ -3,9 +3,8 @@
 import time
 
 import pytest
-from hasel_driver import protocol
-from hasel_driver.ground import Ground
-from hasel_driver.mode import Mode
+from hasel_driver.protocol import wire
+from hasel_driver.protocol.status import Ground, Mode
 
 NOT_GROUNDED, OVERVOLTAGE, INTERLOCK = 8, 7, 4
 
@@ -68,7 +67,7 @@ def test_a_dead_tick_is_noticed_by_the_watchdog(board, rig, how):
     dead_s = time.monotonic()
     rig.say(how)
     for index in range(30):
-        board.send(protocol.encode_command(board.after(index + 1), "PING"))
+        board.send(wire.encode_command(board.after(index + 1), "PING"))
         time.sleep(0.02)
         if not rig.live:
             break
@@ -178,10 +177,7 @@ def test_calibration_corrects_output_and_monitor_and_survives_a_reset(board, rig
     board.listen(0.05)
     words = "CALIBRATION upper 10309 0 9615 0"
     assert board.ask("SET", *words.split()) == (True, words)
-    assert ask(board, "SET CALIBRATION lower 20000 0 0 9999") == (
-        True,
-        "CALIBRATION lower 11000 0 9000 150",
-    )
+    assert ask(board, "SET CALIBRATION lower 20000 0 0 9999") == (True, "CALIBRATION lower 11000 0 9000 150")
     ask(board, "SET CALIBRATION lower 10000 0 10000 0")
     board.events.clear()
     rig.say("reset")

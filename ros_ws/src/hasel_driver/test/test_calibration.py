@@ -5,12 +5,9 @@ import time
 from contextlib import contextmanager
 
 import pytest
-from hasel_driver import calibrate
-from hasel_driver.calibration import Calibration
-from hasel_driver.calibration_table import CalibrationTable, Point
-from hasel_driver.errors import LimitError, RefusedError
-from hasel_driver.fault_store import FaultStore
-from hasel_driver.faults import Fault, FaultCode
+from hasel_driver.protocol.calibration import Calibration, CalibrationTable, Point
+from hasel_driver.protocol.faults import Fault, FaultCode, FaultStore, LimitError, RefusedError
+from hasel_driver.tools import calibrate_supply
 
 
 def table(present: Calibration, voltages=(1000.0, 3000.0, 5000.0)) -> CalibrationTable:
@@ -44,19 +41,19 @@ def test_a_table_that_proves_nothing_is_refused():
 
 def test_the_procedure_makes_board_and_probe_agree(rig, monkeypatch):
     """Measured, stored, measured again: errors of 100 V and more become less than the monitor's step or two."""
-    monkeypatch.setattr(calibrate, "SETTLING_S", 0.3)
+    monkeypatch.setattr(calibrate_supply, "SETTLING_S", 0.3)
     rig.say("miscalibrate")
     voltages_v = (1000.0, 3000.0, 5000.0)
 
     def run() -> CalibrationTable:
-        return calibrate.measure(
+        return calibrate_supply.measure(
             rig.port, "upper", voltages_v, lambda _: rig.ask("output")[0], lambda _: True
         )
 
     before = run()
     assert abs(before.points[-1].probe_v - 5000.0) > 100
     corrections = before.corrections()
-    assert calibrate.store(rig.port, "upper", corrections) == corrections
+    assert calibrate_supply.store(rig.port, "upper", corrections) == corrections
     for point in run().points:
         assert point.probe_v == pytest.approx(point.asked_v, abs=15)
         assert point.monitor_v == pytest.approx(point.probe_v, abs=25)
@@ -65,9 +62,9 @@ def test_the_procedure_makes_board_and_probe_agree(rig, monkeypatch):
 
 def test_an_empty_answer_stops(rig, monkeypatch, capsys):
     """Nothing is stored, and the output is grounded."""
-    monkeypatch.setattr(calibrate, "SETTLING_S", 0.1)
+    monkeypatch.setattr(calibrate_supply, "SETTLING_S", 0.1)
     monkeypatch.setattr("builtins.input", lambda _: "")
-    assert calibrate.main(["--port", rig.port, "--channel", "lower"]) == 1
+    assert calibrate_supply.main(["--port", rig.port, "--channel", "lower"]) == 1
     assert "nothing was stored" in capsys.readouterr().err
     rig.await_live(False)
 
@@ -75,12 +72,12 @@ def test_an_empty_answer_stops(rig, monkeypatch, capsys):
 def test_nothing_is_put_on_without_leave_nor_above_the_maximum(rig):
     """Each voltage is asked for first; one above the maximum is refused before anything is armed."""
     with pytest.raises(RefusedError, match="at most 6000 V"):
-        calibrate.measure(rig.port, "upper", (1000.0, 9800.0), lambda _: 0.0, lambda _: True)
+        calibrate_supply.measure(rig.port, "upper", (1000.0, 9800.0), lambda _: 0.0, lambda _: True)
     with pytest.raises(RefusedError, match="Stopped"):
-        calibrate.measure(rig.port, "upper", (1000.0, 2000.0, 3000.0), lambda _: 0.0, lambda _: False)
+        calibrate_supply.measure(rig.port, "upper", (1000.0, 2000.0, 3000.0), lambda _: 0.0, lambda _: False)
     assert max(rig.ask("output")[4:]) < 50
     with pytest.raises(RefusedError, match="Stopped"):
-        calibrate.measure(
+        calibrate_supply.measure(
             rig.port, "upper", (1000.0, 2000.0, 3000.0), lambda _: 0.0, lambda asked: asked < 1000
         )
     assert 200 < max(rig.ask("output")[4:]) < 550  # the proof of ground, with leave
@@ -91,14 +88,14 @@ def test_a_fault_that_the_node_left_counts_here_too(rig, tmp_path, capsys):
     """A stop that nobody cleared: nothing is armed."""
     FaultStore(str(tmp_path), rig.port).keep(Fault(FaultCode.EMERGENCY_STOP, "by service"))
     words = ["--port", rig.port, "--channel", "upper", "--state-folder", str(tmp_path)]
-    assert calibrate.main(words) == 1
+    assert calibrate_supply.main(words) == 1
     assert "left a fault (emergency stop: by service): clear it there first" in capsys.readouterr().err
 
 
 def test_without_an_answer_the_output_is_grounded(rig, monkeypatch):
     """Whoever asked has gone: 0 V, and a late answer stores nothing."""
-    monkeypatch.setattr(calibrate, "SETTLING_S", 0.3)
-    monkeypatch.setattr(calibrate, "PATIENCE_S", 0.3)
+    monkeypatch.setattr(calibrate_supply, "SETTLING_S", 0.3)
+    monkeypatch.setattr(calibrate_supply, "PATIENCE_S", 0.3)
     dead_s: list[float] = []
 
     def probe(_: float) -> float:
@@ -107,13 +104,13 @@ def test_without_an_answer_the_output_is_grounded(rig, monkeypatch):
         return 3000.0
 
     with pytest.raises(RefusedError, match="Nobody answered"):
-        calibrate.measure(rig.port, "upper", (3000.0, 4000.0, 5000.0), probe, lambda _: True)
+        calibrate_supply.measure(rig.port, "upper", (3000.0, 4000.0, 5000.0), probe, lambda _: True)
     assert dead_s[0] < 0.8
 
 
 def test_a_stop_is_heard_while_the_probe_is_read(rig, monkeypatch):
     """From ROS or elsewhere: grounded at once, and nothing is stored."""
-    monkeypatch.setattr(calibrate, "SETTLING_S", 0.3)
+    monkeypatch.setattr(calibrate_supply, "SETTLING_S", 0.3)
     stops = []
 
     @contextmanager
@@ -128,7 +125,9 @@ def test_a_stop_is_heard_while_the_probe_is_read(rig, monkeypatch):
         return 3000.0
 
     with pytest.raises(RefusedError, match="emergency stop"):
-        calibrate.measure(rig.port, "upper", (3000.0, 4000.0, 5000.0), probe, lambda _: True, listen=listen)
+        calibrate_supply.measure(
+            rig.port, "upper", (3000.0, 4000.0, 5000.0), probe, lambda _: True, listen=listen
+        )
 
 
 @pytest.mark.parametrize(
@@ -137,7 +136,7 @@ def test_a_stop_is_heard_while_the_probe_is_read(rig, monkeypatch):
 def test_no_number_is_one_sentence(words, capsys):
     """Before a port is opened."""
     with pytest.raises(SystemExit) as ended:
-        calibrate.main(["--port", "/dev/no-such-port", "--channel", "upper", *words])
+        calibrate_supply.main(["--port", "/dev/no-such-port", "--channel", "upper", *words])
     assert ended.value.code == 2
     assert "--voltages" in capsys.readouterr().err.splitlines()[-1]
 
@@ -145,9 +144,9 @@ def test_no_number_is_one_sentence(words, capsys):
 def test_the_stops_of_ros_are_heard():
     """By topic and by service; the service's answer proves nothing, and says so."""
     pytest.importorskip("rclpy", reason="ROS 2 is not there")
-    from hasel_driver.graph_names import UNNAMED
+    from hasel_driver.nodes.middleware import UNNAMED
     from hasel_driver.testing.ros_client import RosClient
-    from hasel_driver.tool_stops import stops_of_ros
+    from hasel_driver.tools.calibrate_supply import stops_of_ros
 
     heard: list[str] = []
     client = RosClient()
@@ -167,7 +166,7 @@ def test_the_stops_of_another_namespace_are_heard_where_it_is_given(monkeypatch,
     """As any node takes it; what is heard is said, and what is there and is not."""
     pytest.importorskip("rclpy", reason="ROS 2 is not there")
     from hasel_driver.testing.ros_client import LATCHED, another_node
-    from hasel_driver.tool_stops import stops_of_ros
+    from hasel_driver.tools.calibrate_supply import stops_of_ros
     from std_msgs.msg import Bool
 
     heard: list[str] = []
@@ -186,5 +185,5 @@ def test_arguments_for_ros_are_left_to_it(rig, monkeypatch, capsys):
     """The namespace is no unknown option."""
     monkeypatch.setattr("builtins.input", lambda _: "")
     words = ["--port", rig.port, "--channel", "lower", "--ros-args", "-r", "__ns:=/rig2"]
-    assert calibrate.main(words) == 1
+    assert calibrate_supply.main(words) == 1
     assert "nothing was stored" in capsys.readouterr().err

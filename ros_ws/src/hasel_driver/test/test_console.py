@@ -14,11 +14,11 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
 pytest.importorskip("hasel_interfaces", reason="the workspace is not built")
 
-from hasel_driver.console import ramp
-from hasel_driver.faults import FaultCode
-from hasel_driver.mode import Mode
+from hasel_driver.protocol.faults import FaultCode
+from hasel_driver.protocol.status import Mode
+from hasel_driver.tools.console import ramp
 
-CONSOLE = [sys.executable, "-m", "hasel_driver.console"]
+CONSOLE = [sys.executable, "-c", "from hasel_driver.start import console; raise SystemExit(console())"]
 
 
 def test_a_ramp_is_straight_and_keeps_its_rate():
@@ -48,7 +48,7 @@ def test_a_script_arms_ramps_and_disarms(start_driver, virtual_rig, ros):
 
 def test_another_namespace_is_reached(virtual_rig, ros, tmp_path):
     """The console of a second rig arms that one."""
-    driver = [sys.executable, "-m", "hasel_driver.driver_node", "--ros-args", "-r", "__ns:=/rig2"]
+    driver = [sys.executable, "-m", "hasel_driver.nodes.driver_node", "--ros-args", "-r", "__ns:=/rig2"]
     for word in (f"port:={virtual_rig.port}", "discovery_time:=0.0", f"state_folder:={tmp_path}"):
         driver += ["-p", word]
     console = [*CONSOLE, "--namespace", "/rig2"]

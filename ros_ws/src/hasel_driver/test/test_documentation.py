@@ -4,11 +4,11 @@ import re
 from pathlib import Path
 
 import pytest
-from hasel_driver.checks import CHECKS
-from hasel_driver.faults import EXPLANATIONS, FaultCode
-from hasel_driver.mode import Mode
-from hasel_driver.parameters import PARAMETERS
-from hasel_driver.virtual_board import SETTINGS
+from hasel_driver.nodes.parameters import PARAMETERS
+from hasel_driver.protocol.faults import FaultCode
+from hasel_driver.protocol.status import Mode
+from hasel_driver.safety.supply_checks import CHECKS
+from hasel_driver.virtual.virtual_board import SETTINGS
 
 PACKAGE = Path(__file__).parents[1]
 DOCS = Path(__file__).resolve().parents[4] / "docs"
@@ -47,7 +47,7 @@ def test_every_parameter_with_default_range_unit_and_meaning():
 
 def test_every_fault():
     """The fault table is the code's table."""
-    expected = [[str(int(code)), code.name, EXPLANATIONS[code]] for code in FaultCode if code]
+    expected = [[str(int(code)), code.name, code.explanation] for code in FaultCode if code]
     assert table(PAGE, "Faults") == expected
 
 

@@ -7,10 +7,11 @@ import time
 from functools import partial
 
 import pytest
-from hasel_driver.faults import FaultCode
+from hasel_driver.protocol.faults import FaultCode
 
 STANDBY, ARMED, ACTIVE, FAULT = range(4)
 GROUNDED_WITHIN_S = 0.5
+PATIENCE_S = 10.0
 CONFIGURE, CLEANUP, ACTIVATE, DEACTIVATE, UNKNOWN = 1, 2, 3, 4, 77
 DISCHARGED_WITHIN_S = 0.02  # of the contact that the board reports: 0.5 nF over 2 MΩ, 10 kV to 50 V in 5.3 ms
 
@@ -195,11 +196,30 @@ def test_live_output_begins_with_a_zero_command(driver, shared_rig, ros):
         thread.join()
 
 
+def look_on() -> None:
+    """Join with a context of its own until it has heard `/hasel/state`, as `ros2 topic echo --once` does."""
+    import rclpy
+    from hasel_common.managed_node import node_alone
+    from hasel_interfaces.msg import SupplyState
+    from rclpy.executors import SingleThreadedExecutor
+
+    heard: list[SupplyState] = []
+    node = node_alone("onlooker")
+    node.create_subscription(SupplyState, "/hasel/state", heard.append, 10)
+    executor = SingleThreadedExecutor(context=node.context)
+    executor.add_node(node)
+    end_s = time.monotonic() + PATIENCE_S
+    while not heard and time.monotonic() < end_s:
+        executor.spin_once(timeout_sec=0.1)
+    executor.shutdown()
+    node.destroy_node()
+    rclpy.try_shutdown(context=node.context)
+    assert heard, f"nothing was heard within {PATIENCE_S} s"
+
+
 @pytest.mark.rounds(2, 40)
 def test_nodes_that_come_and_go_do_not_hold_it_up(driver, shared_rig, ros, rounds):
     """Discovery, which can make the middleware wait, neither stops the heartbeat nor the commands."""
-    from hasel_driver.testing.onlooker import look_on
-
     driver.arm()
     with ros.commanding():
         ros.wait(lambda: shared_rig.live)

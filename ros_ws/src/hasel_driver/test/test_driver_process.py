@@ -10,7 +10,7 @@ import sys
 import time
 
 import pytest
-from hasel_driver.faults import FaultCode
+from hasel_driver.protocol.faults import FaultCode
 
 STANDBY, ARMED, ACTIVE, FAULT = range(4)
 
@@ -274,7 +274,7 @@ def test_topic_is_obeyed_by_a_driver_that_starts_later(start_driver, virtual_rig
 
 PARENT = """
 import subprocess, sys, time
-subprocess.Popen([sys.executable, "-m", "hasel_driver.driver_node", "--ros-args", *sys.argv[1:]])
+subprocess.Popen([sys.executable, "-m", "hasel_driver.nodes.driver_node", "--ros-args", *sys.argv[1:]])
 time.sleep(1000)
 """
 
@@ -339,7 +339,7 @@ def test_a_parameter_file_that_is_not_there_is_one_sentence():
     command = [
         sys.executable,
         "-m",
-        "hasel_driver.driver_node",
+        "hasel_driver.nodes.driver_node",
         "--ros-args",
         "--params-file",
         "/no/such.yaml",

@@ -1,10 +1,91 @@
-"""How replies are judged: each refusal under the fault that its reason means, and answers to others found."""
+"""How the board's clock, its test pulse and its replies are judged."""
+
+import random
+import re
 
 import pytest
-from hasel_driver import protocol
-from hasel_driver.faults import FaultCode, SupplyFaultError
-from hasel_driver.hasel_supply import HaselSupply
-from hasel_driver.limits import Limits
+from hasel_driver.protocol import wire
+from hasel_driver.protocol.faults import FaultCode, RefusedError, SupplyFaultError
+from hasel_driver.protocol.limits import Limits
+from hasel_driver.protocol.status import Ground
+from hasel_driver.supplies.hasel_supply import DeviceClock, HaselSupply
+from hasel_driver.testing.hooks import PUNCTUALITY
+from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Bench, Rig
+
+
+def test_random_delays_are_removed():
+    """With delays of up to 20 ms the stamps are right to a millisecond, once a quick line has been seen."""
+    clock, generator = DeviceClock(), random.Random(1)
+    errors = []
+    for index in range(1000):
+        device_s = index * 0.01
+        arrival_s = 500.0 + device_s + 0.0005 + generator.expovariate(1 / 0.005)
+        errors.append(clock.host_time(int(device_s * 1e6), arrival_s) - (500.0 + device_s))
+    assert max(map(abs, errors[200:])) < 0.001
+
+
+def test_follows_a_drifting_resonator():
+    """A board 0.5 % fast for ten minutes is followed to better than 100 ms."""
+    clock = DeviceClock()
+    for index in range(60_000):
+        arrival_s = index * 0.01
+        stamp_s = clock.host_time(int(arrival_s * 1.005e6), arrival_s)
+    assert stamp_s == pytest.approx(arrival_s, abs=0.1)
+
+
+def test_the_counter_may_overflow():
+    """After 71 minutes the board's counter starts again; time goes on."""
+    clock = DeviceClock()
+    before = clock.host_time(2**32 - 5000, 100.0)
+    assert clock.host_time(5000, 100.01) == pytest.approx(before + 0.01)
+
+
+def test_stamps_increase_and_never_lie_in_the_future():
+    """Whatever the delays, stamps keep their order and none is later than its arrival."""
+    clock, generator, last = DeviceClock(), random.Random(2), -1.0
+    arrival_s = 0.0
+    for index in range(500):
+        arrival_s = max(arrival_s + 1e-4, index * 0.01 + generator.choice([0.0, 0.001, 0.3]))
+        stamp_s = clock.host_time(index * 10_000, arrival_s)
+        assert last < stamp_s <= arrival_s
+        last = stamp_s
+
+
+NO_MUSCLE_NF = "0.001"
+
+
+@pytest.fixture
+def bare_rig(rig_command):
+    """A supply of each kind with nothing but its own leads on the output."""
+    option = ["--capacitance-nf"] if rig_command == VIRTUAL_SUPPLY else []
+    rig = Rig([*rig_command, *option, NO_MUSCLE_NF], PUNCTUALITY.note)
+    yield rig
+    rig.close()
+
+
+def test_where_no_muscle_is_connected_the_fault_says_so(bare_rig):
+    """At arming, and at each clearing that fails; proven it is not, and that is not said."""
+    bench = Bench(bare_rig)
+    try:
+        bench.call(bench.supervisor.arm)
+        assert bench.wait_until(lambda: bench.supervisor.fault is not None)
+        told = r"saw no load \(upper at most .* µA, lower at most .* µA\): look for a muscle that is not connected"
+        assert bench.supervisor.fault.code is FaultCode.NOT_GROUNDED
+        assert re.search(told, str(bench.supervisor.fault))
+        with pytest.raises(RefusedError, match=told):
+            bench.call(bench.supervisor.clear_fault)
+        assert Ground.PROVEN not in {status.ground for status in bench.statuses}
+    finally:
+        bench.close()
+
+
+def test_where_a_contact_fails_on_a_muscle_nothing_is_said_of_the_load(bench):
+    """The muscle drew its current."""
+    bench.rig.say("unground")
+    bench.call(bench.supervisor.arm)
+    assert bench.wait_until(lambda: bench.supervisor.fault is not None)
+    assert bench.supervisor.fault.code is FaultCode.NOT_GROUNDED
+    assert "no load" not in str(bench.supervisor.fault)
 
 
 class FakePort:
@@ -32,7 +113,7 @@ def answer():
     supply.set_voltage((3000.0, -2000.0))
 
     def give(*texts: str) -> HaselSupply:
-        port.answers = b"".join(protocol.encode(text) for text in texts)
+        port.answers = b"".join(wire.encode(text) for text in texts)
         supply.service(0.0, heartbeat=False)
         return supply
 

@@ -3,12 +3,11 @@
 import time
 
 import pytest
-from hasel_driver.errors import RefusedError
-from hasel_driver.faults import FaultCode
-from hasel_driver.ground import Ground
-from hasel_driver.mode import Mode
-from hasel_driver.testing.bench import Bench
+from hasel_driver.protocol.faults import FaultCode, RefusedError
+from hasel_driver.protocol.status import Ground, Mode
 from hasel_driver.testing.kinds import KINDS, UNSEEN, try_kind
+from hasel_driver.testing.rig import Bench
+from hasel_driver.testing.walk import Walk
 
 ALL = [*KINDS, *UNSEEN]
 
@@ -111,3 +110,12 @@ def test_auxiliary_contacts_are_read_where_they_are_wired(rig, converse, how):
     board.listen(0.2)
     report = board.report()
     assert (report.ground, report.fault_code) == (Ground.NOT, FaultCode.NOT_GROUNDED)
+
+
+@pytest.mark.rounds(12, 240)
+def test_a_random_walk_says_nothing_untrue_and_leaves_nothing_live(bench, rounds):
+    """No word of grounded above 200 V; nothing live half a second after a stop's last chance. `rounds`: seconds."""
+    walk = Walk(bench, seed=rounds)
+    walk.run(float(rounds))
+    assert walk.live > 0.05 * walk.looks  # or nothing would be tried
+    assert walk.wrong == [], "\n".join(walk.log)

@@ -3,8 +3,8 @@
 import math
 
 import pytest
-from hasel_driver.errors import LimitError
-from hasel_driver.limits import Limits, clip
+from hasel_driver.protocol.faults import LimitError
+from hasel_driver.protocol.limits import Limits, clip
 from hypothesis import given
 from hypothesis import strategies as st
 

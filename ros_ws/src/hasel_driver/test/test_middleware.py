@@ -6,8 +6,8 @@ import pytest
 
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
 
-from hasel_driver import middleware
-from hasel_driver.middleware import LOCALHOST_ONLY, LOOPBACK, PEERS, PROFILES, RANGE, prepare
+from hasel_driver.nodes import middleware
+from hasel_driver.nodes.middleware import LOCALHOST_ONLY, LOOPBACK, PEERS, PROFILES, RANGE, prepare
 
 TRANSPORTS = "FASTDDS_BUILTIN_TRANSPORTS"
 STANDBY, LOOPBACK_ADDRESS = 0, "0100007F"

@@ -7,9 +7,9 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
 pytest.importorskip("hasel_interfaces", reason="the workspace is not built")
 
-from hasel_driver import prove
 from hasel_driver.testing import neighbours
 from hasel_driver.testing.kinds import KINDS, Trial
+from hasel_driver.tools import prove
 
 
 def test_every_kind_is_a_row_and_what_is_wrong_is_told(monkeypatch, capsys):

@@ -1,8 +1,8 @@
 """The name of a virtual port is a link, and nothing else is touched."""
 
 import pytest
-from hasel_driver.errors import PortError
-from hasel_driver.pseudo_terminal import PseudoTerminal
+from hasel_driver.protocol.faults import PortError
+from hasel_driver.virtual.pseudo_terminal import PseudoTerminal
 
 
 @pytest.mark.parametrize("what", ["file", "folder", "another link"])

@@ -9,10 +9,10 @@ import time
 from pathlib import Path
 
 import pytest
-from hasel_driver.errors import LimitError, PortError, RefusedError
-from hasel_driver.mode import Mode
-from hasel_driver.parameters import PARAMETERS
-from hasel_driver.supply_link import SupplyLink
+from hasel_driver.nodes.parameters import PARAMETERS
+from hasel_driver.protocol.faults import LimitError, PortError, RefusedError
+from hasel_driver.protocol.status import Mode
+from hasel_driver.safety.supply_link import SupplyLink
 
 DRIVE_V = (3000.0, -2000.0)
 HELD_S = 0.25
@@ -119,8 +119,8 @@ def test_a_killed_node_leaves_neither_voltage_nor_process(virtual_rig, tmp_path,
     """The end of the socket is enough."""
     script = f"""
 import time
-from hasel_driver.parameters import PARAMETERS
-from hasel_driver.supply_link import SupplyLink
+from hasel_driver.nodes.parameters import PARAMETERS
+from hasel_driver.safety.supply_link import SupplyLink
 chosen = {{each.name: each.default for each in PARAMETERS}}
 link = SupplyLink(chosen | {{"port": {virtual_rig.port!r}, "state_folder": {str(tmp_path)!r}}}, lambda _: None)
 print(link.process_id, flush=True)
@@ -153,3 +153,13 @@ def test_what_keeps_the_supply_from_opening_is_raised_in_the_node(open_link):
         open_link(port="/nowhere")
     with pytest.raises(LimitError, match="second_port"):
         open_link(backend="shvps")
+
+
+def test_the_process_imports_no_ros():
+    """What talks to the supply starts quickly, and waits for nothing that the node's middleware does."""
+    program = "import sys, hasel_driver.safety.safety_process; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    packages = {name.split(".")[0] for name in done.stdout.split()}
+    assert not packages & {"rclpy", "hasel_interfaces", "hasel_recording", "numpy", "yaml"}
+    others = [name for name in done.stdout.split() if name.startswith("hasel_driver.")]
+    assert not [name for name in others if name.split(".")[1] not in ("protocol", "supplies", "safety")]

@@ -9,12 +9,15 @@ import xml.etree.ElementTree as Tree
 from pathlib import Path
 
 import pytest
-from hasel_driver.driver_services import SERVICES
-from hasel_driver.mode import Mode
+from hasel_driver.nodes.driver_services import SERVICES
+from hasel_driver.protocol.status import Mode
 
 POLICY = Path(__file__).parents[1] / "security" / "policy.xml"
 NAMESPACE = "/hasel/"
 DISCOVERY_S = 5.0
+NODE = [sys.executable, "-m", "hasel_driver.nodes.driver_node", "--ros-args", "--enclave"]
+START = "from hasel_driver.start import console; raise SystemExit(console())"
+CONSOLE = [sys.executable, "-c", START, "--ros-args", "--enclave"]
 
 
 def names(enclave: str, kind: str, permission: str) -> set[str]:
@@ -112,7 +115,7 @@ def test_without_usable_keys_the_driver_ends(tmp_path, virtual_rig, keys):
     if keys == "worthless" and shutil.which("openssl") is None:
         pytest.skip("needs openssl")
     folder = worthless_keys(tmp_path / "keys") if keys == "worthless" else tmp_path
-    command = [sys.executable, "-m", "hasel_driver.driver_node", "--ros-args", "--enclave", "/hasel/driver"]
+    command = [*NODE, "/hasel/driver"]
     command += ["-p", f"port:={virtual_rig.port}", "-p", f"state_folder:={tmp_path}"]
     done = run([*command, "-p", f"history_file:={tmp_path}/history.jsonl"], protected(folder))
     assert (done.returncode, "Traceback" in done.stderr) == (1, False), done.stderr
@@ -122,7 +125,7 @@ def test_without_usable_keys_the_driver_ends(tmp_path, virtual_rig, keys):
 
 def test_without_usable_keys_the_console_ends(tmp_path):
     """With a sentence, and with the words that `ros2 run` hands on to ROS."""
-    words = [sys.executable, "-m", "hasel_driver.console", "--ros-args", "--enclave", "/hasel/commander"]
+    words = [*CONSOLE, "/hasel/commander"]
     done = run(words, protected(tmp_path))
     assert (done.returncode, "Traceback" in done.stderr) == (1, False), done.stderr
     assert done.stderr.startswith("console: ")
@@ -149,23 +152,22 @@ def test_keys_are_made_of_the_policy(keys):
 
 def test_only_the_commanders_key_arms(keys, tmp_path, virtual_rig):
     """The driver under its key: who has the observer's, or none, does not arm it."""
-    driver = [sys.executable, "-m", "hasel_driver.driver_node", "--ros-args", "--enclave", "/hasel/driver"]
+    driver = [*NODE, "/hasel/driver"]
     for word in (
         f"port:={virtual_rig.port}",
         f"state_folder:={tmp_path}",
         f"history_file:={tmp_path}/h.jsonl",
     ):
         driver += ["-p", word]
-    console = [sys.executable, "-m", "hasel_driver.console", "--ros-args", "--enclave"]
     with subprocess.Popen(driver, env=protected(keys)) as process:
         try:
             time.sleep(DISCOVERY_S)
             assert process.poll() is None
-            unprotected = run([*console, "/"], dict(os.environ), "arm\nquit\n")
-            observer = run([*console, "/hasel/observer"], protected(keys), "arm\nquit\n")
+            unprotected = run([*CONSOLE, "/"], dict(os.environ), "arm\nquit\n")
+            observer = run([*CONSOLE, "/hasel/observer"], protected(keys), "arm\nquit\n")
             assert "Armed" not in unprotected.stdout + observer.stdout
             assert not virtual_rig.live
-            commander = run([*console, "/hasel/commander"], protected(keys), "arm\nquit\n")
+            commander = run([*CONSOLE, "/hasel/commander"], protected(keys), "arm\nquit\n")
             assert "Armed" in commander.stdout, commander.stderr
         finally:
             process.terminate()

@@ -3,9 +3,9 @@
 import threading
 
 import pytest
-from hasel_driver.faults import FaultCode
-from hasel_driver.pseudo_terminal import PseudoTerminal
-from hasel_driver.virtual_shvps import VirtualShvps, serve
+from hasel_driver.protocol.faults import FaultCode
+from hasel_driver.virtual.pseudo_terminal import PseudoTerminal
+from hasel_driver.virtual.virtual_shvps import VirtualShvps, serve
 
 STANDBY, ARMED, ACTIVE, FAULT = range(4)
 UNPROVEN = "this kind cannot prove its output grounded"

@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 import pytest
-from hasel_driver.stored_charge import StoredCharge
+from hasel_driver.tools.stored_charge import StoredCharge
 
 
 def test_the_published_bound():
@@ -20,7 +20,7 @@ def test_the_published_bound():
 @pytest.mark.parametrize(("capacitance", "word"), [("1", "below"), ("10", "ABOVE")])
 def test_command_says_on_which_side_of_the_bound(capacitance, word):
     """The command prints charge, energy, verdict and waiting time."""
-    command = [sys.executable, "-m", "hasel_driver.stored_charge", "--capacitance-nf", capacitance]
+    command = [sys.executable, "-m", "hasel_driver.tools.stored_charge", "--capacitance-nf", capacitance]
     answer = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     assert f"{word} the 45 µC" in answer
 
@@ -30,7 +30,7 @@ def test_command_says_on_which_side_of_the_bound(capacitance, word):
 )
 def test_command_refuses_nonsense_in_one_sentence(option):
     """Values outside the rule's range are no figure at all."""
-    command = [sys.executable, "-m", "hasel_driver.stored_charge", *option]
+    command = [sys.executable, "-m", "hasel_driver.tools.stored_charge", *option]
     answer = subprocess.run(command, capture_output=True, text=True, check=False)
     assert answer.returncode != 0
     assert answer.stderr.count("\n") == 1

@@ -4,14 +4,12 @@ import math
 from dataclasses import replace
 
 import pytest
-from hasel_driver.errors import RefusedError
-from hasel_driver.faults import Fault, FaultCode, SupplyFaultError
-from hasel_driver.ground import Ground
-from hasel_driver.limits import Limits
-from hasel_driver.mode import Mode
-from hasel_driver.supervisor import Supervisor
-from hasel_driver.supply import Capabilities, Connection, Reading, Supply
-from hasel_driver.waveform import Waveform
+from hasel_driver.protocol.faults import Fault, FaultCode, RefusedError, SupplyFaultError
+from hasel_driver.protocol.limits import Limits
+from hasel_driver.protocol.status import Ground, Mode
+from hasel_driver.protocol.waveform import Waveform
+from hasel_driver.safety.supervisor import Supervisor
+from hasel_driver.supplies.supply import Capabilities, Connection, Reading, Supply
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

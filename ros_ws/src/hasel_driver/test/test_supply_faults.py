@@ -6,12 +6,11 @@ import random
 import time
 
 import pytest
-from hasel_driver import protocol
-from hasel_driver.errors import RefusedError
-from hasel_driver.faults import Fault, FaultCode
-from hasel_driver.limits import Limits, clip
-from hasel_driver.mode import Mode
-from hasel_driver.waveform import Waveform
+from hasel_driver.protocol import wire
+from hasel_driver.protocol.faults import Fault, FaultCode, RefusedError
+from hasel_driver.protocol.limits import Limits, clip
+from hasel_driver.protocol.status import Mode
+from hasel_driver.protocol.waveform import Waveform
 
 LIMIT_V = Limits().maximum_voltage_v
 WAVEFORM = Waveform("box", 3000.0, 0.2, 1, polarity="alternating")
@@ -20,7 +19,7 @@ WAVEFORM = Waveform("box", 3000.0, 0.2, 1, polarity="alternating")
 def second_master(bench):
     """Another program writes a valid command to the same port."""
     descriptor = os.open(bench.rig.port, os.O_RDWR | os.O_NOCTTY)
-    os.write(descriptor, protocol.encode_command(random.randrange(256), "SET", "VOLTAGE", 1000, 1000))
+    os.write(descriptor, wire.encode_command(random.randrange(256), "SET", "VOLTAGE", 1000, 1000))
     os.close(descriptor)
 
 

@@ -5,10 +5,9 @@ import math
 import random
 
 import pytest
-from hasel_driver.faults import Fault, FaultCode
-from hasel_driver.mode import Mode
-from hasel_driver.status import SupplyStatus
-from hasel_driver.supply_history import SupplyHistory
+from hasel_driver.nodes.supply_history import SupplyHistory
+from hasel_driver.protocol.faults import Fault, FaultCode
+from hasel_driver.protocol.status import Mode, SupplyStatus
 
 BREAKDOWN = Fault(FaultCode.OVERCURRENT, "test")
 

@@ -3,13 +3,11 @@
 import time
 
 import pytest
-from hasel_driver.errors import RefusedError
-from hasel_driver.faults import FaultCode
-from hasel_driver.limits import Limits
-from hasel_driver.mode import Mode
-from hasel_driver.testing.bench import Bench
+from hasel_driver.protocol.faults import FaultCode, RefusedError
+from hasel_driver.protocol.limits import Limits
+from hasel_driver.protocol.status import Mode
 from hasel_driver.testing.hooks import PUNCTUALITY
-from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Rig
+from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Bench, Rig
 
 
 @pytest.mark.parametrize("how", ["weld", "unground"])

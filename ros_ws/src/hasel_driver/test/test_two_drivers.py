@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
 pytest.importorskip("hasel_interfaces", reason="the workspace is not built")
 
-from hasel_driver.mode import Mode
+from hasel_driver.protocol.status import Mode
 from hasel_driver.testing.hooks import PUNCTUALITY
 from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Rig
 

@@ -1,9 +1,9 @@
 """The virtual board under any conversation at all, in simulated time."""
 
-from hasel_driver import protocol
-from hasel_driver.mode import Mode
-from hasel_driver.virtual_board import VirtualBoard
-from hasel_driver.virtual_commands import receive
+from hasel_driver.protocol import wire
+from hasel_driver.protocol.status import Mode
+from hasel_driver.virtual.virtual_board import VirtualBoard
+from hasel_driver.virtual.virtual_commands import receive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -49,15 +49,15 @@ def test_is_live_only_while_armed_and_heard(steps):
     for kind, value in steps:
         if kind == "command":
             sequence += 1
-            receive(board, protocol.encode_command(sequence % 256, *value.split()))
+            receive(board, wire.encode_command(sequence % 256, *value.split()))
             armed = armed or value == "ARM"
             silent_ms = 0
         elif kind == "bytes":
             receive(board, value)
         elif kind == "line":
-            receive(board, protocol.encode(value))
+            receive(board, wire.encode(value))
         elif kind == "words":
-            receive(board, protocol.encode(f">{(sequence + 1) % 256:03d} {value}"))
+            receive(board, wire.encode(f">{(sequence + 1) % 256:03d} {value}"))
             sequence, silent_ms = sequence + 1, 0
             armed = armed or value.startswith("ARM")
         elif kind == "reset":
@@ -83,7 +83,7 @@ def test_a_reset_forgets_everything_but_the_charge():
     """After a reset the board is grounded, disarmed and at its default settings."""
     board = VirtualBoard()
     for sequence, words in enumerate(("SET MAXIMUM 3000", "ARM", "SET VOLTAGE 3000 0")):
-        receive(board, protocol.encode_command(sequence, *words.split()))
+        receive(board, wire.encode_command(sequence, *words.split()))
         for _ in range(150):
             board.tick()
     assert board.muscles[0].voltage_v > 2990

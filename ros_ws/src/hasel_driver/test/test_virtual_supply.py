@@ -4,9 +4,8 @@ import os
 import signal
 import time
 
-from hasel_driver.mode import Mode
-from hasel_driver.testing.bench import Bench
-from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Rig
+from hasel_driver.protocol.status import Mode
+from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Bench, Rig
 
 HELD_UP_S = 0.3
 TIMES = 5

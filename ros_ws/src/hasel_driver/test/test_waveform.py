@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from hasel_driver.errors import LimitError
-from hasel_driver.waveform import Waveform
+from hasel_driver.protocol.faults import LimitError
+from hasel_driver.protocol.waveform import Waveform
 from hypothesis import given
 from hypothesis import strategies as st
 

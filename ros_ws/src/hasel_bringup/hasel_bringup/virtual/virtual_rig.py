@@ -79,9 +79,16 @@ def supply_and_driver(namespace: str) -> Iterator[Callable[[], None]]:
 
     with tempfile.TemporaryDirectory(prefix="hasel_") as folder:
         port = Path(folder) / "supply"
-        board = ("hasel_driver.virtual_supply", "--link", str(port))
+        board = ("hasel_driver.virtual.virtual_supply", "--link", str(port))
         driver = (
-            *("hasel_driver.driver_node", "--ros-args", "-r", f"__ns:={namespace}", "-p", f"port:={port}"),
+            *(
+                "hasel_driver.nodes.driver_node",
+                "--ros-args",
+                "-r",
+                f"__ns:={namespace}",
+                "-p",
+                f"port:={port}",
+            ),
             *("-p", "history_file:=" + str(port.with_name("history.jsonl"))),
             *("-p", f"state_folder:={port.parent}"),
         )

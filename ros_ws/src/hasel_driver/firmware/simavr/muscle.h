@@ -1,4 +1,4 @@
-// Electrical behaviour of one muscle on its converter; the same model as hasel_driver/virtual_muscle.py.
+// Electrical behaviour of one muscle on its converter; the same model as hasel_driver/virtual/virtual_output.py.
 #pragma once
 
 enum contact { GROUND, OPEN, POSITIVE, NEGATIVE };

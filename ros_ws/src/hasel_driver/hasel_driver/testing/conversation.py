@@ -3,22 +3,22 @@
 import time
 from collections.abc import Callable
 
-from hasel_driver import protocol
-from hasel_driver.line_buffer import LineBuffer
-from hasel_driver.mode import Mode
-from hasel_driver.serial_port import SerialPort
+from hasel_driver.protocol import wire
+from hasel_driver.protocol.status import Mode
+from hasel_driver.protocol.wire import LineBuffer
+from hasel_driver.supplies.serial_port import SerialPort
 
 
 class Conversation:
     """Opens the port, waits for the board's banner, and sets MAXIMUM [V], which is 0 at boot."""
 
     def __init__(self, path: str, maximum_v: int | None = 6000) -> None:
-        self._port = SerialPort(path, protocol.BAUD)
+        self._port = SerialPort(path, wire.BAUD)
         self._lines = LineBuffer()
         self._sequence = 255
-        self.events: list[protocol.Event] = []
-        self.reports: list[protocol.Telemetry] = []
-        self._replies: list[protocol.Reply] = []
+        self.events: list[wire.Event] = []
+        self.reports: list[wire.Telemetry] = []
+        self._replies: list[wire.Reply] = []
         self._open()
         if maximum_v is not None:
             self.ask("SET", "MAXIMUM", maximum_v)
@@ -43,7 +43,7 @@ class Conversation:
     def ask(self, *words: object, sequence: int | None = None) -> tuple[bool, str]:
         """Whether a command was accepted, and the words of the reply."""
         self._sequence = (self._sequence + 1) % 256 if sequence is None else sequence
-        self.send(protocol.encode_command(self._sequence, *words))
+        self.send(wire.encode_command(self._sequence, *words))
         return self.reply()
 
     def arm(self) -> None:
@@ -61,7 +61,7 @@ class Conversation:
 
     def after(self, count: int) -> int:
         """The sequence number that is `count` after the last."""
-        return (self._sequence + count) % protocol.SEQUENCE_MODULUS
+        return (self._sequence + count) % wire.SEQUENCE_MODULUS
 
     def reply(self) -> tuple[bool, str]:
         """The next reply."""
@@ -69,7 +69,7 @@ class Conversation:
         reply = self._replies.pop(0)
         return reply.accepted, " ".join(reply.words)
 
-    def report(self) -> protocol.Telemetry:
+    def report(self) -> wire.Telemetry:
         """Telemetry of now."""
         self._take()
         time.sleep(0.03)
@@ -78,7 +78,7 @@ class Conversation:
         self.until(lambda: bool(self.reports))
         return self.reports[-1]
 
-    def listen(self, duration_s: float) -> list[protocol.Telemetry]:
+    def listen(self, duration_s: float) -> list[wire.Telemetry]:
         """Telemetry of a while, during which the heartbeat goes on."""
         self.reports.clear()
         end_s = time.monotonic() + duration_s
@@ -109,12 +109,12 @@ class Conversation:
         self.until(lambda: any(event.words[0] == "BOOT" for event in self.events), cut_off=True)
 
     def _take(self, cut_off: bool = False) -> None:
-        kinds: dict[type, list] = {protocol.Event: self.events, protocol.Telemetry: self.reports}
-        kinds[protocol.Reply] = self._replies
+        kinds: dict[type, list] = {wire.Event: self.events, wire.Telemetry: self.reports}
+        kinds[wire.Reply] = self._replies
         for line in self._lines.feed(self._port.read()):
             if cut_off and (begin := line.find(b"!BOOT")) > 0:
                 line = line[begin:]
-            message = protocol.parse_device_line(line)
+            message = wire.parse_device_line(line)
             kinds[type(message)].append(message)
 
     def close(self) -> None:

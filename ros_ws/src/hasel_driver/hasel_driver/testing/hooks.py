@@ -5,7 +5,7 @@ import time
 import pytest
 from _pytest.runner import runtestprotocol
 
-from hasel_driver.testing.punctuality import Punctuality
+from hasel_driver.testing.rig import Punctuality
 
 ATTEMPTS = 5
 LATE_WITHIN_S = 20.0  # before a failure: what was late earlier did not cause it

@@ -4,12 +4,10 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from hasel_driver.errors import DriverError
-from hasel_driver.faults import FaultCode
-from hasel_driver.ground import Ground
-from hasel_driver.limits import DISCHARGED_V, Voltages
-from hasel_driver.mode import Mode
-from hasel_driver.testing.bench import Bench
+from hasel_driver.protocol.faults import DriverError, FaultCode
+from hasel_driver.protocol.limits import DISCHARGED_V, Voltages
+from hasel_driver.protocol.status import Ground, Mode
+from hasel_driver.testing.rig import Bench
 
 DRIVEN_V: Voltages = (3000.0, -2000.0)  # of the broken channel, and of the other
 OTHER_V: Voltages = (5000.0, -2000.0)
@@ -17,6 +15,8 @@ CHANNELS: tuple[tuple[str, ...], ...] = ((), ("lower",))  # words that choose th
 WITHIN_S = 0.5
 WATCHED_S = 0.7
 F = FaultCode
+RESET = {F.DEVICE_RESET, F.GARBAGE_RECEIVED}  # its banner may cut a line in two
+CONTACT = {F.NOT_GROUNDED, F.GROUND_NOT_PROVEN}
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,6 @@ def _kind(name: str, inject: str, codes: set[FaultCode], **options) -> Kind:
     return Kind(name, tuple(inject.split()), frozenset(codes), **options)
 
 
-RESET = {F.DEVICE_RESET, F.GARBAGE_RECEIVED}  # its banner may cut a line in two
-CONTACT = {F.NOT_GROUNDED, F.GROUND_NOT_PROVEN}
 KINDS: tuple[Kind, ...] = (
     _kind("divider off", "blind", {F.MONITOR}),
     _kind("divider says a third", "third", {F.MONITOR}),
@@ -44,9 +42,7 @@ KINDS: tuple[Kind, ...] = (
     _kind("divider off before arming", "blind", {F.MONITOR, F.NOT_GROUNDED}, act="arm"),
     _kind("inputs no longer converted", "unconverted", RESET | {F.MONITOR}),
     _kind(
-        "inputs not converted, muscle shorted",
-        "unconverted overcurrent",
-        RESET | {F.MONITOR, F.OVERCURRENT},
+        "inputs not converted, muscle shorted", "unconverted overcurrent", RESET | {F.MONITOR, F.OVERCURRENT}
     ),
     _kind("timer interrupt off", "tickless", RESET | {F.NO_REPLY, F.NO_TELEMETRY, F.UNEXPECTED_STATE}),
     _kind("contact welded, disarmed", "weld", CONTACT, act="disarm"),

@@ -11,11 +11,10 @@ from rclpy.node import Node
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
-from hasel_driver.faults import FaultCode
-from hasel_driver.testing.driver_process import DriverProcess
+from hasel_driver.protocol.faults import FaultCode
 from hasel_driver.testing.kinds import WATCHED_S, WITHIN_S, Trial
 from hasel_driver.testing.rig import VIRTUAL_SUPPLY, Rig
-from hasel_driver.testing.ros_client import LATCHED, RosClient, another_node
+from hasel_driver.testing.ros_client import LATCHED, DriverProcess, RosClient, another_node
 
 DRIVEN_V = (1500.0, 0.0)
 STRANGE_V = (4000.0, 0.0)
@@ -24,6 +23,8 @@ ASKED = 3  # times, as one of two drivers answers
 PERIOD_S = 0.005
 ANNOUNCED_EVERY_S = 0.5
 """A node is announced so often over loopback: the user may hear of it so much sooner than the driver."""
+ANSWERS = ("arm", "emergency_stop", "disarm")
+DRIVER, STRANGER = f"/hasel/hasel_driver on {socket.gethostname()}", "/stranger"
 
 
 @dataclass(frozen=True)
@@ -94,8 +95,6 @@ def _releases(scene: Scene) -> Callable[[], None]:
     return lambda: stranger.publish(Bool(data=False))
 
 
-ANSWERS = ("arm", "emergency_stop", "disarm")
-DRIVER, STRANGER = f"/hasel/hasel_driver on {socket.gethostname()}", "/stranger"
 NEIGHBOURS: tuple[Neighbour, ...] = (
     Neighbour("two drivers of one name", _second_driver, DRIVER, ANSWERS),
     Neighbour("two drivers of one name, a contact welded", _second_driver, DRIVER, ANSWERS, welded=True),

@@ -1,17 +1,75 @@
-"""A supply in a process of its own, virtual or the firmware in simavr, that tells the truth about its output."""
+"""A supply in a process of its own that tells the truth about its output, and the driver's thread on it."""
 
+import os
 import queue
 import subprocess
 import sys
 import threading
 import time
+import tty
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
-from hasel_driver.realtime import request_realtime
+from hasel_driver.protocol import wire
+from hasel_driver.protocol.limits import Limits, Voltages
+from hasel_driver.protocol.status import Ground, Mode, SupplyStatus
+from hasel_driver.safety.supervisor import Supervisor
+from hasel_driver.safety.supply_thread import SupplyThread, request_realtime
+from hasel_driver.supplies.hasel_supply import HaselSupply
+from hasel_driver.supplies.serial_port import SerialPort
 
+PERIOD_S = 0.01
+TOLERANCE_S = 0.05
 PRIORITY = 50
-VIRTUAL_SUPPLY = [sys.executable, "-m", "hasel_driver.virtual_supply"]
+VIRTUAL_SUPPLY = [sys.executable, "-m", "hasel_driver.virtual.virtual_supply"]
+
+
+class Punctuality:
+    """Whether this machine kept time: a test against the clock proves nothing on one that did not.
+
+    Measures in the background how late a thread is woken, and a byte is passed on by a pseudo-terminal.
+    The latter needs a worker of the kernel, which on a busy virtual machine can be a second late where threads are
+    not. Others may add what they were late.
+    """
+
+    def __init__(self) -> None:
+        self._late: list[tuple[float, float]] = []  # (when, how late) [s]
+        for wait in (lambda: time.sleep(PERIOD_S), _pass_on_a_byte()):
+            threading.Thread(target=self._watch, args=(wait,), daemon=True).start()
+
+    def _watch(self, wait: Callable[[], None]) -> None:
+        while True:
+            asleep_s = time.monotonic()
+            wait()
+            awake_s = time.monotonic()
+            if awake_s - asleep_s > PERIOD_S + TOLERANCE_S:
+                self.note(awake_s - asleep_s - PERIOD_S)
+
+    def note(self, late_s: float) -> None:
+        """Something was late just now, by `late_s` [s]."""
+        self._late.append((time.monotonic(), late_s))
+
+    def worst_since(self, begin_s: float) -> float:
+        """Longest delay beyond the tolerance since `begin_s` (monotonic) [s]; 0 if there was none."""
+        return max((late_s for when_s, late_s in self._late if when_s >= begin_s), default=0.0)
+
+
+def _pass_on_a_byte() -> Callable[[], None]:
+    here, there = os.openpty()
+    tty.setraw(there)
+
+    def wait() -> None:
+        time.sleep(PERIOD_S)
+        os.write(here, b".")
+        os.read(there, 1)
+
+    return wait
+
+
+def firmware_command(build: Path) -> list[str]:
+    """The firmware in its simulator, as of the folder of a build."""
+    return [str(build / "simulate"), str(build / "hasel_supply.elf")]
 
 
 class Rig:
@@ -95,3 +153,78 @@ class Rig:
         """End the process."""
         self._process.kill()
         self._process.wait()
+
+
+class Bench:
+    """Connected on construction; `statuses` collects everything that the driver says."""
+
+    def __init__(self, rig: Rig, limits: Limits | None = None) -> None:
+        self.rig = rig
+        self.statuses: list[SupplyStatus] = []
+        self.host_alive = True
+        self.port = SerialPort(rig.port, wire.BAUD)
+        supply = HaselSupply(self.port, limits or Limits())
+        self.supervisor = Supervisor(supply, time.monotonic)
+        self.supervisor.connect()
+        self.thread = SupplyThread(self.supervisor, supply, self.statuses.append, self._step)
+        self.thread.start()
+
+    def _step(self) -> None:
+        if self.host_alive:
+            self.thread.host_is_alive("test")
+
+    def call(self, method: Callable[..., Any], *arguments: Any) -> Any:
+        """Call a method of the supervisor in its thread."""
+        return self.thread.call(lambda: method(*arguments)).result(timeout=10)
+
+    def status(self) -> SupplyStatus:
+        """The present status."""
+        return self.call(self.supervisor.status)
+
+    def await_mode(self, mode: Mode, timeout_s: float = 2.0) -> None:
+        """Until the supply reports this mode."""
+        if not self.thread.expect(lambda: self.supervisor.status().mode is mode, timeout_s).result(
+            timeout=timeout_s + 5
+        ):
+            raise AssertionError(f"{mode.name} was expected, the state is {self.status()}")
+
+    def arm(self) -> None:
+        """Arm, and wait for the proof."""
+        self.await_mode(Mode.STANDBY)
+        self.call(self.supervisor.arm)
+        self.await_mode(Mode.ARMED)
+        self.call(self.supervisor.command, (0.0, 0.0))  # with which every controller begins
+
+    def command_until(
+        self, condition: Callable[[], bool], voltage_v: Voltages = (3000.0, -2000.0), timeout_s: float = 2.0
+    ) -> bool:
+        """Command `voltage_v` at 100 Hz until `condition()`; whether it came true."""
+        end_s = time.monotonic() + timeout_s
+        while not condition():
+            if time.monotonic() > end_s:
+                return False
+            self.call(self.supervisor.command, voltage_v)
+            time.sleep(0.01)
+        return True
+
+    def wait_until(self, condition: Callable[[], bool], timeout_s: float = 2.0) -> bool:
+        """Wait without a command until `condition()`; whether it came true."""
+        end_s = time.monotonic() + timeout_s
+        while not condition():
+            if time.monotonic() > end_s:
+                return False
+            time.sleep(0.002)
+        return True
+
+    def false_claims(self) -> list[str]:
+        """Statuses that called the output grounded, or claimed STANDBY or ARMED, while it was live in truth."""
+        return [
+            str(status)
+            for status in list(self.statuses)
+            if (status.ground is Ground.PROVEN or status.mode in (Mode.STANDBY, Mode.ARMED))
+            and self.rig.refutes_dead_at(status.time_s)
+        ]
+
+    def close(self) -> None:
+        """End the thread."""
+        self.thread.stop()

@@ -1,10 +1,14 @@
-"""A user of the driver's topics and services."""
+"""A user of the driver's topics and services, and the driver's node in a process of its own."""
 
+import subprocess
+import sys
+import tempfile
 import threading
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import Any
 
 from hasel_common.managed_node import BackgroundSpin, node_alone
@@ -18,9 +22,9 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
-from hasel_driver.limits import Voltages
-from hasel_driver.messages import OUTPUT_WORDS
-from hasel_driver.mode import Mode
+from hasel_driver.nodes.driver_services import OUTPUT_WORDS
+from hasel_driver.protocol.limits import Voltages
+from hasel_driver.protocol.status import Mode
 from hasel_driver.testing.rig import Rig
 
 LATCHED = QoSProfile(
@@ -134,10 +138,7 @@ class RosClient:
             self.commands = self.node.create_publisher(Actuation, "/hasel/command", 100)
 
     def drive(
-        self,
-        until: Callable[[], bool],
-        voltage_v: Voltages = (3000.0, -2000.0),
-        timeout_s: float = 3.0,
+        self, until: Callable[[], bool], voltage_v: Voltages = (3000.0, -2000.0), timeout_s: float = 3.0
     ) -> None:
         """Command at 50 Hz until `until()`."""
         with self.commanding(voltage_v):
@@ -204,3 +205,61 @@ def _stamp_s(state: SupplyState) -> float:
 
 def _claims_dead(state: SupplyState) -> bool:
     return state.mode in (Mode.STANDBY, Mode.ARMED) or OUTPUT_WORDS["grounded"] in state.fault_text
+
+
+class DriverProcess:
+    """Starts the node on a port; `log` collects what it prints."""
+
+    def __init__(self, client: RosClient, port: str, **parameters: object) -> None:
+        self._client = client
+        client.states.clear()
+        self._folder = tempfile.TemporaryDirectory(prefix="hasel_driver_")
+        self.folder = Path(self._folder.name)
+        self.history = self.folder / "history.jsonl"
+        folders = dict.fromkeys(("recording_directory", "waveform_directory", "state_folder"), self.folder)
+        own = {"history_file": self.history, **folders}
+        chosen = {"port": port, "discovery_time": 0.2} | own | parameters
+        arguments = [word for key, value in chosen.items() for word in ("-p", f"{key}:={value}")]
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "hasel_driver.nodes.driver_node", "--ros-args", *arguments],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        self.log: list[str] = []
+        self._reader = threading.Thread(target=lambda: self.log.extend(self.process.stdout), daemon=True)
+        self._reader.start()
+
+    def arm(self) -> None:
+        """From STANDBY; waits for the discovery time, and for publishers that are about to leave."""
+        self._client.await_mode(Mode.STANDBY)
+        for _ in range(20):
+            answer = self._client.trigger("arm")
+            if answer.success:
+                self._client.command((0.0, 0.0))  # with which every controller begins
+                return
+            time.sleep(0.2)
+        raise AssertionError(answer.message)
+
+    def to_standby(self) -> None:
+        """From whatever state, of the lifecycle too."""
+        client = self._client
+        client.activate()
+        client.wait(lambda: bool(client.states), 10.0)
+        client.trigger("disarm")
+        client.states.clear()
+        client.wait(lambda: bool(client.states))
+        if client.state.mode == Mode.FAULT:
+            client.trigger("clear_fault")
+        self._client.await_mode(Mode.STANDBY)
+
+    def close(self) -> None:
+        """End the process, politely first, so that the graph forgets it."""
+        self.process.terminate()
+        try:
+            self.process.wait(5.0)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        self._reader.join(timeout=5.0)
+        self._folder.cleanup()

@@ -4,12 +4,11 @@ import random
 import time
 from collections.abc import Callable
 
-from hasel_driver.errors import DriverError
-from hasel_driver.faults import Fault, FaultCode
-from hasel_driver.ground import Ground
-from hasel_driver.limits import DISCHARGED_V
-from hasel_driver.testing.bench import Bench
+from hasel_driver.protocol.faults import DriverError, Fault, FaultCode
+from hasel_driver.protocol.limits import DISCHARGED_V
+from hasel_driver.protocol.status import Ground
 from hasel_driver.testing.kinds import WITHIN_S
+from hasel_driver.testing.rig import Bench
 
 MOST_V = 6000.0
 LONGEST_S = 0.8  # of one act

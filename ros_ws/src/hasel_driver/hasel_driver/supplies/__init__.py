@@ -1,0 +1,1 @@
+"""High-voltage supplies at a serial port, each behind one interface."""

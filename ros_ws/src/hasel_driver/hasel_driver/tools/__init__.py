@@ -1,0 +1,1 @@
+"""Commands for people: console, calibration, benchmark, proof, stored charge."""
