@@ -8,7 +8,7 @@ from hasel_common.provenance import without_provenance
 from hasel_recording import DriveChannel, Recording
 
 from hasel_sysid.data_quality.angle import check_angle, check_markers
-from hasel_sysid.data_quality.command import check_command
+from hasel_sysid.data_quality.drive_command import check_command
 from hasel_sysid.data_quality.finding import DataFinding, Severity
 from hasel_sysid.data_quality.frames import check_frames, check_header
 from hasel_sysid.data_quality.response import check_drive_frequency, check_response
