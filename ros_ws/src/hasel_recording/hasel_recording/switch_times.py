@@ -128,6 +128,6 @@ def _apart(instants: np.ndarray, which: np.ndarray) -> np.ndarray:
     return np.concatenate([[], *(np.diff(instants[which == kind]) for kind in np.unique(which))])
 
 
-def _nearest(instants: np.ndarray | float, first: np.ndarray | float, spacing: float) -> np.ndarray | float:
+def _nearest(instants: np.ndarray, first: np.ndarray | float, spacing: float) -> np.ndarray:
     """Of the instants from a first one on, those nearest to these."""
     return first + spacing * np.round((instants - first) / spacing)
