@@ -34,13 +34,15 @@ METADATA, SQLITE, MCAP = "metadata.yaml", ".db3", ".mcap"
 class McapFile:
     """What one file holds, by topic; messages stay encoded until asked for.
 
-    kinds: of every topic with messages, how they are encoded and their definition, None where it is missing.
+    kinds: of every topic, how messages are encoded and their definition, None where it is missing; damaged: whether
+    there may have been more messages than there are.
     """
 
     path: Path
     kinds: dict[str, tuple[str, Schema | None]] = field(default_factory=dict)
     messages: dict[str, list[Message]] = field(default_factory=dict)
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
+    damaged: bool = False
 
     def decoded(self, topic: str, type_name: str) -> list[Any]:
         """Return the topic's messages in recorded order, none when there are none.
@@ -82,10 +84,8 @@ class McapFile:
         """Return what a topic is called here: its name, or the same in another namespace where there is only that."""
         if topic in self.messages or topic not in TOPIC_TYPES:
             return topic
-        same = [
-            name for name, (_, schema) in self.kinds.items() if schema and schema.name == TOPIC_TYPES[topic]
-        ]
-        names = sorted(name for name in same if known_as(name) == topic)
+        same = [name for name in self.messages if known_as(name) == topic and self.kinds[name][1]]
+        names = sorted(name for name in same if self.kinds[name][1].name == TOPIC_TYPES[topic])
         if len(names) > 1:
             raise RecordingError(
                 f"{self.path} has {' and '.join(names)}, of {len(names)} rigs: record one rig by itself "
@@ -95,7 +95,7 @@ class McapFile:
 
     def missing(self, topic: str) -> RecordingError:
         """Return the error that says a topic is missing and which there are."""
-        if topic in self.messages:
+        if topic in self.messages or (self.damaged and not self.messages):
             return RecordingError(
                 f"{self.path}: no message on {topic} can be read: restore the file from a copy."
             )
@@ -142,7 +142,8 @@ def read_file(path: Path) -> McapFile:
         content.kinds.setdefault(channel.topic, (channel.message_encoding, schemas.get(channel.schema_id)))
     if damage.unread and not (content.messages or content.metadata):
         raise RecordingError(f"{path} is not an MCAP file: give a recording in MCAP or CSV.")
-    damage.cut &= bool(content.messages or damage.rest)
+    content.damaged = bool(damage.lost or damage.unread or damage.nameless or damage.rest)
+    damage.cut &= bool(content.messages or content.damaged)
     for sentence in damage.sentences():
         warn(f"{path} {sentence}")
     return content
@@ -162,6 +163,7 @@ def read_bag(path: Path) -> McapFile:
             whole.messages.setdefault(topic, []).extend(messages)
         for name, record in part.metadata.items():
             whole.metadata.setdefault(name, {}).update(record)
+        whole.damaged |= part.damaged
     return whole
 
 

@@ -16,6 +16,8 @@ from hasel_recording.errors import RecordingError, RecordingWarning
 from hasel_recording.reading import WRITERS, drive_of_each, read_recording, write_recording
 from hasel_recording.recording import Recording
 
+OTHER_SUFFIX = dict.fromkeys(TEXT_SUFFIXES, ".mcap") | {".mcap": ".csv", ".db3": ".csv"}
+
 
 class RecordingsParser(argparse.ArgumentParser):
     """A parser that says so where an option that takes several files has taken the recordings too."""
@@ -66,9 +68,6 @@ class _Mapping(argparse.Action):
             setattr(namespace, self.dest, {**getattr(namespace, self.dest), **parse_map(values)})
         except RecordingError as error:
             raise argparse.ArgumentError(self, str(error)) from None
-
-
-OTHER_SUFFIX = dict.fromkeys(TEXT_SUFFIXES, ".mcap") | {".mcap": ".csv", ".db3": ".csv"}
 
 
 def target_path(source: Path, output: Path | None = None) -> Path:

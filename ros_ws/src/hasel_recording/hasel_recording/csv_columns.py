@@ -9,6 +9,7 @@ from hasel_common.names import nearest
 
 from hasel_recording.drive_channel import (
     HASEL_PAIR,
+    RAD_PER_DEG,
     SI_UNITS,
     UNITS,
     DriveChannel,
@@ -19,8 +20,9 @@ from hasel_recording.errors import RecordingError
 from hasel_recording.recording import MARKER_NAMES
 
 SIN_THETA = "sin_theta"
+DRIVE_ONLY = "drive."  # before a name that is meant for the file of the drive alone
 TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}
-THETA_UNITS = {"deg": 0.017453292519943295, "rad": 1.0, "mrad": 1e-3}
+THETA_UNITS = {"deg": RAD_PER_DEG, "rad": 1.0, "mrad": 1e-3}
 MARKER_UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "px": 1.0}
 MEANINGS = "time, sin_theta, theta, <marker>_x, <marker>_y or <quantity>_<channel>, such as voltage_upper"
 
@@ -167,9 +169,6 @@ def _role(name: str) -> str:
     if name == SIN_THETA or name.startswith("theta_"):
         return SIN_THETA
     return name.rpartition("_")[0] if _MARKER.fullmatch(name) or is_drive_column(name) else name.split("_")[0]
-
-
-DRIVE_ONLY = "drive."
 
 
 def parse_map(text: str) -> dict[str, str]:

@@ -17,53 +17,6 @@ COUNTERS = {2**16: "a counter of 16 bits", 2**31: "a counter of 31 bits", 2**32:
 CLOCKS_S = {60.0: "a clock without minutes", 3600.0: "a clock without hours", 86400.0: "midnight"}
 """What wraps, in steps of the column's unit and in seconds."""
 FEW_STEPS = 5.0
-
-
-def _counted_on(times: np.ndarray, name: str, factor: float, text: CsvText) -> np.ndarray:
-    """Times [s] [n] that increase: a clock that wraps is counted on, with a RecordingWarning.
-
-    factor: the column's unit in s. Raises RecordingError with the line where rows share a time, the clock starts anew
-    or rows are out of order.
-    """
-    steps = np.diff(times)
-    if len(steps) == 0 or steps.min() > 0:
-        return times
-    usual = float(np.median(steps))
-    wraps = {factor * count: what for count, what in COUNTERS.items()} | CLOCKS_S
-    times = times.copy()
-    for row in 1 + np.flatnonzero(steps < 0):
-        back = float(times[row - 1] - times[row])
-        for span, what in wraps.items():
-            if -FEW_STEPS * usual < back - span < 1e-6 * span:
-                times[row:] += span
-                warn(
-                    f"{text.path}, line {text.lines[row]}: {name} starts again after {span:.10g} s ({what}); it is "
-                    "counted on."
-                )
-                break
-    late = np.flatnonzero(np.diff(times) <= 0)
-    if late.size == 0:
-        return times
-    row = int(late[0]) + 1
-    raise RecordingError(
-        f"{text.path}, line {text.lines[row]}: {name} {times[row] / factor:.12g} does not come after "
-        f"{times[row - 1] / factor:.12g}; {_advice(times, row, usual)}."
-    )
-
-
-def _advice(times: np.ndarray, row: int, usual: float) -> str:
-    """What to do about the first row that does not come after the one before."""
-    steps = np.diff(times)
-    shared = int(np.count_nonzero(steps == 0))
-    if times[row] == times[row - 1]:
-        finest = float(steps[steps > 0].min(initial=np.inf))
-        rounded = f", rounded to {finest:g} s" if np.isfinite(finest) and shared > 1 else ""
-        return f"{shared} rows share the time of the one before{rounded}: write it with more digits"
-    if np.count_nonzero(steps < 0) == 1 and times[row] <= times[0] + max(usual, 0.0):
-        return "the clock starts anew there, as after a restart: make two recordings of it"
-    return "sort the rows by time"
-
-
 NOT_MEASURED = {"", "nan", "na", "n/a", "null", "none", "-"}
 BLANKS, QUOTES = "[ \u00a0\u2009\u202f]", "['\u2019]"
 POINT = r"\."
@@ -174,3 +127,48 @@ def _clock(cells: list[str]) -> np.ndarray | None:
     if len(dates) < len(cells):
         return None
     return np.array([date.replace(tzinfo=date.tzinfo or timezone.utc).timestamp() for date in dates])
+
+
+def _counted_on(times: np.ndarray, name: str, factor: float, text: CsvText) -> np.ndarray:
+    """Times [s] [n] that increase: a clock that wraps is counted on, with a RecordingWarning.
+
+    factor: the column's unit in s. Raises RecordingError with the line where rows share a time, the clock starts anew
+    or rows are out of order.
+    """
+    steps = np.diff(times)
+    if len(steps) == 0 or steps.min() > 0:
+        return times
+    usual = float(np.median(steps))
+    wraps = {factor * count: what for count, what in COUNTERS.items()} | CLOCKS_S
+    times = times.copy()
+    for row in 1 + np.flatnonzero(steps < 0):
+        back = float(times[row - 1] - times[row])
+        for span, what in wraps.items():
+            if -FEW_STEPS * usual < back - span < 1e-6 * span:
+                times[row:] += span
+                warn(
+                    f"{text.path}, line {text.lines[row]}: {name} starts again after {span:.10g} s ({what}); it is "
+                    "counted on."
+                )
+                break
+    late = np.flatnonzero(np.diff(times) <= 0)
+    if late.size == 0:
+        return times
+    row = int(late[0]) + 1
+    raise RecordingError(
+        f"{text.path}, line {text.lines[row]}: {name} {times[row] / factor:.12g} does not come after "
+        f"{times[row - 1] / factor:.12g}; {_advice(times, row, usual)}."
+    )
+
+
+def _advice(times: np.ndarray, row: int, usual: float) -> str:
+    """What to do about the first row that does not come after the one before."""
+    steps = np.diff(times)
+    shared = int(np.count_nonzero(steps == 0))
+    if times[row] == times[row - 1]:
+        finest = float(steps[steps > 0].min(initial=np.inf))
+        rounded = f", rounded to {finest:g} s" if np.isfinite(finest) and shared > 1 else ""
+        return f"{shared} rows share the time of the one before{rounded}: write it with more digits"
+    if np.count_nonzero(steps < 0) == 1 and times[row] <= times[0] + max(usual, 0.0):
+        return "the clock starts anew there, as after a restart: make two recordings of it"
+    return "sort the rows by time"

@@ -11,6 +11,8 @@ from hasel_recording.drive_channel import HASEL_PAIR, DriveChannel
 from hasel_recording.errors import RecordingError
 from hasel_recording.plateaus import acting
 
+MARKER_NAMES = ("head", "middle", "tail")
+DRIVE_KEY = "drive"  # header line that names the file of the drive, beside the recording
 KNOWN_KEYS = {
     "model": "model to use where --model is not given; one with an effect of your own, which is code, wants --model",
     "initial_state": "rest (default) or static_equilibrium",
@@ -22,7 +24,7 @@ KNOWN_KEYS = {
     "frequency_hz": "frequency that was asked for, compared with the column",
     "muscles": "both, lower_first, upper or lower: which were meant to be driven",
 }
-"""Key and what it says; any other key is kept as a note."""
+"""Header lines that mean something, and what they say; any other key is kept as a note."""
 
 
 def row_in_force(times: np.ndarray, at: np.ndarray | float) -> np.ndarray:
@@ -61,10 +63,6 @@ def turn_between(first: np.ndarray, second: np.ndarray) -> tuple[np.ndarray, np.
     sine = np.divide(cross, lengths, out=nowhere, where=lengths > 0)
     angle = np.arctan2(cross, (first * second).sum(axis=-1))
     return sine, np.where(lengths > 0, angle, np.nan)
-
-
-MARKER_NAMES = ("head", "middle", "tail")
-DRIVE_KEY = "drive"  # header line that names the file of the drive, beside the recording
 
 
 @dataclass(frozen=True)

@@ -34,91 +34,79 @@ def with_placed_switches(recording: Recording) -> Recording:
         return recording
     from_to = [values[row - 1 : row + 1].tobytes() for row in changes]
     kinds = np.array([from_to.index(each) for each in from_to])
-    uncertain = steps[changes - 1] > LOST_ROW * float(np.median(steps))
-    if uncertain.any():
-        placed, said = _in_gaps(recording, time_s, changes, kinds, uncertain), ()
+    before, seen, frame = time_s[changes - 1], time_s[changes], float(np.median(steps))
+    if np.any(seen - before > LOST_ROW * frame):
+        placed, said = _in_gaps(recording, before, seen, kinds, frame), ()
     else:
-        placed, said = _between_rows(time_s, changes, kinds)
-    if np.array_equal(placed, time_s):
+        placed, said = _between_rows(before, seen, kinds, frame)
+    if np.array_equal(placed, seen):
         return recording
-    kept = slice(None) if recording.ripple else np.concatenate([[0], changes])
+    instants = time_s.copy()
+    instants[changes] = placed
+    kept = slice(None) if recording.ripple else np.append(0, changes)
     return replace(
         recording,
-        drive_time_s=placed[kept],
+        drive_time_s=instants[kept],
         drive_values=recording.drive_signal[kept],
         understood=(*recording.understood, *said),
     )
 
 
 def _in_gaps(
-    recording: Recording, time_s: np.ndarray, changes: np.ndarray, kinds: np.ndarray, uncertain: np.ndarray
+    recording: Recording, before: np.ndarray, seen: np.ndarray, kinds: np.ndarray, frame: float
 ) -> np.ndarray:
-    """Times of the rows [s] [n], those of the uncertain changes where the others say that they were due.
+    """Instants of the switches [s] [n]: those in gaps where the others say that they were due, the others as seen.
 
     First by the switches between the same two values, which recur whatever the waveform, alone or with one period of
     all kinds; then by all of them, which are equally spaced where both halves of the cycle last alike.
     """
-    placed, frame = time_s.copy(), float(np.median(np.diff(time_s)))
-    seen, known = time_s[changes[~uncertain]], kinds[~uncertain]
-    for row, kind in zip(changes[uncertain], kinds[uncertain], strict=True):
-        before, after = float(time_s[row - 1]), float(time_s[row])
-        gap = f"the drive switches between the rows at {before:g} and {after:g} s, farther apart than usual"
-        said = f"{gap}; it is taken to switch at {after:g} s: give its own file with --drive to know better."
-        alike = known == kind
-        for chosen, which in (
-            (alike, known),
-            (alike | True, known),
-            (alike | True, np.full_like(known, kind)),
-        ):
-            found = _equally_spaced(seen[chosen] - frame, seen[chosen] + frame, which[chosen])
-            if found is None or kind not in found[1]:
-                continue
-            due = _nearest(0.5 * (before + after), found[1][kind], found[0])
-            if before < due <= after + 1e-9:
-                placed[row] = due
-                said = (
-                    f"{gap}; the switch is placed at {due:.6g} s by the drive's period of {found[0]:.6g} s."
-                )
+    placed, sharp = seen.copy(), seen - before <= LOST_ROW * frame
+    for n in np.flatnonzero(~sharp):
+        gap = f"the drive switches between the rows at {before[n]:g} and {seen[n]:g} s, farther apart than usual"
+        said = (
+            f"{gap}; it is taken to switch at {seen[n]:g} s: give its own file with --drive to know better."
+        )
+        alike = sharp & (kinds == kinds[n])
+        for chosen, which in ((alike, kinds), (sharp, kinds), (sharp, np.full_like(kinds, kinds[n]))):
+            period, first = _equally_spaced(seen[chosen] - frame, seen[chosen] + frame, which[chosen])
+            due = _nearest(0.5 * (before[n] + seen[n]), first.get(kinds[n], np.nan), period)
+            if before[n] < due <= seen[n] + 1e-9:
+                placed[n] = due
+                said = f"{gap}; the switch is placed at {due:.6g} s by the drive's period of {period:.6g} s."
                 break
         warn(f"{recording.path or recording.name}: {said}")
     return placed
 
 
 def _between_rows(
-    time_s: np.ndarray, changes: np.ndarray, kinds: np.ndarray
+    before: np.ndarray, seen: np.ndarray, kinds: np.ndarray, frame: float
 ) -> tuple[np.ndarray, tuple[str, ...]]:
-    """Times of the rows [s] [n], those of the changes where a period puts them, and a sentence that says so.
+    """Instants of the switches [s] [n], where a period puts them between two rows, and a sentence that says so.
 
-    All switches are equally spaced, or else those between the same two values. The rows stay where no period puts every
+    All switches are equally spaced, or else those between the same two values. They stay where no period puts every
     switch after the row before it, or all distances are alike, as of a drive that switches with the rows.
     """
-    seen, before = time_s[changes], time_s[changes - 1]
-    frame = float(np.median(np.diff(time_s)))
     for which in (np.zeros_like(kinds), kinds):
         apart = _apart(seen, which)
         if len(apart) < 2 or not 0.5 * frame < np.ptp(apart) < LOST_ROW * frame:
             continue
-        found = _equally_spaced(before, seen, which)
-        if found is not None:
-            spacing, first = found
-            placed = time_s.copy()
-            placed[changes] = _nearest(
-                0.5 * (before + seen), np.array([first[kind] for kind in which]), spacing
-            )
+        spacing, first = _equally_spaced(before, seen, which)
+        if first:
+            placed = _nearest(0.5 * (before + seen), np.array([first[kind] for kind in which]), spacing)
             said = f"the drive switches between rows; each switch is placed there by its spacing of {spacing:.6g} s"
             return placed, (said,)
-    return time_s, ()
+    return seen, ()
 
 
 def _equally_spaced(
     earliest: np.ndarray, latest: np.ndarray, which: np.ndarray
-) -> tuple[float, dict[int, float]] | None:
+) -> tuple[float, dict[int, float]]:
     """The one spacing [s] that puts an instant between every earliest and latest one [n], from a first one of every
-    kind on, and these: in the middle of all that do so (Chebyshev centre). None where none does.
+    kind on, and these: in the middle of all that do so (Chebyshev centre). No first ones where none does.
     """
     apart = _apart(latest, which)
     if len(apart) == 0:
-        return None
+        return np.nan, {}
     from scipy.optimize import linprog  # takes a while, and few drives need it
 
     about = apart[apart < NEIGHBOURS * apart.min()].mean()
@@ -130,7 +118,7 @@ def _equally_spaced(
     wanted = np.append(np.zeros(where.shape[1]), -1.0)
     found = linprog(wanted, within, np.concatenate([latest, -earliest]), bounds=bounds)
     if found.status != 0:
-        return None
+        return np.nan, {}
     *first, spacing, _ = found.x.tolist()
     return spacing, dict(zip(each.tolist(), first, strict=True))
 
@@ -140,6 +128,6 @@ def _apart(instants: np.ndarray, which: np.ndarray) -> np.ndarray:
     return np.concatenate([[], *(np.diff(instants[which == kind]) for kind in np.unique(which))])
 
 
-def _nearest(instants: np.ndarray | float, first: np.ndarray | float, spacing: float) -> np.ndarray | float:
+def _nearest(instants: np.ndarray, first: np.ndarray | float, spacing: float) -> np.ndarray:
     """Of the instants from a first one on, those nearest to these."""
     return first + spacing * np.round((instants - first) / spacing)

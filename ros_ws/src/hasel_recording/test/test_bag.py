@@ -72,6 +72,19 @@ def test_damaged_chunk_is_left_out_aloud(mcap_file):
         assert 0 < count(mcap_file) < 480
 
 
+def test_a_file_whose_messages_are_all_lost_is_not_called_empty(mcap_file):
+    """Cut off within its first chunk, it had messages."""
+    whole = mcap_file.read_bytes()
+    with mcap_file.open("rb") as file:
+        chunk = next(r for r in StreamReader(file, emit_chunks=True).records if isinstance(r, Chunk))
+    mcap_file.write_bytes(whole[: whole.index(chunk.data) + 20])
+    with (
+        pytest.warns(RecordingWarning, match="truncated"),
+        pytest.raises(RecordingError, match="no message on /hasel/bending/measured can be read: restore"),
+    ):
+        read_recording(mcap_file)
+
+
 @pytest.mark.parametrize(
     ("content", "message"), [(b"", "is empty"), (b"time_s,sin_theta\n0,1\n", "not an MCAP file")]
 )
