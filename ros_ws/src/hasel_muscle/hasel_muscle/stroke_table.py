@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_sim.drive.sloped_box import target_contraction
+from hasel_sim.drive.amplitudes import target_contraction
 from hasel_sim.muscle.muscle import Muscle
 
 from hasel_muscle.problem import BenchProblem

@@ -4,15 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from hasel_sim.dynamics.generalised_alpha import StepCoefficients
+from hasel_sim.dynamics.integrator import Integrator, Stepper
+from hasel_sim.dynamics.parameter_columns import NoSlope, beside
+from hasel_sim.dynamics.system import System
 from hasel_sim.errors import SimulationError
-from hasel_sim.mechanics.generalised_alpha import StepCoefficients
-from hasel_sim.mechanics.marcher import Drives, Marcher
-from hasel_sim.mechanics.motion import DriveState, Motion
-from hasel_sim.mechanics.residual_slopes import NoSlope, beside
-from hasel_sim.mechanics.seen import Seen
-from hasel_sim.mechanics.state import State, StateSlopes
-from hasel_sim.mechanics.stepper import Stepper
-from hasel_sim.mechanics.system import System
+from hasel_sim.mechanics.state import DriveState, Motion, NodeTrajectories, State, StateSlopes
 from hasel_sim.prepared_run import PreparedRun
 
 
@@ -36,7 +33,7 @@ class Lane:
         """The drive at the balance of a step."""
         return DriveState.single(self.voltage[step], self.contraction[step], self.time[step])
 
-    def follow(self, marcher: Marcher, step: int, lane: int, slopes: StateSlopes) -> None:
+    def follow(self, marcher: Integrator, step: int, lane: int, slopes: StateSlopes) -> None:
         """Make a step that failed in a lane by itself, in parts, and write its end back into the lane.
 
         Raises SimulationError where that fails too.
@@ -68,7 +65,7 @@ def columns_of_lanes(prepared: Sequence[PreparedRun], slopes: Sequence[np.ndarra
 
 def step_together(
     lanes: Sequence[Lane], count: int, keep_shapes: bool
-) -> tuple[Seen, list[SimulationError | None]]:
+) -> tuple[NodeTrajectories, list[SimulationError | None]]:
     """Step all lanes to their ends; what is seen, and what went wrong in each lane, come back.
 
     count: how many lanes the loops are compiled for; those without a run repeat the first and are not stepped.
@@ -80,16 +77,16 @@ def step_together(
     columns = [beside(each) for each in zip(*(lane.parameters for lane in filled), strict=True)]
     errors: list[SimulationError | None] = [None] * len(lanes)
     steps = max(map(len, lanes))
-    seen = Seen.of(lanes[0].prepared.rows.nodes, steps + 1, state, len(columns), keep_shapes)
+    seen = NodeTrajectories.of(lanes[0].prepared.rows.nodes, steps + 1, state, len(columns), keep_shapes)
     seen.note(0, state, slopes)
     if steps == 0:
         return seen, errors
-    marcher = Marcher(system, tolerance, columns)
+    marcher = Integrator(system, tolerance, columns)
     start = DriveState.beside([lane.prepared.start_drive for lane in filled])
     motion = Motion(state.position, state.velocity, state.acceleration)
     stress = system.second_piola(motion, start, system.memory(state))
     marcher.begin(state, stress, np.zeros_like(state.position))
-    drives = Drives(*(_beside(filled, name, steps) for name in ("voltage", "contraction", "time")))
+    drives = DriveState(*(_beside(filled, name, steps) for name in ("voltage", "contraction", "time")))
     kinds, coefficients = _coefficients(filled, steps)
     ends = np.array([*map(len, lanes), *[0] * (count - len(lanes))])
     marcher.plan(

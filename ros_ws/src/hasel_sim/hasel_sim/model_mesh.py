@@ -6,9 +6,8 @@ from functools import lru_cache
 import numpy as np
 
 from hasel_sim.errors import ModelError
-from hasel_sim.mesh.body_mesh import StripShape, strip_mesh
+from hasel_sim.mesh.body_mesh import StripShape, outline_fault, strip_mesh
 from hasel_sim.mesh.mesh import Mesh
-from hasel_sim.mesh.outline import outline_fault
 from hasel_sim.model import Model
 from hasel_sim.model.body import Body
 from hasel_sim.model.description import Description

@@ -7,7 +7,7 @@ import numpy as np
 
 from hasel_sim.errors import HaselSimError
 from hasel_sim.lanes import Lane, columns_of_lanes, step_together
-from hasel_sim.mechanics.seen import Seen
+from hasel_sim.mechanics.state import NodeTrajectories
 from hasel_sim.model import Model
 from hasel_sim.model.constants import shape_constants
 from hasel_sim.observation import observe
@@ -90,7 +90,7 @@ def _simulate_beside(prepared: Sequence[PreparedRun], keep_shapes: bool) -> list
     return results
 
 
-def _observed(lane: Lane, seen: Seen, place: int) -> Simulation:
+def _observed(lane: Lane, seen: NodeTrajectories, place: int) -> Simulation:
     prepared, plan, until = lane.prepared, lane.plan, len(lane) + 1
     markers, lines = prepared.rows.interpolated(seen.local[:until, ..., place])
     d_markers, d_lines = prepared.rows.interpolated_slopes(seen.slopes[:until, ..., place])

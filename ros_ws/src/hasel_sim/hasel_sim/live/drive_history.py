@@ -6,7 +6,7 @@ from hasel_recording.zero_order_hold import row_in_force
 from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.live.window import Window
-from hasel_sim.mechanics.motion import DriveState
+from hasel_sim.mechanics.state import DriveState
 from hasel_sim.model import Model
 
 

@@ -5,16 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from hasel_sim.build import Builder
+from hasel_sim.dynamics.generalised_alpha import plan_steps
+from hasel_sim.dynamics.integrator import Stepper
+from hasel_sim.dynamics.statics import initial_state
 from hasel_sim.errors import SimulationError
 from hasel_sim.live.angle_history import AngleHistory
 from hasel_sim.live.drive_history import DriveHistory
 from hasel_sim.live.live_model import rig_columns
 from hasel_sim.live.stamp_order import Arrival, StampOrder
-from hasel_sim.mechanics.initial import initial_state
-from hasel_sim.mechanics.motion import DriveState
-from hasel_sim.mechanics.state import State
-from hasel_sim.mechanics.stepper import Stepper
-from hasel_sim.mechanics.steps import plan_steps
+from hasel_sim.mechanics.state import DriveState, State
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.model import Model
 from hasel_sim.model_mesh import marker_rows

@@ -5,8 +5,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from hasel_sim.mesh.body_mesh import Stretch, StripShape
-from hasel_sim.mesh.outline import half_height, outline_fault
+from hasel_sim.mesh.body_mesh import Stretch, StripShape, half_height, outline_fault
 from hasel_sim.model.section import Finite, Name, NotNegative, Positive, Section
 
 Layer = Literal["upper", "lower", "soft", "spine", "whole"]

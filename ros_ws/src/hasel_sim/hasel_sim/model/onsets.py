@@ -3,8 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from hasel_sim.drive.amplitudes import AmplitudeTable
-from hasel_sim.drive.sloped_box import LARGEST_ONSET
+from hasel_sim.drive.amplitudes import LARGEST_ONSET, AmplitudeTable
 from hasel_sim.effects.base import DriveEffect, DriveStage, Effect
 from hasel_sim.model.description import Description
 from hasel_sim.model.parameter import Parameter

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_sim.swimming.beating_fish import Beat, Fish, beat_shape
+from hasel_sim.swimming.given_shape import Beat, Fish, beat_shape
 from scipy.optimize import minimize_scalar
 
 from hasel_sysid.errors import SysidError

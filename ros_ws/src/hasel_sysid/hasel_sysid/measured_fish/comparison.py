@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_sim.swimming.beating_fish import fitted_form_drag, settled_speed
+from hasel_sim.swimming.given_shape import fitted_form_drag, settled_speed
 
 from hasel_sysid.data_gate.drive_frequency import check_drive_frequency
 from hasel_sysid.data_gate.finding import DataFinding
