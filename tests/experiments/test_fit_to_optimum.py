@@ -10,8 +10,7 @@ from hasel_sim.commands import entry
 from hasel_sim.model import Model, load_model, save_model
 from hasel_sim.simulate import simulate_many
 from hasel_sim.swimming.boxes import Boxes
-from hasel_sim.swimming.optimum import WITHIN, Optimum, optimum, standard_error_of, uncertain
-from hasel_sim.swimming.sweep import swim_together
+from hasel_sim.swimming.sweep import WITHIN, Optimum, optimum, standard_error_of, swim_together, uncertain
 from hasel_sysid.command_line import fit
 
 FREE = ("slope", "amplitude_5500", "reactive_force.coefficient")

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_sim.drive.sloped_box import target_contraction
+from hasel_sim.drive.amplitudes import target_contraction
 from hasel_sim.muscle.muscle import Muscle
 
 from hasel_muscle.bench_problem import BenchProblem

@@ -4,12 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from hasel_sim.effects.base import Coefficients, Effect, EffectParameter, ForceEffect, MaterialEffect, guarded
-from hasel_sim.first_run import announce_compilation
-from hasel_sim.mechanics.branches import Branches
-from hasel_sim.mechanics.force_law import ForceLaw
-from hasel_sim.mechanics.inertia import Mass, add_tip_plate, element_masses
-from hasel_sim.mechanics.residual_slopes import (
+from hasel_sim.dynamics.parameter_columns import (
     ContractionSlope,
     ForceSlope,
     LawSlope,
@@ -18,11 +13,14 @@ from hasel_sim.mechanics.residual_slopes import (
     SolidSlope,
     SystemSlope,
 )
-from hasel_sim.mechanics.solid import Solid, lame_constants
-from hasel_sim.mechanics.stress_law import StressLaw
-from hasel_sim.mechanics.system import System
-from hasel_sim.mesh.mesh import Mesh, Region
-from hasel_sim.mesh.serendipity import reference_gradients
+from hasel_sim.dynamics.system import System
+from hasel_sim.effects.base import Coefficients, Effect, EffectParameter, ForceEffect, MaterialEffect, guarded
+from hasel_sim.first_run import announce_compilation
+from hasel_sim.laws.force_law import ForceLaw
+from hasel_sim.laws.stress_law import StressLaw
+from hasel_sim.mechanics.branches import Branches
+from hasel_sim.mechanics.solid import Mass, Solid, add_tip_plate, element_masses, lame_constants
+from hasel_sim.mesh.mesh import Mesh, Region, reference_gradients
 from hasel_sim.mesh.sites import (
     Sites,
     body_sites,

@@ -12,23 +12,29 @@ from functools import cache
 from hashlib import sha256
 from pathlib import Path
 
-from hasel_sim.mechanics import march
+from hasel_sim.dynamics.time_loop import integrate
+from hasel_sim.laws.program import operate
+from hasel_sim.mechanics.balance import balance
+
+_LOOPS = integrate, operate, balance
+"""One of every folder that has any."""
 
 
 def is_compiled() -> bool:
     """Whether an earlier run left its compiled loops on this machine."""
-    return any(_folder().glob("march.march-*.nbc"))
+    return any(_folders()[0].glob("time_loop.integrate-*.nbc"))
 
 
 def forget_other_versions() -> None:
     """Delete the compiled loops of other sources than these."""
-    sources = sorted(Path(march.__file__).parent.glob("*.py"))
+    folders = [Path(loop.py_func.__code__.co_filename).parent for loop in _LOOPS]
+    sources = sorted(path for folder in folders for path in folder.glob("*.py"))
     version = sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()
-    stamp = _folder() / "version_of_the_loops"
+    stamp = _folders()[0] / "version_of_the_loops"
     if stamp.is_file() and stamp.read_text() == version:
         return
     with suppress(OSError):  # a folder that is read only holds what was installed with it
-        for path in [*_folder().glob("*.nbi"), *_folder().glob("*.nbc")]:
+        for path in [path for folder in _folders() for path in folder.glob("*.nb[ci]")]:
             path.unlink(missing_ok=True)
         stamp.parent.mkdir(parents=True, exist_ok=True)
         stamp.write_text(version)
@@ -46,8 +52,8 @@ def announce_compilation() -> None:
         )
 
 
-def _folder() -> Path:
-    return Path(march.march.stats.cache_path)
+def _folders() -> list[Path]:
+    return [Path(loop.stats.cache_path) for loop in _LOOPS]
 
 
 def main() -> None:

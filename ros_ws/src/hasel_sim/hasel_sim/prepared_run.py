@@ -5,13 +5,12 @@ import numpy as np
 from hasel_sim.build import Builder, constant_parameter
 from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.schedule import no_drive
+from hasel_sim.dynamics.generalised_alpha import StepPlan, plan_steps
+from hasel_sim.dynamics.integrator import Stepper
+from hasel_sim.dynamics.statics import initial_state
 from hasel_sim.effects.base import DriveEffect, EffectParameter, ObservationEffect
 from hasel_sim.errors import SimulationError
-from hasel_sim.mechanics.initial import initial_state
-from hasel_sim.mechanics.motion import DriveState
-from hasel_sim.mechanics.state import State, StateSlopes
-from hasel_sim.mechanics.stepper import Stepper
-from hasel_sim.mechanics.steps import StepPlan, plan_steps
+from hasel_sim.mechanics.state import DriveState, State, StateSlopes
 from hasel_sim.model import Model
 from hasel_sim.model.model_parameters import constants, response_parameters
 from hasel_sim.model_mesh import marker_rows

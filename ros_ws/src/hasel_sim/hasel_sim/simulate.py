@@ -5,15 +5,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from hasel_sim.dynamics.generalised_alpha import StepCoefficients
+from hasel_sim.dynamics.integrator import Integrator, Stepper
+from hasel_sim.dynamics.parameter_columns import NoSlope, beside
+from hasel_sim.dynamics.system import System
 from hasel_sim.errors import HaselSimError, SimulationError
-from hasel_sim.mechanics.generalised_alpha import StepCoefficients
-from hasel_sim.mechanics.marcher import Drives, Marcher
-from hasel_sim.mechanics.motion import DriveState, Motion
-from hasel_sim.mechanics.residual_slopes import NoSlope, beside
-from hasel_sim.mechanics.seen import Seen
-from hasel_sim.mechanics.state import State, StateSlopes
-from hasel_sim.mechanics.stepper import Stepper
-from hasel_sim.mechanics.system import System
+from hasel_sim.mechanics.state import DriveState, Motion, NodeTrajectories, State, StateSlopes
 from hasel_sim.model import Model
 from hasel_sim.model.model_parameters import shape_constants
 from hasel_sim.model_mesh import observe
@@ -42,19 +39,19 @@ class Lane:
         """The drive at the balance of a step."""
         return DriveState.single(self.voltage[step], self.contraction[step], self.time[step])
 
-    def follow(self, marcher: Marcher, step: int, lane: int, slopes: StateSlopes) -> None:
+    def follow(self, integrator: Integrator, step: int, lane: int, slopes: StateSlopes) -> None:
         """Make a step that failed in a lane by itself, in parts, and write its end back into the lane.
 
         Raises SimulationError where that fails too.
         """
-        alone = Stepper(self.system, marcher.tolerance, self.parameters)
-        alone.begin(marcher.jerk[..., [lane]], marcher.stress[..., [lane]])
-        own, own_slopes = marcher.state.lane(lane), slopes.lane(lane)
+        alone = Stepper(self.system, integrator.tolerance, self.parameters)
+        alone.begin(integrator.jerk[..., [lane]], integrator.stress[..., [lane]])
+        own, own_slopes = integrator.state.lane(lane), slopes.lane(lane)
         derivatives = own_slopes, self.contraction_slopes[step]
         parts = alone.follow(own, self.drive(step), self.plan.coefficients[step], derivatives)
-        marcher.state.put(lane, parts[-1].after)
+        integrator.state.put(lane, parts[-1].after)
         slopes.put(lane, own_slopes)
-        marcher.jerk[..., lane], marcher.stress[..., lane] = alone.jerk[..., 0], alone.stress[..., 0]
+        integrator.jerk[..., lane], integrator.stress[..., lane] = alone.jerk[..., 0], alone.stress[..., 0]
 
 
 def columns_of_lanes(prepared: Sequence[PreparedRun], slopes: Sequence[np.ndarray]) -> list[list[int]]:
@@ -74,7 +71,7 @@ def columns_of_lanes(prepared: Sequence[PreparedRun], slopes: Sequence[np.ndarra
 
 def step_together(
     lanes: Sequence[Lane], count: int, keep_shapes: bool
-) -> tuple[Seen, list[SimulationError | None]]:
+) -> tuple[NodeTrajectories, list[SimulationError | None]]:
     """Step all lanes to their ends; what is seen, and what went wrong in each lane, come back.
 
     count: how many lanes the loops are compiled for; those without a run repeat the first and are not stepped.
@@ -86,35 +83,35 @@ def step_together(
     columns = [beside(each) for each in zip(*(lane.parameters for lane in filled), strict=True)]
     errors: list[SimulationError | None] = [None] * len(lanes)
     steps = max(map(len, lanes))
-    seen = Seen.of(lanes[0].prepared.rows.nodes, steps + 1, state, len(columns), keep_shapes)
+    seen = NodeTrajectories.of(lanes[0].prepared.rows.nodes, steps + 1, state, len(columns), keep_shapes)
     seen.note(0, state, slopes)
     if steps == 0:
         return seen, errors
-    marcher = Marcher(system, tolerance, columns)
+    integrator = Integrator(system, tolerance, columns)
     start = DriveState.beside([lane.prepared.start_drive for lane in filled])
     motion = Motion(state.position, state.velocity, state.acceleration)
     stress = system.second_piola(motion, start, system.memory(state))
-    marcher.begin(state, stress, np.zeros_like(state.position))
-    drives = Drives(*(_beside(filled, name, steps) for name in ("voltage", "contraction", "time")))
+    integrator.begin(state, stress, np.zeros_like(state.position))
+    drives = DriveState(*(_beside(filled, name, steps) for name in ("voltage", "contraction", "time")))
     kinds, coefficients = _coefficients(filled, steps)
     ends = np.array([*map(len, lanes), *[0] * (count - len(lanes))])
-    marcher.plan(
+    integrator.plan(
         drives, kinds, coefficients, ends, seen, slopes, _beside(filled, "contraction_slopes", steps)
     )
     step, last = 0, int(ends.max())
     while step < last:
-        reached = marcher.advance(step, last)
+        reached = integrator.advance(step, last)
         step = min(reached + 1, last)
         if reached == last:
             continue
-        for index in np.flatnonzero((step <= ends) & ~marcher.arrived).tolist():
+        for index in np.flatnonzero((step <= ends) & ~integrator.arrived).tolist():
             try:
-                lanes[index].follow(marcher, step - 1, index, slopes)
+                lanes[index].follow(integrator, step - 1, index, slopes)
             except SimulationError as error:
                 errors[index], ends[index] = error, 0
         seen.note(step, state, slopes)
         last = int(ends.max())
-    marcher.say_what_runs_as_python()
+    integrator.say_what_runs_as_python()
     for index in range(len(lanes)):
         if errors[index] is None and not np.isfinite(slopes.position[..., index]).all():
             errors[index] = SimulationError(
@@ -219,7 +216,7 @@ def _simulate_beside(prepared: Sequence[PreparedRun], keep_shapes: bool) -> list
     return results
 
 
-def _observed(lane: Lane, seen: Seen, place: int) -> Simulation:
+def _observed(lane: Lane, seen: NodeTrajectories, place: int) -> Simulation:
     prepared, plan, until = lane.prepared, lane.plan, len(lane) + 1
     markers, lines = prepared.rows.interpolated(seen.local[:until, ..., place])
     d_markers, d_lines = prepared.rows.interpolated_slopes(seen.slopes[:until, ..., place])

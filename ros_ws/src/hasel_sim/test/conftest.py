@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from hasel_sim.build import Builder
 from hasel_sim.drive.schedule import DriveSchedule
+from hasel_sim.dynamics.statics import equilibrium
 from hasel_sim.effects.base import EffectParameter, ForceEffect
-from hasel_sim.mechanics.motion import DriveState
-from hasel_sim.mechanics.statics import equilibrium
+from hasel_sim.mechanics.state import DriveState
 from hasel_sim.model import Model, Parameter, load_model
 from hasel_sim.model.description import Description
 from hasel_sim.run import Run

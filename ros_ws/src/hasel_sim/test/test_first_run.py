@@ -31,7 +31,10 @@ def test_loops_of_another_version_are_not_used(tmp_path):
     command = [sys.executable, "-c", _ANNOUNCE]
     subprocess.run(command, env=environment, check=True, capture_output=True)
     (stamp,) = tmp_path.rglob("version_of_the_loops")
-    loops = [stamp.parent / name for name in ("march.march-1.py311.nbi", "march.march-1.py311.1.nbc")]
+    loops = [
+        stamp.parent / name
+        for name in ("time_loop.integrate-1.py311.nbi", "time_loop.integrate-1.py311.1.nbc")
+    ]
     kept = stamp.parent / "another.file"
     for path in [*loops, kept]:
         path.write_text("")

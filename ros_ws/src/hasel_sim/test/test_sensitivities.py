@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from hasel_sim.build import Builder
+from hasel_sim.dynamics.parameter_columns import SolidSlope
 from hasel_sim.effects.base import (
     DriveEffect,
     DriveStage,
@@ -14,7 +15,6 @@ from hasel_sim.effects.base import (
     ObservationEffect,
 )
 from hasel_sim.errors import SimulationError
-from hasel_sim.mechanics.residual_slopes import SolidSlope
 from hasel_sim.mesh.mesh import Region
 from hasel_sim.model import Model, Parameter
 from hasel_sim.run import Run

@@ -119,8 +119,8 @@ def test_an_effect_that_looks_at_its_drive_sees_that_of_its_own_lane(swimmer, ru
 def test_a_lane_that_fails_leaves_the_others_alone(swimmer, boxes, monkeypatch):
     """Its error comes back in its place; an unknown parameter's and a run without frames' likewise."""
     run, hard = boxes(duration=0.2), swimmer.with_values({"amplitude_5500": 0.6, "slope": 1e3})
-    monkeypatch.setattr("hasel_sim.mechanics.stepper._MOST_HALVINGS", 0)
-    monkeypatch.setattr("hasel_sim.mechanics.stepper.Stepper.follow.__defaults__", (0,))
+    monkeypatch.setattr("hasel_sim.dynamics.integrator._MOST_HALVINGS", 0)
+    monkeypatch.setattr("hasel_sim.dynamics.integrator.Stepper.follow.__defaults__", (0,))
     late = Run("late", run.time, run.schedule, initial_time=9.0)
     found = simulate_many([(swimmer, run), (hard, run), (swimmer, late), (swimmer, run)])
     assert isinstance(found[1], SimulationError)

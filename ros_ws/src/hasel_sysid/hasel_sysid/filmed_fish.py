@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from hasel_recording import DriveChannel, Recording
 from hasel_recording.recording import sin_theta_from_markers
-from hasel_sim.swimming.beating_fish import Beat, Fish, beat_shape
+from hasel_sim.swimming.given_shape import Beat, Fish, beat_shape
 from scipy.optimize import minimize_scalar
 
 from hasel_sysid.errors import SysidError

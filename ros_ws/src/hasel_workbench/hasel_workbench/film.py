@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_sim.mesh.mesh import Mesh
-from hasel_sim.mesh.serendipity import reference_gradients
+from hasel_sim.mesh.mesh import Mesh, reference_gradients
 from hasel_sim.model import Model
 from hasel_sim.model_mesh import model_mesh
 from hasel_sim.run import Simulation

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from hasel_bringup.hidden_truth.plan import FITTED
 from hasel_bringup.hidden_truth.truth import NOMINAL, NUMERICS, draw_muscles, draw_secret, truth_model
-from hasel_sim.drive.sloped_box import target_contraction
+from hasel_sim.drive.amplitudes import target_contraction
 from hasel_sim.model import load_model
 from hasel_sim.model_mesh import model_mesh
 from hasel_sim.simulate import simulate

@@ -18,7 +18,7 @@ The same from the files themselves: `ros2 run hasel_sysid measured_fish DIR`, wi
 from dataclasses import dataclass
 
 import numpy as np
-from hasel_sim.swimming.beating_fish import Beat, Fish, fitted_form_drag, settled_speed
+from hasel_sim.swimming.given_shape import Beat, Fish, fitted_form_drag, settled_speed
 
 FISH = Fish(
     nose=-0.071,

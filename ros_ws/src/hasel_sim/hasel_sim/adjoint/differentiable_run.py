@@ -5,8 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import torch
 
-from hasel_sim.adjoint.gradient import gradient, gradient_of_shapes
-from hasel_sim.adjoint.trajectory import Trajectory, follow
+from hasel_sim.adjoint.gradient import Gradient, Trajectory, follow, gradient, gradient_of_shapes
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
@@ -62,10 +61,7 @@ class DifferentiableRun:
 
         Raises ModelError for an outline that crosses the spine, SimulationError for a motion that cannot be followed.
         """
-        contraction = self.contraction(values) if contraction is None else contraction
-        values = self.values() if values is None else values
-        outline = self.outline() if outline is None else outline
-        return _Angle.apply(self, contraction, values, outline)
+        return _Angle.apply(self, *self._all(contraction, values, outline))
 
     def shapes(
         self,
@@ -77,10 +73,15 @@ class DifferentiableRun:
 
         With them goes whatever depends on where the body is: how fast it swims, where it heads.
         """
-        contraction = self.contraction(values) if contraction is None else contraction
-        values = self.values() if values is None else values
-        outline = self.outline() if outline is None else outline
-        return _Shapes.apply(self, contraction, values, outline)
+        return _Shapes.apply(self, *self._all(contraction, values, outline))
+
+    def _all(self, contraction, values, outline) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+        """What is given, and the model's own of what is not."""
+        return (
+            self.contraction(values) if contraction is None else contraction,
+            self.values() if values is None else values,
+            self.outline() if outline is None else outline,
+        )
 
     def at(self, values: torch.Tensor) -> Model:
         """The model at these values of the parameters."""
@@ -155,6 +156,11 @@ def _followed(run: DifferentiableRun, contraction, values, outline) -> Trajector
     return follow(prepared, contraction.detach().numpy())
 
 
+def _by_input(ctx, found: Gradient) -> tuple:
+    outline = torch.from_numpy(found.outline) if ctx.needs_input_grad[3] else None
+    return None, torch.from_numpy(found.contraction), torch.from_numpy(found.parameters), outline
+
+
 class _Shapes(torch.autograd.Function):
     @staticmethod
     def forward(ctx, run: DifferentiableRun, contraction, values, outline) -> torch.Tensor:
@@ -163,9 +169,9 @@ class _Shapes(torch.autograd.Function):
 
     @staticmethod
     def backward(ctx, weights: torch.Tensor):
-        found = gradient_of_shapes(ctx.trajectory, weights.detach().numpy(), ctx.needs_input_grad[3])
-        outline = torch.from_numpy(found.outline) if ctx.needs_input_grad[3] else None
-        return None, torch.from_numpy(found.contraction), torch.from_numpy(found.parameters), outline
+        return _by_input(
+            ctx, gradient_of_shapes(ctx.trajectory, weights.detach().numpy(), ctx.needs_input_grad[3])
+        )
 
 
 class _Angle(torch.autograd.Function):
@@ -179,6 +185,4 @@ class _Angle(torch.autograd.Function):
         plan = ctx.trajectory.prepared.plan
         at_boundaries = np.zeros(len(plan.boundaries))
         np.add.at(at_boundaries, plan.frames, weights.detach().numpy()[-len(plan.frames) :])
-        found = gradient(ctx.trajectory, at_boundaries, ctx.needs_input_grad[3])
-        outline = torch.from_numpy(found.outline) if ctx.needs_input_grad[3] else None
-        return None, torch.from_numpy(found.contraction), torch.from_numpy(found.parameters), outline
+        return _by_input(ctx, gradient(ctx.trajectory, at_boundaries, ctx.needs_input_grad[3]))

@@ -112,7 +112,7 @@ def band_solutions(model: Model, times: int) -> Callable[[], None]:
 
 
 KERNELS = {
-    ("march.py", "march"): "the compiled time loop",
+    ("time_loop.py", "integrate"): "the compiled time loop",
     ("prepared_run.py", "__init__"): "mesh, matrices, drive (prepared once)",
     ("prepared_run.py", "start"): "the state it starts from",
     ("simulate.py", "_observed"): "what the markers see of it",

@@ -17,7 +17,7 @@ from hasel_sim.swimming.boxes import Boxes, waveform_rows
 from hasel_sim.swimming.free_swim import FreeSwim, check_swimmer, free_swim
 
 if TYPE_CHECKING:
-    from hasel_sim.swimming.tried import BestSwim
+    from hasel_sim.swimming.search import BestSwim
 
 
 def run(options: argparse.Namespace) -> int:
@@ -33,7 +33,7 @@ def _run(options: argparse.Namespace) -> int:
     if importlib.util.find_spec("torch") is None:
         raise SimulationError("optimise needs PyTorch for its gradients: install torch")
     from hasel_sim.swimming.best_swim import best_swim
-    from hasel_sim.swimming.task import Task
+    from hasel_sim.swimming.search import Task
 
     model = load_model(options.model)
     model = model.with_freed(*dict(options.set)).with_values(dict(options.set))

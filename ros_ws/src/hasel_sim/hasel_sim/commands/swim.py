@@ -15,9 +15,18 @@ from hasel_sim.mesh_picture import save_picture
 from hasel_sim.model import Model, load_model
 from hasel_sim.parallel import executor
 from hasel_sim.swimming.boxes import Boxes
-from hasel_sim.swimming.optimum import Optimum, optimum, standard_error_of
-from hasel_sim.swimming.sweep import Swam, SweepLedger, check_drives, fingerprint, sweep, swim_together
-from hasel_sim.swimming.swim_picture import draw_speeds
+from hasel_sim.swimming.sweep import (
+    Optimum,
+    Swam,
+    SweepLedger,
+    check_drives,
+    draw_speeds,
+    fingerprint,
+    optimum,
+    standard_error_of,
+    sweep,
+    swim_together,
+)
 
 
 @dataclass(frozen=True)

@@ -1,22 +1,114 @@
-"""The whole drive: commanded signal -> supply and electrode effects -> target -> response -> contraction."""
+"""The whole drive: commanded signal -> supply and electrode effects -> target -> response -> contraction.
 
-from collections.abc import Sequence
+The target is that of the amplitudes or of the law of the Peano-HASEL against an elastic body; it has a corner where a
+drive begins, or ceases, to contract a muscle.
+"""
+
+from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
 
-from hasel_sim.drive.onset import crossings, secants, soon_after_switches, with_onsets
-from hasel_sim.drive.peano_hasel import PeanoHaselDrive
+from hasel_sim.drive.amplitudes import limit_rate, target_contraction
 from hasel_sim.drive.schedule import DriveSchedule
-from hasel_sim.drive.sloped_box import limit_rate, target_contraction
 from hasel_sim.effects.base import DriveEffect, DriveStage, guarded
 from hasel_sim.effects.first_order_lag import first_order_lag
 from hasel_sim.model import Model
+from hasel_sim.model.muscle_law import GAIN, PRELOAD, STIFFNESS, MuscleLaw
+from hasel_sim.muscle.muscle import Muscle
 
+_SHARP = 1e-6
+_SOON_S = 8e-3 * 0.5 ** np.arange(20)
+_BODY = "parallel_stiffness"
 _SECANTS = 3
 """They bring the instant of an onset from 5 % of its delay to less than 0.1 %."""
 _TO_TARGET = [stage for stage in DriveStage if stage < DriveStage.TARGET]
 _FROM_TARGET = [stage for stage in DriveStage if stage >= DriveStage.TARGET]
+
+
+class Crossings(NamedTuple):
+    """Where a magnitude passes the onset of its channel, between two times; [crossings] each.
+
+    cell: number of the earlier of the two times; share: of the way between them, the magnitude taken to change
+    steadily; off: by how much it misses the onset at the nearer of the two, over the onset.
+    """
+
+    cell: np.ndarray
+    channel: np.ndarray
+    share: np.ndarray
+    off: np.ndarray
+
+
+def crossings(time: np.ndarray, signal: np.ndarray, onsets: np.ndarray) -> Crossings:
+    """Of a signal [n, channels] at its times [s] [n], in their order; onsets: [channels], 0 where there is none.
+
+    Equal times mark a jump, which crosses in no time.
+    """
+    magnitude = np.abs(signal)
+    above = magnitude > onsets
+    passes = (above[1:] != above[:-1]) & (np.diff(time) > 0.0)[:, None] & (onsets > 0.0)
+    cell, channel = np.nonzero(passes)
+    onset = onsets[channel]
+    before, after = magnitude[cell, channel] - onset, magnitude[cell + 1, channel] - onset
+    share = before / (before - after)
+    off = np.minimum(np.abs(before), np.abs(after)) / onset
+    order = np.lexsort((share, cell))
+    return Crossings(cell[order], channel[order], share[order], off[order])
+
+
+def soon_after_switches(schedule: DriveSchedule, onsets: np.ndarray) -> np.ndarray:
+    """Times [s] after the switches past an onset [channels], for whatever follows them, however fast.
+
+    By halves from 8 ms, twice the usual step of a simulation, down to the difference step of a lag's derivative.
+    """
+    above = np.vstack([np.zeros(len(onsets), dtype=bool), np.abs(schedule.signal) > onsets])
+    passes = np.any(above[1:] != above[:-1], axis=1)
+    return (schedule.time[passes][:, None] + _SOON_S).ravel()
+
+
+def secants(found: Crossings, origin: np.ndarray) -> np.ndarray:
+    """Times [s] nearer to the crossings that lie between two times of `origin` [n] and near to neither."""
+    blurred = found.off > _SHARP
+    cell = found.cell[blurred]
+    return origin[cell] + found.share[blurred] * (origin[cell + 1] - origin[cell])
+
+
+def with_onsets(
+    time: np.ndarray, signal: np.ndarray, onsets: np.ndarray, found: Crossings
+) -> tuple[np.ndarray, np.ndarray]:
+    """The signal [n, channels] at its times [s] [n] and, besides, at its onsets [channels] where it crosses them."""
+    cell, channel, share, _ = found
+    rows = signal[cell] + share[:, None] * (signal[cell + 1] - signal[cell])
+    sign = np.where(signal[cell, channel] + signal[cell + 1, channel] < 0.0, -1.0, 1.0)
+    rows[np.arange(len(cell)), channel] = sign * onsets[channel]
+    new = time[cell] + share * (time[cell + 1] - time[cell])
+    return np.insert(time, cell + 1, new), np.insert(signal, cell + 1, rows, axis=0)
+
+
+class PeanoHaselDrive:
+    """The law of a model's muscles; the body's stiffness counts beside what the muscle itself opposes."""
+
+    def __init__(self, law: MuscleLaw) -> None:
+        muscle = law.muscle()
+        own = f"{_BODY}.stiffness"
+        self._own_stiffness = muscle.values.get(own, 0.0)
+        self._muscle = muscle if own in muscle.parameters else muscle.with_effects(_BODY)
+
+    def contraction(self, voltage: np.ndarray, values: Mapping[str, float]) -> np.ndarray:
+        """Contraction [1] aimed at for voltages [V] of any shape."""
+        muscle = self._beside_the_body(values)
+        flat = np.ravel(voltage)
+        load = np.full(flat.shape, values[PRELOAD])
+        strain = muscle.balanced(flat, load, load) / muscle.rest_length
+        return values[GAIN] * strain.reshape(np.shape(voltage))
+
+    def onset(self, values: Mapping[str, float]) -> float:
+        """Voltage [V] up to which the preload holds the muscle at its full length."""
+        return self._beside_the_body(values).onset(values[PRELOAD])
+
+    def _beside_the_body(self, values: Mapping[str, float]) -> Muscle:
+        return self._muscle.with_values({f"{_BODY}.stiffness": self._own_stiffness + values[STIFFNESS]})
 
 
 class DriveChain:

@@ -2,7 +2,7 @@
 
 An effect is one class in one file. It holds no state: its parameter values come as the argument `p`, with one attribute
 per parameter. At the parameters' null values the model is exactly the one without the effect. No effect writes a
-derivative; the simulator records what the methods below compute and differentiates it (`hasel_sim.tape`), or takes
+derivative; the simulator records what the methods below compute and differentiates it (`hasel_sim.laws`), or takes
 central differences where that cannot be.
 """
 

@@ -6,7 +6,7 @@ from hasel_recording.recording import row_in_force
 from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.base import ObservationEffect
-from hasel_sim.mechanics.motion import DriveState
+from hasel_sim.mechanics.state import DriveState
 from hasel_sim.model import Model
 from hasel_sim.model_mesh import observe
 

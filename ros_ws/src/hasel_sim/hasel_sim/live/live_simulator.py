@@ -9,13 +9,12 @@ from hasel_common.inside_folder import inside_folder
 
 from hasel_sim.build import Builder
 from hasel_sim.drive.schedule import HASEL_CHANNELS
+from hasel_sim.dynamics.generalised_alpha import plan_steps
+from hasel_sim.dynamics.integrator import Stepper
+from hasel_sim.dynamics.statics import initial_state
 from hasel_sim.errors import ModelError, SimulationError
 from hasel_sim.live.histories import AngleHistory, DriveHistory
-from hasel_sim.mechanics.initial import initial_state
-from hasel_sim.mechanics.motion import DriveState
-from hasel_sim.mechanics.state import State
-from hasel_sim.mechanics.stepper import Stepper
-from hasel_sim.mechanics.steps import plan_steps
+from hasel_sim.mechanics.state import DriveState, State
 from hasel_sim.mesh.mesh import Mesh
 from hasel_sim.model import Model, load_model
 from hasel_sim.model_mesh import marker_rows

@@ -3,14 +3,63 @@
 Every array has the lanes as its last axis (see `simd.py`) but those that describe the mesh: elements, gradients and
 areas. `stretch` is that of the stress-free shape along the body: gradients by x shrink with it, areas grow. Indices of
 a stress run 00, 01, 10, 11 (row-major).
+
+Sites that follow each other at the same nodes, as those of one element do, make a group: their matrices are summed
+before they go to the band. What a force at a site does to node a when the field at node b changes is a product that no
+motion changes; the products of all groups stand in one list.
 """
+
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from hasel_sim.mechanics.constitutive import COEFFICIENTS, FIBRE
-from hasel_sim.mechanics.element_force import add_stress, add_to_nodes, product
+from hasel_sim.mesh.sites import Sites
 from hasel_sim.simd import add, four, load, square_root, store, three, zero
+
+
+@njit(inline="always")
+def product(matrix, at, vector, lane):
+    """The 4 x 4 numbers that start at a flat index, rows one after the other, times four numbers."""
+    lanes = len(lane)
+    x0, x1, x2, x3 = vector
+    a0, a1, a2, a3 = four(matrix, at, lane)
+    b0, b1, b2, b3 = four(matrix, at + 4 * lanes, lane)
+    c0, c1, c2, c3 = four(matrix, at + 8 * lanes, lane)
+    d0, d1, d2, d3 = four(matrix, at + 12 * lanes, lane)
+    return (
+        a0 * x0 + a1 * x1 + a2 * x2 + a3 * x3,
+        b0 * x0 + b1 * x1 + b2 * x2 + b3 * x3,
+        c0 * x0 + c1 * x1 + c2 * x2 + c3 * x3,
+        d0 * x0 + d1 * x1 + d2 * x2 + d3 * x3,
+    )
+
+
+@njit(inline="always")
+def add_stress(local, P, gradients, e, g, area, wide, lane):
+    """Add to local [8, 2, lanes] what the first Piola stress at a Gauss point (row by row) does to its element's nodes.
+
+    gradients: [elements, points, 8, 2] of the shape functions; area: of the point; wide: times its stretch.
+    """
+    lanes = len(lane)
+    p0, p1, p2, p3 = P
+    p0, p1, p2, p3 = area * p0, wide * p1, area * p2, wide * p3
+    for n in range(8):
+        dx, dy = gradients[e, g, n, 0], gradients[e, g, n, 1]
+        add(local, 2 * n * lanes, p0 * dx + p1 * dy)
+        add(local, (2 * n + 1) * lanes, p2 * dx + p3 * dy)
+
+
+@njit(inline="always")
+def add_to_nodes(local, elements, e, first, out, lane):
+    """Add an element's forces [8, 2, lanes] to those of all nodes [columns, nodes, 2, lanes], from node `first` on."""
+    lanes = len(lane)
+    for n in range(8):
+        at = 2 * lanes * (first + elements[e, n])
+        add(out, at, load(local, 2 * n * lanes, lane))
+        add(out, at + lanes, load(local, (2 * n + 1) * lanes, lane))
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
@@ -85,17 +134,15 @@ def scatter_matrix(
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def scatter_directions(moduli, stress, elements, gradients, areas, stretch, directions, force, lane):
+def scatter_directions(moduli, elements, gradients, areas, stretch, directions, force, lane):
     """Add to force [columns, nodes, 2, lanes] the change of the nodal forces along many directions at once.
 
     moduli: [elements, points, 4, 4, lanes], by F or by its rate; directions: of the nodal positions or velocities
-    [columns, nodes, 2, lanes]; stress: change of the first Piola stress that does not come from them,
-    [columns, elements, points, 4, lanes], or an empty first axis for none.
+    [columns, nodes, 2, lanes].
     """
-    lanes, points, count = len(lane), areas.shape[1], elements.shape[0]
-    nodes = directions.shape[1]
+    lanes, points, nodes = len(lane), areas.shape[1], directions.shape[1]
     local, here = np.empty(16 * lanes), np.empty(16 * lanes)
-    for e in range(count):
+    for e in range(elements.shape[0]):
         for column in range(directions.shape[0]):
             local[:] = 0.0
             for a in range(8):
@@ -112,9 +159,6 @@ def scatter_directions(moduli, stress, elements, gradients, areas, stretch, dire
                 along = load(stretch, point * lanes, lane)
                 d0, d2 = d0 / along, d2 / along
                 p0, p1, p2, p3 = product(moduli, 16 * point * lanes, (d0, d1, d2, d3), lane)
-                if stress.shape[0] > 0:
-                    s0, s1, s2, s3 = four(stress, 4 * lanes * (column * count * points + point), lane)
-                    p0, p1, p2, p3 = p0 + s0, p1 + s1, p2 + s2, p3 + s3
                 area = areas[e, g]
                 add_stress(local, (p0, p1, p2, p3), gradients, e, g, area, area * along, lane)
             add_to_nodes(local, elements, e, column * nodes, force, lane)
@@ -169,3 +213,97 @@ def mass_product(masses, elements, columns, out, lane):
                 at = 2 * lanes * (column * nodes + elements[e, a])
                 add(out, at, x)
                 add(out, at + lanes, y)
+
+
+class SiteGroups(NamedTuple):
+    """first: sites that each group begins with, and their number; start: the same in the list of its nodes; nodes: of
+    every group; value, tangent: where the group's products [nodes, nodes, sites] begin in `products`, by the value and
+    by the tangent of the field, -1 where no force of it looks at the tangent; alike: whether those by the value are the
+    same for nodes exchanged.
+    """
+
+    first: np.ndarray
+    start: np.ndarray
+    nodes: np.ndarray
+    value: np.ndarray
+    tangent: np.ndarray
+    alike: np.ndarray
+    products: np.ndarray
+
+
+def site_groups(laws: Sequence[tuple[Sites, bool]]) -> SiteGroups:
+    """Of the sites of all laws, one after the other; with each, whether it looks at the tangent."""
+    first, start, nodes, value, tangent, alike = [0], [0], [np.zeros(0)], [], [], []
+    products, count = [np.zeros(0)], 0
+
+    def keep(shape: np.ndarray, weight: np.ndarray) -> int:
+        nonlocal count
+        products.append(np.einsum("sa,sb->abs", weight, shape).ravel())
+        count += products[-1].size
+        return count - products[-1].size
+
+    for sites, looks_along in laws:
+        changes = np.flatnonzero((sites.nodes[1:] != sites.nodes[:-1]).any(axis=1)) + 1
+        same = np.array_equal(sites.weight, sites.shape * sites.measure[:, None])
+        for group in np.split(np.arange(len(sites.nodes)), changes):
+            weight = sites.weight[group]
+            alike.append(same)
+            nodes.append(sites.nodes[group[0]])
+            first.append(first[-1] + len(group))
+            start.append(start[-1] + sites.nodes.shape[1])
+            value.append(keep(sites.shape[group], weight))
+            tangent.append(keep(sites.slope[group], weight) if looks_along else -1)
+    numbers = (first, start, np.concatenate(nodes), value, tangent, alike)
+    return SiteGroups._make([*(np.array(n, dtype=np.intp) for n in numbers), np.concatenate(products)])
+
+
+@njit(inline="always")
+def _summed(products, place, matrices, first, count, lane):
+    """The four components of the sum of site matrices, each times its product."""
+    lanes = len(lane)
+    xx, xy, yx, yy = zero(lane), zero(lane), zero(lane), zero(lane)
+    for s in range(count):
+        factor, at = products[place + s], 4 * (first + s) * lanes
+        xx = xx + factor * load(matrices, at, lane)
+        xy = xy + factor * load(matrices, at + lanes, lane)
+        yx = yx + factor * load(matrices, at + 2 * lanes, lane)
+        yy = yy + factor * load(matrices, at + 3 * lanes, lane)
+    return xx, xy, yx, yy
+
+
+@njit(inline="always")
+def _add_block(band, at, below, block, lane):
+    """Add two rows of two components, the second `below` the first."""
+    lanes, (xx, xy, yx, yy) = len(lane), block
+    add(band, at, xx)
+    add(band, at + lanes, xy)
+    add(band, at + below, yx)
+    add(band, at + below + lanes, yy)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def add_site_matrix(sites, band, diagonal, lane):
+    """Add the site matrices [sites, 2, 2, lanes], by value and by tangent, to a band matrix; sites: `SiteGroups` and
+    these two.
+    """
+    (first, start, nodes, value, tangent, alike, products), by_value, by_tangent = sites
+    lanes, width = len(lane), band.shape[1]
+    below = (width - 1) * lanes
+    for g in range(len(value)):
+        begin, count, size = first[g], first[g + 1] - first[g], start[g + 1] - start[g]
+        for a in range(size):
+            row = 2 * nodes[start[g] + a]
+            for b in range(a if alike[g] else 0, size):
+                column = 2 * nodes[start[g] + b]
+                at = (row * (width - 1) + diagonal + column) * lanes
+                block = _summed(products, value[g] + (a * size + b) * count, by_value, begin, count, lane)
+                _add_block(band, at, below, block, lane)
+                if alike[g] and a != b:
+                    _add_block(band, (column * (width - 1) + diagonal + row) * lanes, below, block, lane)
+            if tangent[g] >= 0:
+                for b in range(size):
+                    at = (row * (width - 1) + diagonal + 2 * nodes[start[g] + b]) * lanes
+                    place = tangent[g] + (a * size + b) * count
+                    _add_block(
+                        band, at, below, _summed(products, place, by_tangent, begin, count, lane), lane
+                    )

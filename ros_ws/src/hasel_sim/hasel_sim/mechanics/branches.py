@@ -4,14 +4,81 @@ Each branch holds a second Piola stress Q with dQ/dt = g C : dE/dt - Q / tau, wh
 starts; over a step h, exactly for a strain that changes at a constant rate,
 Q1 = exp(-h/tau) Q0 + g phi(h/tau) C : (E1 - E0) with phi(r) = (1 - exp(-r)) / r.
 J. C. Simo, T. J. R. Hughes, Computational Inelasticity, section 10.3.
+
+Stresses are [branches, elements, points, 3, lanes], C : E [elements, points, 3, lanes]; derivatives have the columns
+first. What a step leaves and adds: left, gain [branches, lanes].
 """
 
 from collections.abc import Sequence
 
 import numpy as np
+from numba import njit
 
-from hasel_sim.mechanics import branch_loops as loops
-from hasel_sim.simd import lane_tuple
+from hasel_sim.mechanics.constitutive import deformation, green_stress_direction
+from hasel_sim.simd import lane_tuple, load, store, zero
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def carried(left, gain, stresses, green, out, lane):
+    """The part of the branches' stress after a step that no new strain changes, [elements, points, 3, lanes]."""
+    lanes = len(lane)
+    for at in range(0, out.size, lanes):
+        total = zero(lane)
+        for b in range(stresses.shape[0]):
+            total = total + load(left, b * lanes, lane) * load(stresses, b * out.size + at, lane)
+            total = total - load(gain, b * lanes, lane) * load(green, at, lane)
+        store(out, at, total)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def carried_columns(left, gain, stresses, green, out, lane):
+    """Derivatives of what the branches carry over a step, [columns, elements, points, 3, lanes]."""
+    for c in range(green.shape[0]):
+        carried(left, gain, stresses[c], green[c], out[c], lane)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def green_along(moved, F, places, shear, lame, out, lane):
+    """Derivatives of C : E along those of the positions, moved [columns, nodes, 2, lanes], at a deformation F."""
+    elements, gradients, _, stretch = places
+    change = np.empty_like(F)
+    for c in range(moved.shape[0]):
+        deformation(moved[c], elements, gradients, stretch, change, lane)
+        green_stress_direction(F, change, shear, lame, out[c], lane)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def advance_stresses(left, gain, stresses, green, new_green, out, lane):
+    """Derivatives of the branches' stresses at the end of a step, where those of C : E are `new_green`."""
+    lanes, branches = len(lane), stresses.shape[1]
+    size = green.shape[1] * green.shape[2] * green.shape[3] * lanes
+    for c in range(green.shape[0]):
+        for at in range(0, size, lanes):
+            more = load(new_green, c * size + at, lane) - load(green, c * size + at, lane)
+            for b in range(branches):
+                place = (c * branches + b) * size + at
+                old = load(left, b * lanes, lane) * load(stresses, place, lane)
+                store(out, place, old + load(gain, b * lanes, lane) * more)
+
+
+@njit(cache=True, fastmath=True, error_model="numpy")
+def add_parameter(left, gain, stresses, green, own, factor, more, more_green, lane):
+    """Add to the derivatives `more` and `more_green` of one column a factor [lanes] times what the branches and C : E
+    of one body are at the end of a step: stresses and green at its beginning, own C : E at its end.
+    """
+    lanes, branches, size = len(lane), stresses.shape[0], green.size
+    times = load(factor, 0, lane)
+    for at in range(0, size, lanes):
+        new = load(own, at, lane)
+        change = new - load(green, at, lane)
+        store(more_green, at, load(more_green, at, lane) + times * new)
+        for b in range(branches):
+            place = b * size + at
+            end = (
+                load(left, b * lanes, lane) * load(stresses, place, lane)
+                + load(gain, b * lanes, lane) * change
+            )
+            store(more, place, load(more, place, lane) + times * end)
 
 
 class Branches:
@@ -60,7 +127,7 @@ class Branches:
         if not np.any(step):
             return stresses.sum(axis=0)
         out = np.empty_like(green)
-        loops.carried(*self.factors(step), stresses, green, out, lane_tuple(green.shape[-1]))
+        carried(*self.factors(step), stresses, green, out, lane_tuple(green.shape[-1]))
         return out
 
     def advance(
@@ -68,5 +135,5 @@ class Branches:
     ) -> np.ndarray:
         """Stresses of all branches at the end of a step."""
         out, lane = np.empty((1, *stresses.shape)), lane_tuple(green.shape[-1])
-        loops.advance(*self.factors(step), stresses[None], green[None], new_green[None], out, lane)
+        advance_stresses(*self.factors(step), stresses[None], green[None], new_green[None], out, lane)
         return out[0]

@@ -1,16 +1,71 @@
-"""The solid: constants at the Gauss points, internal force and its derivatives."""
+"""The solid and its mass: constants at the Gauss points, internal force and its derivatives."""
 
 from collections.abc import Sequence
 from copy import copy
+from functools import cached_property
 
 import numpy as np
 
 from hasel_sim.effects.base import Coefficients
-from hasel_sim.mechanics import assembly, branch_loops, constitutive, strain
-from hasel_sim.mechanics.branches import Branches
-from hasel_sim.mesh.mesh import Mesh
-from hasel_sim.mesh.serendipity import reference_gradients
+from hasel_sim.mechanics import assembly, constitutive
+from hasel_sim.mechanics.branches import Branches, green_along
+from hasel_sim.mechanics.state import Motion
+from hasel_sim.mesh.mesh import Mesh, reference_gradients
 from hasel_sim.simd import lane_tuple
+
+
+def element_masses(mesh: Mesh, nodes: np.ndarray, density: np.ndarray) -> np.ndarray:
+    """Consistent mass [kg per m depth] of every element, [elements, 8, 8], with 3 x 3 Gauss points (exact)."""
+    values, _, areas = reference_gradients(nodes[mesh.elements], 3)
+    return np.einsum("e,eg,ga,gb->eab", density, areas, values, values)
+
+
+def add_tip_plate(masses: np.ndarray, mesh: Mesh, mass: float, rotary_inertia: float) -> None:
+    """Add a plate on the far face to the element masses [elements, 8, 8] in place.
+
+    mass [kg per m depth] on the centre line; rotary_inertia [kg m] about it. The face turns at |d'| / |d|, d being the
+    line across it, so J |d'|^2 / (2 h^2) is the energy of turning, whatever the angle; the pieces of the face share it.
+    """
+    places = {node: (e, a) for e, nodes in enumerate(mesh.elements) for a, node in enumerate(nodes)}
+    heights = mesh.nodes[mesh.tip, 1]
+    e, a = places[mesh.tip[np.argmin(np.abs(heights))]]
+    masses[e, a, a] += mass
+    whole = np.ptp(heights)
+    for low, middle, high in zip(mesh.tip[:-2:2], mesh.tip[1::2], mesh.tip[2::2], strict=True):
+        e = places[middle][0]
+        ends = [int(np.flatnonzero(mesh.elements[e] == node)[0]) for node in (low, high)]
+        height = mesh.nodes[high, 1] - mesh.nodes[low, 1]
+        share = rotary_inertia * (height / whole) / height**2
+        masses[np.ix_([e], ends, ends)] += share * np.array([[1.0, -1.0], [-1.0, 1.0]])
+
+
+class Mass:
+    """Consistent mass of a mesh: of its elements [kg per m depth] [elements, 8, 8, lanes], and times vectors.
+
+    masses: of one lane, [elements, 8, 8].
+    """
+
+    def __init__(self, mesh: Mesh, masses: np.ndarray) -> None:
+        self._elements, self.masses = mesh.elements, np.ascontiguousarray(masses[..., None])
+        self.lumped = np.zeros(len(mesh.nodes))
+        """Mass of every node [kg per m depth], by scaling the diagonal (Hinton, Rock, Zienkiewicz 1976), [nodes]."""
+        diagonal = np.einsum("eaa->ea", masses)
+        share = diagonal * (masses.sum(axis=(1, 2)) / diagonal.sum(axis=1))[:, None]
+        np.add.at(self.lumped, mesh.elements, share)
+
+    @staticmethod
+    def beside(each: Sequence["Mass"]) -> "Mass":
+        """Those of several bodies, one lane after the other."""
+        out = copy(each[0])
+        out.masses = np.concatenate([mass.masses for mass in each], axis=-1)
+        return out
+
+    def product(self, columns: np.ndarray) -> np.ndarray:
+        """Mass times each of the vectors [columns, nodes, 2, lanes]; the same shape comes back."""
+        out = np.zeros(columns.shape)
+        lane = lane_tuple(columns.shape[-1])
+        assembly.mass_product(self.masses, self._elements, np.ascontiguousarray(columns), out, lane)
+        return out
 
 
 def lame_constants(youngs_modulus: float, poissons_ratio: float) -> tuple[float, float]:
@@ -86,7 +141,7 @@ class Solid:
                 f"a field has the shape {field.shape}; expected {(self._nodes, 2, self._shape[-1])}"
             )
         out = np.empty(self._shape)
-        strain.deformation(
+        constitutive.deformation(
             np.ascontiguousarray(field), self.elements, self.gradients, self.stretch, out, self._lane
         )
         return out
@@ -109,14 +164,14 @@ class Solid:
     def green_stress(self, F: np.ndarray) -> np.ndarray:
         """C : E at the Gauss points (xx, yy, xy), [elements, points, 3, lanes]."""
         out = np.empty((*self.areas.shape, 3, F.shape[-1]))
-        strain.green_stress(F, self.shear, self.linear_lame, out, self._lane)
+        constitutive.green_stress(F, self.shear, self.linear_lame, out, self._lane)
         return out
 
     def green_stress_along(self, F: np.ndarray, moved: np.ndarray) -> np.ndarray:
         """Changes of C : E along those of the positions [columns, nodes, 2, lanes], one column after the other."""
         out = np.empty((len(moved), *self.areas.shape, 3, F.shape[-1]))
         law = self.places, self.shear, self.linear_lame
-        branch_loops.green_along(np.ascontiguousarray(moved), F, *law, out, self._lane)
+        green_along(np.ascontiguousarray(moved), F, *law, out, self._lane)
         return out
 
     def _at(self, F, rate, contraction: np.ndarray, history: np.ndarray | None, step) -> tuple:
@@ -153,3 +208,25 @@ class Solid:
         mesh = self.elements, self.gradients, self.areas
         assembly.contraction_force(F, self._table, self.muscle, *mesh, out, self._lane)
         return out
+
+
+class Deformation:
+    """A `Solid` at one motion; arrays are [elements, points, 4, lanes]."""
+
+    def __init__(self, solid: Solid, motion: Motion) -> None:
+        self.solid, self.motion = solid, motion
+
+    @property
+    def places(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """What the compiled loops know of the mesh."""
+        return self.solid.places
+
+    @cached_property
+    def F(self) -> np.ndarray:
+        """Deformation gradient [1]."""
+        return self.solid.gradient(self.motion.position)
+
+    @cached_property
+    def rate(self) -> np.ndarray:
+        """Its rate [1/s]."""
+        return self.solid.gradient(self.motion.velocity)

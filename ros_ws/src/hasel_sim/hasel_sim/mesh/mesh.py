@@ -1,12 +1,75 @@
-"""A planar mesh of eight-node quadrilaterals, numbered column by column along the body."""
+"""A planar mesh of eight-node serendipity quadrilaterals, numbered column by column along the body.
+
+Node order: corners (-1,-1), (1,-1), (1,1), (-1,1), then mid-sides (0,-1), (1,0), (0,1), (-1,0).
+With 2 x 2 quadrature an element bends and keeps its volume without locking, and its one spurious mode cannot be shared
+by neighbours (Zienkiewicz, Taylor, Zhu: The Finite Element Method, 7th ed., sections 6 and 10).
+"""
 
 from dataclasses import dataclass
 from enum import IntEnum
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
-from hasel_sim.mesh.serendipity import shape_functions
+_CORNER = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+
+
+def shape_functions(xi: float, eta: float) -> tuple[np.ndarray, np.ndarray]:
+    """Values [8] and slopes [8, 2] (with respect to xi, eta) at a point of the reference square."""
+    value, slope = np.empty(8), np.empty((8, 2))
+    for node, (a, b) in enumerate(_CORNER):
+        p, q = 1 + a * xi, 1 + b * eta
+        value[node] = 0.25 * p * q * (a * xi + b * eta - 1)
+        slope[node] = 0.25 * a * q * (2 * a * xi + b * eta), 0.25 * b * p * (a * xi + 2 * b * eta)
+    for node, b in ((4, -1.0), (6, 1.0)):
+        value[node] = 0.5 * (1 - xi**2) * (1 + b * eta)
+        slope[node] = -xi * (1 + b * eta), 0.5 * b * (1 - xi**2)
+    for node, a in ((5, 1.0), (7, -1.0)):
+        value[node] = 0.5 * (1 + a * xi) * (1 - eta**2)
+        slope[node] = 0.5 * a * (1 - eta**2), -eta * (1 + a * xi)
+    return value, slope
+
+
+def edge_functions(xi: float) -> tuple[np.ndarray, np.ndarray]:
+    """Values [3] and slopes [3] of the quadratic edge with nodes at -1, 0, 1."""
+    return np.array([0.5 * xi * (xi - 1), 1 - xi**2, 0.5 * xi * (xi + 1)]), np.array(
+        [xi - 0.5, -2 * xi, xi + 0.5]
+    )
+
+
+def square_quadrature(order: int) -> tuple[np.ndarray, np.ndarray]:
+    """Gauss points [order**2, 2] and weights [order**2] of the reference square."""
+    point, weight = np.polynomial.legendre.leggauss(order)
+    points = np.array([(x, y) for y in point for x in point])
+    return points, np.array([wx * wy for wy in weight for wx in weight])
+
+
+@lru_cache(maxsize=8)
+def _rule(order: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Shape functions [points, 8], their slopes [points, 8, 2] and the weights [points] at the Gauss points."""
+    points, weights = square_quadrature(order)
+    values, slopes = zip(*(shape_functions(x, y) for x, y in points), strict=True)
+    return np.array(values), np.array(slopes), weights
+
+
+def reference_gradients(coordinates: np.ndarray, order: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Shape functions and their gradients at the Gauss points of every element.
+
+    coordinates: node positions per element [m], shape [elements, 8, 2].
+    Returns values [points, 8], gradients [1/m] [elements, points, 8, 2] and areas [m^2] [elements, points].
+    """
+    values, gradients, areas = _gradients(np.asarray(coordinates, dtype=float).tobytes(), order)
+    return values.copy(), gradients.copy(), areas.copy()
+
+
+@lru_cache(maxsize=64)
+def _gradients(coordinates: bytes, order: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The same; a fit asks for those of one mesh again and again."""
+    values, slopes, weights = _rule(order)
+    jacobian = np.einsum("gad,eac->egcd", slopes, np.frombuffer(coordinates).reshape(-1, 8, 2))
+    determinant = np.linalg.det(jacobian)
+    gradients = np.einsum("gad,egdc->egac", slopes, np.linalg.inv(jacobian))
+    return values, gradients, determinant * weights
 
 
 class Region(IntEnum):

@@ -16,8 +16,7 @@ from typing import TypeVar
 import numpy as np
 from pydantic import BaseModel
 
-from hasel_sim.drive.amplitudes import AmplitudeTable
-from hasel_sim.drive.sloped_box import LARGEST_ONSET
+from hasel_sim.drive.amplitudes import LARGEST_ONSET, AmplitudeTable
 from hasel_sim.effects.base import DriveEffect, DriveStage, Effect
 from hasel_sim.model.description import Description
 from hasel_sim.model.muscle_law import law_parameters

@@ -8,8 +8,7 @@ from hasel_recording.drive_channel import DriveChannel
 from hasel_recording.errors import RecordingError
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from hasel_sim.mesh.body_mesh import Stretch, StripShape
-from hasel_sim.mesh.outline import half_height, outline_fault
+from hasel_sim.mesh.body_mesh import Stretch, StripShape, half_height, outline_fault
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]

@@ -91,13 +91,13 @@ def measured(model: Model, simulation: Simulation, frequency: float) -> FreeSwim
     if simulation.shapes is None:
         raise SimulationError("a swim is measured on its shapes; expected keep_shapes=True: simulate with it")
     builder, depth = Builder(model), model.described.body.depth_m or 0.0
-    nodal = builder.mass.product(np.ones((1, *builder.nodes.shape, 1)))[0, :, 0, 0]
+    nodal = nodal_masses(builder)
     mass, time = float(nodal.sum()), simulation.time
     position = np.einsum("n,tnd->td", nodal, simulation.shapes) / mass
     turned = _turned(
         simulation.shapes - position[:, None], builder.nodes - nodal @ builder.nodes / mass, nodal
     )
-    work = depth * _work(builder, model, simulation)
+    work = depth * _work(builder, simulation)
     periods = max(2, int(np.ceil(_LEAST_WINDOW * frequency)))
     periods = min(periods, int((time[-1] - time[0]) * frequency / 2))
     ends = time[-1] - np.array([2 * periods, periods, 0]) / frequency
@@ -105,11 +105,10 @@ def measured(model: Model, simulation: Simulation, frequency: float) -> FreeSwim
         _forward(time, position, turned, start, end, frequency)
         for start, end in ((ends[0], ends[1]), (ends[1], ends[2]))
     )
-    window = (ends[2] - ends[1],)
-    turning = float(
-        np.diff(_means(time, turned[:, None], ends[1:], frequency)[:, 0])[0] / (window[0] - 1 / frequency)
-    )
-    power = float(np.diff(np.interp(ends[1:], time, work))[0] / window[0])
+    window = ends[2] - ends[1]
+    headings = _means(time, turned[:, None], ends[1:], frequency)[:, 0]
+    turning = float(np.diff(headings)[0] / (window - 1 / frequency))
+    power = float(np.diff(np.interp(ends[1:], time, work))[0] / window)
     return FreeSwim(time, position, turned, work, late, early, turning, power, mass * depth)
 
 
@@ -145,20 +144,30 @@ def _forward(time, position, turned, start: float, end: float, frequency: float)
     return float(gained.sum() * frequency / (periods - 1))
 
 
-def _work(builder: Builder, model: Model, simulation: Simulation) -> np.ndarray:
+def nodal_masses(builder: Builder) -> np.ndarray:
+    """Mass per depth that goes with each node [kg/m] [nodes]."""
+    return builder.mass.product(np.ones((1, *builder.nodes.shape, 1)))[0, :, 0, 0]
+
+
+def muscle_fibres(builder: Builder) -> list[tuple[np.ndarray, np.ndarray, np.ndarray, float]]:
+    """Of every muscle: nodes of its elements [elements, 8], gradients along its fibres [1/m] [elements, points, 8],
+    volumes per depth [m^2] [elements, points] and stiffness [Pa].
+    """
+    mesh, solid, out = builder.mesh, builder.system().solid, []
+    for number, muscle in enumerate(builder.model.described.muscles, start=1):
+        within = mesh.muscle == number
+        stretch = solid.stretch[within, :, 0]
+        along = solid.gradients[within, :, :, 0] / stretch[..., None]
+        out.append((mesh.elements[within], along, solid.areas[within] * stretch, muscle.fibre_stiffness_pa))
+    return out
+
+
+def _work(builder: Builder, simulation: Simulation) -> np.ndarray:
     """Work of the muscles per depth since the start [J/m] [n]: their fibres' tension along what they contract."""
-    mesh, solid = builder.mesh, builder.system().solid
     contraction, total = simulation.contraction, np.zeros(len(simulation.time))
-    for number, muscle in enumerate(model.described.muscles):
-        within = mesh.muscle == number + 1
-        shapes = np.asarray(simulation.shapes)[:, mesh.elements[within]]
-        stretch = np.hypot(
-            *np.einsum("epk,tekd->dtep", solid.gradients[within, :, :, 0], shapes)
-            / solid.stretch[within, :, 0]
-        )
-        volume = solid.areas[within] * solid.stretch[within, :, 0]
-        short = 1.0 - contraction[:, number, None, None]
-        pull = muscle.fibre_stiffness_pa * ((stretch - short) * volume).sum(axis=(1, 2))
-        done = 0.5 * (pull[1:] + pull[:-1]) * np.diff(contraction[:, number])
-        total[1:] += np.cumsum(done)
+    for number, (nodes, along, volume, stiffness) in enumerate(muscle_fibres(builder)):
+        fibre = np.einsum("epk,tekd->dtep", along, np.asarray(simulation.shapes)[:, nodes])
+        excess = np.hypot(*fibre) - (1.0 - contraction[:, number, None, None])
+        pull = stiffness * (excess * volume).sum(axis=(1, 2))
+        total[1:] += np.cumsum(0.5 * (pull[1:] + pull[:-1]) * np.diff(contraction[:, number]))
     return total

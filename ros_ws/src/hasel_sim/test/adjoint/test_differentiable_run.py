@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 from hasel_sim.adjoint import DifferentiableRun
-from hasel_sim.adjoint.trajectory import follow
+from hasel_sim.adjoint.gradient import follow
 from hasel_sim.errors import ModelError, SimulationError
 from hasel_sim.model import load_model
 from hasel_sim.prepared_run import PreparedRun

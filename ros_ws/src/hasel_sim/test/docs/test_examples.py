@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hasel_sim.mesh.outline import half_height
+from hasel_sim.mesh.body_mesh import half_height
 
 EXAMPLES = Path(__file__).parents[2] / "docs" / "examples"
 

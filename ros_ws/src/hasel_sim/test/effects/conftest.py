@@ -8,10 +8,10 @@ import pytest
 from hasel_sim.build import Builder
 from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.schedule import DriveSchedule
+from hasel_sim.dynamics.statics import equilibrium
 from hasel_sim.effects.base import EffectParameter, ForceEffect
 from hasel_sim.effects.registry import catalogue, find_effects
-from hasel_sim.mechanics.motion import DriveState
-from hasel_sim.mechanics.statics import equilibrium
+from hasel_sim.mechanics.state import DriveState
 from hasel_sim.model import Model, load_model
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate

@@ -10,10 +10,10 @@ import pytest
 from hasel_sim.build import Builder
 from hasel_sim.drive.chain import DriveChain
 from hasel_sim.drive.schedule import DriveSchedule
+from hasel_sim.dynamics.system import linearise
 from hasel_sim.effects.registry import catalogue, find_effects
 from hasel_sim.errors import ModelError
-from hasel_sim.mechanics.linearisation import linearise
-from hasel_sim.mechanics.motion import DriveState, Memory, Motion
+from hasel_sim.mechanics.state import DriveState, Memory, Motion
 from hasel_sim.model import load_model, save_model
 from hasel_sim.parallel import executor, simulate_all
 from hasel_sim.run import Run

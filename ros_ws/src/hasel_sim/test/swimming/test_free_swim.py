@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hasel_sim.build import Builder
 from hasel_sim.errors import SimulationError
-from hasel_sim.mechanics.motion import DriveState, Motion
+from hasel_sim.mechanics.state import DriveState, Motion
 from hasel_sim.model import load_model
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate

@@ -1,4 +1,7 @@
-"""Sweeps: side by side, in a file, broken off and taken up again."""
+"""Sweeps: side by side, in a file, broken off and taken up again.
+
+The fastest frequency and its interval.
+"""
 
 import numpy as np
 import pytest
@@ -6,7 +9,14 @@ from hasel_sim.errors import ModelError
 from hasel_sim.parallel import SerialExecutor
 from hasel_sim.swimming.boxes import Boxes
 from hasel_sim.swimming.free_swim import free_swim
-from hasel_sim.swimming.sweep import SweepLedger, fingerprint, sweep, swim_together
+from hasel_sim.swimming.sweep import (
+    SweepLedger,
+    fingerprint,
+    optimum,
+    standard_error_of,
+    sweep,
+    swim_together,
+)
 
 DRIVES = [Boxes(5500.0, 5500.0, f) for f in (2.0, 2.5, 3.0)]
 DURATION = 2.0
@@ -54,3 +64,46 @@ def test_another_models_file_is_refused(tmp_path, fish):
         with pytest.raises(ModelError, match="holds swims of another model or duration"):
             SweepLedger(tmp_path / "swim.csv", model, duration)
     assert fingerprint(fish) != fingerprint(heavier)
+
+
+def test_the_top_of_a_parabola_is_found_exactly():
+    """In any order, between the points, whatever a swim that failed says."""
+    f = np.array([4.0, 1.0, 2.0, 3.0, 5.0])
+    u = 0.07 - 0.01 * (f - 2.7) ** 2
+    u[-1] = np.nan
+    found = optimum(f, u)
+    assert (found.frequency, found.speed, found.at_edge) == (pytest.approx(2.7), pytest.approx(0.07), False)
+    assert str(found) == "optimum 2.70 Hz, 70 mm/s"
+
+
+def test_a_sweep_that_ends_on_its_way_up_has_no_optimum():
+    """It says so, and gives no interval."""
+    found = optimum([1.0, 2.0, 3.0], [1.0, 2.0, 3.0])
+    assert found.at_edge and found.interval is None
+    assert "no optimum within it" in str(found)
+    assert optimum([1.0], [np.nan]) is None
+
+
+def test_the_interval_follows_from_the_parameters(fish):
+    """Two independent parameters that shift the top by known amounts: the root of the squares."""
+    model = fish.with_values(
+        {"slope": 0.264, "reactive_force.coefficient": 1.0},
+        {"slope": 0.01, "reactive_force.coefficient": 0.05},
+    )
+
+    def speeds(cases):
+        tops = [
+            2.0 + 5.0 * (m.values["slope"] - 0.264) - 3.0 * (m.values["reactive_force.coefficient"] - 1.0)
+            for m, _ in cases
+        ]
+        return [0.07 - 0.01 * (f - top) ** 2 for (_, f), top in zip(cases, tops, strict=True)]
+
+    found = optimum([1.0, 2.0, 3.0], [0.06, 0.07, 0.06])
+    error = standard_error_of(model, found, 0.5, speeds)
+    assert error == pytest.approx(np.hypot(5.0 * 0.01, 3.0 * 0.05))
+    assert standard_error_of(fish, found, 0.5, speeds) is None
+    names = ("slope", "reactive_force.coefficient")
+    # both errors move the top by 0.05 and 0.15 Hz, and what one adds the other takes away
+    both = np.array([[1e-4, 0.6 * 0.01 * 0.05], [0.6 * 0.01 * 0.05, 0.05**2]])
+    error = standard_error_of(model.with_covariance(names, both), found, 0.5, speeds)
+    assert error == pytest.approx(np.sqrt(0.05**2 + 0.15**2 - 2 * 0.6 * 0.05 * 0.15))

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from hasel_recording.csv_run import write_csv
 from hasel_sim.mesh_picture import save_picture
-from hasel_sim.swimming.beating_fish import fitted_form_drag, settled_speed
+from hasel_sim.swimming.given_shape import fitted_form_drag, settled_speed
 from matplotlib.figure import Figure
 from rich.console import Console
 from rich.table import Table

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hasel_recording import read_recording
-from hasel_sim.swimming.beating_fish import POWERS, Beat, Fish, settled_speed, swimmer
+from hasel_sim.swimming.given_shape import POWERS, Beat, Fish, settled_speed, swimmer
 from hasel_sysid.command_line.measured_fish import main
 from hasel_sysid.data_quality import check_recording
 from hasel_sysid.errors import SysidError

@@ -7,7 +7,7 @@ import pytest
 from hasel_sim.build import Builder
 from hasel_sim.effects.base import Surroundings
 from hasel_sim.effects.slender import finite_length_factor
-from hasel_sim.mechanics.motion import DriveState, Motion
+from hasel_sim.mechanics.state import DriveState, Motion
 from hasel_sim.model import load_model
 from hasel_sim.model.sections import FLUIDS
 from hasel_sim.simulate import simulate

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from hasel_sim.build import Builder
 from hasel_sim.effects.registry import find_effects
-from hasel_sim.mechanics.motion import DriveState, Motion
+from hasel_sim.mechanics.state import DriveState, Motion
 from hasel_sim.model.sections import FLUIDS
 
 DEPTH = 0.05

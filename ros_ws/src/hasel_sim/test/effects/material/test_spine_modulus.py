@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from hasel_sim.build import Builder
-from hasel_sim.mechanics.linearisation import linearise
-from hasel_sim.mechanics.motion import Memory, Motion
+from hasel_sim.dynamics.system import linearise
+from hasel_sim.mechanics.state import Memory, Motion
 
 
 def _bending_energy(model, still, curvature: float) -> float:
