@@ -10,7 +10,7 @@ import numpy as np
 from hasel_common.endpoints import Role, subscription
 from hasel_common.topics import ERROR, MEASURED, SIMULATED, STATE
 from hasel_recording.ros_messages import nanoseconds
-from hasel_sysid.live.start_sysid import PARAMETERS
+from hasel_sysid.live.sysid_parameters import PARAMETERS
 
 from hasel_bringup.experimenter import Experimenter
 from hasel_bringup.processes import ALONE, OWN_DOMAIN, Processes

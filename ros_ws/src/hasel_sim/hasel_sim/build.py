@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from hasel_sim.compiled_loops import announce_compilation
 from hasel_sim.dynamics.parameter_columns import (
     ContractionSlope,
     ForceSlope,
@@ -15,7 +16,6 @@ from hasel_sim.dynamics.parameter_columns import (
 )
 from hasel_sim.dynamics.system import System
 from hasel_sim.effects.base import Coefficients, Effect, EffectParameter, ForceEffect, MaterialEffect, guarded
-from hasel_sim.first_run import announce_compilation
 from hasel_sim.laws.force_law import ForceLaw
 from hasel_sim.laws.stress_law import StressLaw
 from hasel_sim.mechanics.branches import Branches

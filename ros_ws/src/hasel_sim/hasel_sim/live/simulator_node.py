@@ -27,7 +27,7 @@ from hasel_sim.live.simulator_interface import (
     rig_voltage,
     to_nanoseconds,
 )
-from hasel_sim.live.start_simulator import PARAMETERS
+from hasel_sim.live.simulator_parameters import PARAMETERS
 from hasel_sim.model import Model
 from hasel_sim.node_process import RepeatedWarnings, run_node
 from hasel_sim.parameter import value_with_error

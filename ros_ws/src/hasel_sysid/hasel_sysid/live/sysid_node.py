@@ -38,7 +38,7 @@ from hasel_sysid.live.services import (
     fit_recordings,
     status,
 )
-from hasel_sysid.live.start_sysid import PARAMETERS
+from hasel_sysid.live.sysid_parameters import PARAMETERS
 
 
 class SysidNode(ManagedNode):

@@ -4,10 +4,10 @@ import os
 import subprocess
 import sys
 
-from hasel_sim.first_run import is_compiled
+from hasel_sim.compiled_loops import is_compiled
 from hasel_sim.simulate import simulate
 
-_ANNOUNCE = "from hasel_sim.first_run import announce_compilation as say; say(); say()"
+_ANNOUNCE = "from hasel_sim.compiled_loops import announce_compilation as say; say(); say()"
 
 
 def test_a_machine_that_has_compiled_nothing_is_told_once(tmp_path):
