@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Settings of every test: a ROS domain of this process on this machine only, one thread for linear algebra."""
 
 import os

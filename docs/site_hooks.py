@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """MkDocs' hook: formulas become MathML, and a link to a file outside the documentation is shown as that file's path."""
 
 import posixpath

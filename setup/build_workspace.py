@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Build with colcon the packages of ros_ws/src whose source files changed since they were last built."""
 
 import fcntl

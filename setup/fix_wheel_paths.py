@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Point the CMake files of the ROS 2 wheels at this virtual environment, not at the machine that built them.
 
 The wheels' CMake exports name the include folders of Python and numpy under `/opt/python/cpXY-cpXY/`.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Start an executable of a ROS 2 package, found through the ament index exactly as `ros2 run` finds it."""
 
 import difflib

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """For notebooks and plain Python, in one line: `%run path/to/setup/use_workspace.py`, then `import hasel_sim`.
 
 The notebook's Python must be that of `.venv`, or one with the same packages; nodes and messages need more:

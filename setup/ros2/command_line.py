@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The part of `ros2` that the README uses, for where ROS 2 comes as wheels, which bring no command line."""
 
 import argparse

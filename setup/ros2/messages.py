@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Messages from and to YAML, as `ros2 topic` writes them."""
 
 import array

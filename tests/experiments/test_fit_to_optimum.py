@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """From recordings of a swimmer to the interval of its fastest frequency: fit, model file, sweep."""
 
 import json

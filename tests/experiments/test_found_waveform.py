@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A waveform that the simulator found is one that the driver plays."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The run that `suggest` simulates is the run that its goal makes the driver drive."""
 
 import numpy as np

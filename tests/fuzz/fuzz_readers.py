@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`make fuzz`: other people's files, damaged in every way. No stack trace, no hang, no memory without end, and never a
 silent difference: what is read is what an independent reader reads (pandas, mcap's own, PyAV), or a sentence was said.
 """

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A beam let go in a truth of another mesh, time step and damping of the numerics: stress of the start is named."""
 
 import numpy as np

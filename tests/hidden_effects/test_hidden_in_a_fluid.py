@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A force of the fluid that is hidden from the model of a swimmer: the search from recordings to a name."""
 
 from dataclasses import replace

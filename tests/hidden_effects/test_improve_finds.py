@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A quick part of the benchmark: the six shorter runs are fitted, a third of the cost of all nine."""
 
 import pytest

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """An effect of one's own, which no catalogue lists: recordings of a truth that has it, and `improve --add`."""
 
 import json

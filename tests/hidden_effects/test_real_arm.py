@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Measured: a silicone arm bent by air pressure; its constants are free, its creep is to be found."""
 
 from pathlib import Path

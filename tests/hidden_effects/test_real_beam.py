@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Measured: a silicone beam let go at one end; its model has neither damping nor the right stiffness."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Clean recordings with missing physics: the data gate must not take an effect for a fault of the set-up."""
 
 from pathlib import Path

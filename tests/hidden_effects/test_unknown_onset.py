@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A lag behind muscles of which nobody knows where they begin to contract."""
 
 import numpy as np

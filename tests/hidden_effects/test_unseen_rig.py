@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Runs of a simulator that is not ours, with a label each."""
 
 from pathlib import Path

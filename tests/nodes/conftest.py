@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A ROS domain of its own for every test, and a listener in it."""
 
 import itertools

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A node that is asked to end while it fits does not keep anybody waiting."""
 
 import os

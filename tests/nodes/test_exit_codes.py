@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Every node ends with exit code 0, quietly, at Ctrl-C and at a service manager's stop."""
 
 import signal

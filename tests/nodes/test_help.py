@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`--help` of a node tells its parameters and starts nothing; the driver's would open the high voltage's port."""
 
 import subprocess

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Ctrl-C in a launch file reaches a node twice: from the terminal and from the launcher."""
 
 import os

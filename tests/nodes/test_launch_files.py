@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Each launch file starts its nodes, in the namespace that is asked for, and ends them cleanly."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The lifecycle manager with real nodes: up in order, the driver down when another node ends, all down when asked."""
 
 import contextlib

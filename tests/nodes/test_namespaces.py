@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Two rigs side by side, and names and quality of service changed from outside."""
 
 import numpy as np

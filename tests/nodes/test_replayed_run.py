@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Simulator, identification and replay as three processes on real DDS, against `simulate` on the same file."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Supply, driver, body and camera without hardware, started as a user does."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The workbench's page on a running rig, in a real browser: the error that it shows live falls."""
 
 import re

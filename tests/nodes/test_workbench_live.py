@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The workbench on a running rig: it hears, stops, has runs made and takes them; it never arms."""
 
 import asyncio

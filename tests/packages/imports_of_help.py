@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Prints as JSON what each executable of ours says to an option and which of the modules named are imported by then.
 
 Called with the option, --help or --version, and the modules.

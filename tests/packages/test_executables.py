@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 import os
 from importlib.metadata import EntryPoint, distributions
 from pathlib import Path

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`--help` and `--version` of every executable answer at once: nothing heavy is imported for them."""
 
 import json

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`bin/ros2` against a node that offers one of everything, on a ROS domain of its own."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 from fix_wheel_paths import fix_prefix, fix_text
 
 EXPORT = (

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """MCAP files and bags of a few messages, one for each kind of fault."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Videos, folders and image messages of a few pictures, and drives that do not go with them, one for each fault."""
 
 from collections.abc import Callable, Iterator

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Runs of a swimmer-like oscillator with a faulty set-up, one for each kind, and models that do not go with them."""
 
 from collections.abc import Callable, Iterator

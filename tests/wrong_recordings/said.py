@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What the code says: of a faulty input, and in which sentences at all."""
 
 import ast

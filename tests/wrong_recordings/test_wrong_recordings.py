@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The page of what can be wrong with a recording says what the code says: every sentence, and all of them."""
 
 import re

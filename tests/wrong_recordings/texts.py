@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """CSV files of a few lines, one for each kind of fault, and the files beside them that they need."""
 
 from collections.abc import Iterator

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`bench_cluster`: commands with one worker and with two, in turns."""
 
 import argparse

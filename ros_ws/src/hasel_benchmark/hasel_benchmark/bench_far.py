@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`bench_far`: is a gross constant that is far off named, or put into the stated group?
 
 It is wrong by so much that the body rings at another frequency.

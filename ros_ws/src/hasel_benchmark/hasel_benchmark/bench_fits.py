@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`bench_fits`: does a fit reach the likelihood of the truth, from its standard starts and from the true values?
 
 Of every effect that has a place or a time, at five sizes over its range.

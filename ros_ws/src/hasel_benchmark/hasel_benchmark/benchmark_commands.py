@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The benchmarks' commands: where they begin, their options, and what all of them do alike.
 
 Options are read before anything heavy is imported, so that --help answers at once.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What a command takes: by the clock, processor time of all that took part, and the most memory at once."""
 
 import resource

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Truths of another mesh that ring far off the model's frequency."""
 
 import pytest

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What the cost of `improve` is measured on, and how it is judged."""
 
 import pytest

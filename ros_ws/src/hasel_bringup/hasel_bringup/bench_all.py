@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`bench`: simulator, driver, tracker and the time to start, one after the other, beside their bars.
 
 The last is how long a user waits for a command that does little: any `--help`, and a comparison of a dozen short runs.

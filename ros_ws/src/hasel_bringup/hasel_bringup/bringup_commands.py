@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Where the executables begin: options are read before anything heavy is imported, so that --help answers at once.
 
 `bench`, which imports nothing heavy, begins where it is.

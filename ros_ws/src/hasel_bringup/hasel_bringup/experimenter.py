@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What an experimenter does with the rig's nodes: services, the action, parameters, and the error on its topic."""
 
 import math

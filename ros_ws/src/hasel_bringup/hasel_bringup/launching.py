@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What the launch files share: arguments, and a node with its name in the log, its log level and its clock."""
 
 from collections.abc import Callable, Mapping, Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`ros2 run hasel_bringup lifecycle_manager`: brings the nodes up in order, and the driver down when another ends."""
 
 import threading

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Executables of the workspace as processes, started as `ros2 run` does."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`ros2 run hasel_bringup recorder`: one MCAP file per run, of everything that is said about it.
 
 While it is written a recording is called NAME.mcap.part; what was interrupted becomes NAME_interrupted.mcap.

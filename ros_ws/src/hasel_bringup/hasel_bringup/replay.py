@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`ros2 run hasel_bringup replay RECORDING…`: play recordings onto the topics, for the simulator and sysid to hear."""
 
 import argparse

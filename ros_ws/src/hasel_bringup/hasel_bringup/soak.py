@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`make soak`: the virtual rig for ten minutes, each node killed and started again in the middle."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Simulator, identification and a replayed recording: `ros2 launch hasel_bringup replay.launch.py recording:=FILE`."""
 
 from typing import Any

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The whole stack on the rig, or on a virtual one: `ros2 launch hasel_bringup rig.launch.py virtual:=true`."""
 
 from typing import Any

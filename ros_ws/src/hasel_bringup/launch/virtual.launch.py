@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The live loop without hardware: `ros2 launch hasel_bringup virtual.launch.py hidden:=random`."""
 
 import os

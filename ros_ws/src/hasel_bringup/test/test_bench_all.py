@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """All benchmarks one after the other, and what a command uses until it has done its work."""
 
 import subprocess

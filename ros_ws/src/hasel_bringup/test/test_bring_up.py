@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The order in which nodes go up and down, and what becomes of the driver when another node ends."""
 
 import pytest

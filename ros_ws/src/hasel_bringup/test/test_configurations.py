@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The shipped configurations fit the nodes that take them, and each entry in /diagnostics falls to one part."""
 
 from pathlib import Path

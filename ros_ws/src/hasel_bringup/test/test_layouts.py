@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The layouts for Foxglove, PlotJuggler and RViz are valid and show only what the rig publishes."""
 
 import json

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Where every command begins and how it ends: the machine as it is, no stack trace, not later than its parent."""
 
 import errno

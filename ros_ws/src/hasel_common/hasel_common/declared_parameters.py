@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Parameters of a node as a table, declared with description, unit and range as `ros2 param describe` lists them."""
 
 from array import array

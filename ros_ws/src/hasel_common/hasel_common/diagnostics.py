@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A node's entry in `/diagnostics` (REP 107): how it is, one sentence of why, and the numbers behind it."""
 
 from collections.abc import Mapping

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """How the nodes meet: the quality of service of every topic in one place, and names that a namespace can change.
 
 Every topic is given to ROS relative to the node's namespace, so that two rigs run side by side (`-r __ns:=/rig2`) and

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Files that somebody else names, such as over the network: those of one folder only."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A node with ROS's lifecycle, and how it and other nodes are spun: with transitions that fail with a sentence."""
 
 import threading

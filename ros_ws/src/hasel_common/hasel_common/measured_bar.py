@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A figure of a benchmark beside the one that it must reach."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A node's parameters, known without ROS: for `--help`, the READMEs' tables and the core's own checks."""
 
 import argparse

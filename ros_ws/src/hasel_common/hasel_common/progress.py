@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """How far a long work has come: counted, with the time left, and shown as a bar on the terminal or lines in a log."""
 
 import sys

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Which software, in which version: `__version__` of every package, and who made a recording."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The topics of the stack: their names in the default namespace, relative to it, and their types."""
 
 NAMESPACE = "/hasel"  # of a rig that is given no other: `--ros-args -r __ns:=/rig2`

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """YAML 1.2 with PyYAML, which by itself speaks 1.1: 1e-3 is a number, on and yes are words, no key is given twice."""
 
 import re

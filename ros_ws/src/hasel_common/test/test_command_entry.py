@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Every command begins by one function, no stack trace leaves it, and it ends with the process that started it."""
 
 import errno

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Parameters as a table, and what ROS is told of them."""
 
 from contextlib import contextmanager

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Nodes with a lifecycle: states, failures, illegal transitions; what escapes from rclpy's spin."""
 
 import threading

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """How far a work has come, by what was counted and by what its stages usually take: a bar, and the lines of a log."""
 
 import io

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Who made a recording, in its header lines."""
 
 from hasel_common.provenance import provenance, without_provenance

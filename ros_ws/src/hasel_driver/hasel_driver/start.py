@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Where `driver_node`, `bench` and `console` begin: --help is answered before anything else is imported."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The driver alone: `ros2 launch hasel_driver driver.launch.py port:=/dev/ttyACM0 security:=keys`."""
 
 from launch import LaunchContext, LaunchDescription

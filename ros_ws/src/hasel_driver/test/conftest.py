@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Supplies to test against, the virtual one and the firmware in simavr, and drivers on them."""
 
 import random

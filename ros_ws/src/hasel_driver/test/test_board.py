@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`firmware/PROTOCOL.md`, sentence by sentence, on the virtual board and on the firmware in simavr."""
 
 import itertools

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What the board must not be talked out of: proof of ground, watchdog, interlock, limits; both kinds of board."""
 
 import time

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The hand tool: by lines from a pipe, and by keys of a terminal."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The node: states, commands, services, lifecycle; on a supply that knows the truth about its output."""
 
 import itertools

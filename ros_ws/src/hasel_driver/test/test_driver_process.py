@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What happens to the process: killed, frozen, ended, without a port, started after an emergency stop."""
 
 import math

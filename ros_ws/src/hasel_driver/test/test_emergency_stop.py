@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The emergency stop: who holds it, service, latched topic, and what it takes to go on."""
 
 import time

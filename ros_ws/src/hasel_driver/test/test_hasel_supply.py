@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """How the board's clock, its test pulse and its replies are judged."""
 
 import random

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Hardware that does not do as it is told: found within half a second, never called grounded, on both supplies."""
 
 import time

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The driver's process does without shared memory, and does not reach further than it is allowed to."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Other nodes that a driver meets: found within half a second, named, not obeyed, and nothing untrue is said."""
 
 import pytest

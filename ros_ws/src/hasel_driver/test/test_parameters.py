@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The node's parameters, changed while the port is closed, and files of them that would be ignored."""
 
 import pytest

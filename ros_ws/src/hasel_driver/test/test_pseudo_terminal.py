@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The name of a virtual port is a link, and nothing else is touched."""
 
 import pytest

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The action: its place, progress, recording, its completeness, and every way to end early."""
 
 import itertools

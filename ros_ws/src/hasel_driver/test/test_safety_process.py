@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The process that talks to the supply, and the node's end of it: each without the other."""
 
 import ctypes

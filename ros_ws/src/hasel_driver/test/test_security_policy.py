@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Keys: the policy names what the node really has, and a driver that cannot be protected does not run unprotected."""
 
 import os

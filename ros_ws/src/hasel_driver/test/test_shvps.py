@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The SHVPS backend against an emulation of that board's command set."""
 
 import math

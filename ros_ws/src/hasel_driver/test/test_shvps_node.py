@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The node with the backend shvps, on two emulated boards: what it refuses, drives, and does not claim."""
 
 import threading

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The rules of arming, limits, timeouts and faults, on a supply that does what it is told, or does not."""
 
 import math

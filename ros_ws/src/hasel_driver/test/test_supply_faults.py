@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Faults of board, line and host, against the virtual supply and the firmware in simavr."""
 
 import math

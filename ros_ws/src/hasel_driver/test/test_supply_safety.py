@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What the driver's thread must notice about a board: lost ground, a silent reset, a limit that was lowered."""
 
 import time

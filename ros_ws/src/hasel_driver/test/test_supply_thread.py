@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The thread: real-time priority, and an answer to whatever is asked of it, also when it has ended."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """One supply, one driver: another that answers to the same names is noticed, named, and never speaks for both."""
 
 import socket

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The virtual board under any conversation at all, in simulated time."""
 
 from hasel_driver.protocol import wire

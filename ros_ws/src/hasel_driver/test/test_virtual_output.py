@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The virtual output stage: the muscle against circuit theory, contacts and slew limit for any sequence of wishes."""
 
 import itertools

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The virtual supply on a machine that was late: what it reports is as new as it arrives."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Waveforms: shapes, order of the muscles, polarity, ranges."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Encoding, checksum and parsing of lines, against the examples in PROTOCOL.md and against anything at all."""
 
 import re

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Recordings of a bench from files and folders, and the muscle that they are of.
 
 Beside CSV files, MATLAB 7.3 files as of the public repository MadhavL/PH-HASEL-Python. `data` has five columns:

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What a muscle's law lacks: the search of the swimmer's `improve` among the effects of a muscle, stage by stage."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`bench_muscle RECORDING…`: compare one muscle's stroke and force with its law, learn what that lacks, add it."""
 
 import argparse

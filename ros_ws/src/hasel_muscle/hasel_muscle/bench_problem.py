@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Settled strokes of a muscle as a problem: what its law leaves of every voltage's lifts, by formula."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What a bench recorded of one muscle, and its CSV file: time_s, voltage_v, contraction_mm, load_n, current_ma."""
 
 from collections.abc import Mapping

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What the bench shows: tables and sentences for the terminal, JSON, a picture, and one HTML page with it."""
 
 import base64

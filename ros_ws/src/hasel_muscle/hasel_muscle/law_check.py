@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Where a muscle's law fails, in sentences, and whether a table of measured strokes would say more than it."""
 
 from collections.abc import Iterator

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """From samples to settled frames: the law is one of balance, so what still rings or flows is left out."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """How a load swings after every lift, and whether the muscle's law with the load's inertia says so."""
 
 from collections.abc import Iterator, Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Benches that never were: lifts of a muscle with a secret, written as the files that a bench writes."""
 
 from dataclasses import dataclass, field

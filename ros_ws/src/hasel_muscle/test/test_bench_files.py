@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Files of a bench: the lab's CSV, the public repository's MATLAB files, and what is wrong with them."""
 
 import sys

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Which effect a made-up muscle hides: named, sized, foretold; and nothing where nothing is hidden."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """How often the right effect of a muscle is named: every one hidden in turn, and nothing hidden many times."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Where a law fails, said of muscles whose failure is known."""
 
 from hasel_muscle.bench_files import read_bench

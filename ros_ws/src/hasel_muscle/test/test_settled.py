@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Settled frames: what counts, what belongs to what, and the noise."""
 
 import numpy as np

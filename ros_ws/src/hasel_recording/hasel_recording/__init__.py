@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Crash-safe recordings of experiments: MCAP and CSV."""
 
 from hasel_common.provenance import lazy_version

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The messages of a bag: an MCAP file, or what `ros2 bag record` writes, a folder with metadata.yaml and files.
 
 MCAP files are read here, also those whose writer was killed; SQLite, and what is compressed, by `rosbags`.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The commands `convert` and `info`, and the options with which every command reads recordings."""
 
 import argparse

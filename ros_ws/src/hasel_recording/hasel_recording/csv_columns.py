@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What the columns of a CSV recording mean: by their own names and units, or by `--map time=t,sin_theta=angle_deg`."""
 
 import re

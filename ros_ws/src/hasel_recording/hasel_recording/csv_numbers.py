@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The cells of a CSV recording as numbers in SI units, and clocks that wrap as times that increase."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A run as a CSV file, as labs write it and as we do: `#key: value` lines, a row of column names, one row per frame."""
 
 import csv

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The text of a lab's CSV file: header lines, a row of column names, cells."""
 
 import codecs

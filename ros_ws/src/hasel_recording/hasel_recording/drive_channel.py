@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What drives a body: channels with a name, a quantity and a unit, as a CSV column names them."""
 
 import math

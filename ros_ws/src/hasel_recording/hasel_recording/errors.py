@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What can be wrong with a recording; every message is one sentence that ends with what to do."""
 
 import sys

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Write messages to an MCAP file such that a killed process loses at most the last second."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The records of an MCAP file, also of one that is cut off, full of holes or whose bits have flipped.
 
 What is whole is read before the damage and behind it; a chunk counts as whole if its checksum fits.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A run as the messages of an MCAP file or bag: read, and written as they would have been recorded live."""
 
 import heapq

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Levels at which a measured drive stands: a column that ripples about them, such as a supply's monitor.
 
 A drive that goes through a continuum, such as a pressure sensor's, is none of these and stays as it was measured.

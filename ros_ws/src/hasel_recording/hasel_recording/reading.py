@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A path in, recordings out, and back: of either kind, with the drive as a file of its own."""
 
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """One run of an experiment in memory: the drive, which holds until the next value, and the angle of three markers."""
 
 from collections.abc import Mapping

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """ROS messages: their definitions, found through the ament index, and their fields as plain values."""
 
 import json

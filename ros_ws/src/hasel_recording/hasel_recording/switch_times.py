@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """When a drive switched of which a recording knows the rows only: between two of them, or where some are missing."""
 
 from dataclasses import replace

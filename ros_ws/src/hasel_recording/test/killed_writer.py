@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Record angles in real time until killed, saying the stamp of each once it is written. For the tests."""
 
 import sys

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """MCAP files, whole and damaged, and bags as `ros2 bag record` writes them, made here by an independent library."""
 
 import warnings

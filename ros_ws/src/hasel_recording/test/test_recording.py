@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A run, values that hold until the next, and the angle of three markers."""
 
 from dataclasses import replace

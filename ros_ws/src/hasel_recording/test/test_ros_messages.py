@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Definitions and fields of messages; bending angles of any number of markers, and those of bags from before that."""
 
 import math

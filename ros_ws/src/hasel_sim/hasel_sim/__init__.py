@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Planar finite elements of the swimmer, its muscles and the physical effects on it."""
 
 from hasel_common.provenance import lazy_version

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """From a model to a mechanical system, and to the derivative of its residual by each parameter."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """An executor on those workers of a Dask cluster that compute what this process would.
 
 Each worker is asked for its sources and libraries before it gets work; where Dask would wait for ever, it ends with a

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What decides the answers of a process: its sources and the libraries that it computes with.
 
 The source of this module is sent to workers as text, for they may lack this package: it needs only the standard

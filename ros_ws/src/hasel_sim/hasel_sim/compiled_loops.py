@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Compiled loops that an earlier run left on this machine; `hasel_sim.first_run` compiles them.
 
 Old ones are taken away, and compiling anew is announced. Numba keeps each function with a stamp of its own file. A

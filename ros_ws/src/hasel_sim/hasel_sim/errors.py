@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What can go wrong when a model is described or simulated; every message is one sentence with a next step."""
 
 from concurrent.futures import BrokenExecutor

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Compile all loops now: `python -m hasel_sim.first_run`, after an installation or a change of them."""
 
 from hasel_sim.bench.cases import box_run, fitted_swimmer

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Pictures of a body: its mesh with regions, muscles and markers; and bent, with its markers and the angle θ."""
 
 import matplotlib

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """From a model to its mesh and markers, and from these to the measured angle."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What nodes share: start, one sentence for what is wrong with their parameters, warnings that repeat, a quiet end."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Many simulations at once, on this machine's cores or on a Dask cluster, by one code path."""
 
 import multiprocessing

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A named number with unit, bounds and standard error, and how the errors of several hang together."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A run made ready to be stepped through: its mesh, system, time steps, drive and how it is observed."""
 
 import numpy as np

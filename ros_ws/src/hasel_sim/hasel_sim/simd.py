@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """One number per lane as a single value of the compiled loops: a vector of the processor, with the usual operators.
 
 Arrays of the mechanics have the lanes (runs that are simulated side by side) as their last axis. `load` and `store`

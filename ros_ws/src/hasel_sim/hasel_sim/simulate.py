@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Simulate runs with a model, with derivatives of the angle by any of its parameters, several side by side in lanes."""
 
 import warnings

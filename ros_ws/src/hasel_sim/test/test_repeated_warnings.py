@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Warnings that keep coming."""
 
 from hasel_sim.node_process import RepeatedWarnings

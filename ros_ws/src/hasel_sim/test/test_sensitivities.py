@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Derivatives of the angle series by every kind of parameter, against central differences."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The order in which tasks are handed on to processes."""
 
 from collections.abc import Callable, Iterator

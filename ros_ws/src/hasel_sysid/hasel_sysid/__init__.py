@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Compare the model with measurements, fit it, and learn which physical effect it lacks.
 
 In Python: `import hasel_sysid as h`, then h.load, h.model, h.simulate, h.fit, h.diagnose, h.improve; they are listed in

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What a model may lack or have wrong: effects of the catalogue, and constants of its own file, in one list."""
 
 from collections.abc import Collection, Iterable

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A model against all recordings: every run is simulated, and what is different is collected."""
 
 from collections.abc import Sequence

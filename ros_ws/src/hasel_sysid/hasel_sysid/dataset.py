@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Recordings read as experiments, those that can be simulated, with the channels and levels of a model."""
 
 import warnings

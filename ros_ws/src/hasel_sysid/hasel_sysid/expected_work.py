@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """How much work a simulation is, each stage usually is in simulations of all runs by the fitted model; a time limit.
 
 By recorded searches (`test/timings/improve.csv`): about the middle of what a stage took; of the rare ones some more,

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A recording as an experiment: what was measured, the run that a simulator can repeat, and runs given twice."""
 
 import warnings

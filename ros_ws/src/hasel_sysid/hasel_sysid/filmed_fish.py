@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The public filmed fish, srl-ethz/fishsim: its marker files as recordings, how its tail beats, how fast it swims."""
 
 import re

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`diagnose` and `improve`: fit, search among sets of candidates, choose, and say what it comes to."""
 
 from collections.abc import Callable, Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What is asked of a model beyond how likely it is: does it describe every regime of its runs, and is it a law?
 
 Lack of fit: the residual against the noise, by regime. Constancy: whether one value of an effect does for every voltage

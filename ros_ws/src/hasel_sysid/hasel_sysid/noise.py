@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The noise of the measured angle: white, plus a part that neighbouring frames share.
 
 Its model, and its size where recordings show it alone: given, between repeated runs, or at rest.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The numbers that a choice and a verdict rest on, each with its reason.
 
 What defines a word or a method (a limit of detection, the tolerance of a fit) stands where it is used.

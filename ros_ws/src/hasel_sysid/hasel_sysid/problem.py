@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Residuals of the outputs of many runs and their derivatives, with the unknown offset of each series taken out.
 
 A series is one output of one run. All outputs are in one unit and of one noise level.

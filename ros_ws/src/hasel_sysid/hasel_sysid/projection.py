@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Projections onto the span of columns, and onto what a saturated model can say.
 
 The saturated model predicts the residual by a linear combination of what drives the body and how it moves: an upper

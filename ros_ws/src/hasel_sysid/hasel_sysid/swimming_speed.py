@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """How fast a body swam and swims, from its markers."""
 
 from dataclasses import dataclass

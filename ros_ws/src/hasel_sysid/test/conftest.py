@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Runs of a swimmer-like oscillator with a known truth, made without the simulator."""
 
 from collections.abc import Callable

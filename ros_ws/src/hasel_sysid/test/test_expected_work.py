@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The time left that `improve` tells, on recorded timings of whole searches.
 
 `timings/improve.csv`: when stages began and simulations ended, from searches of nine runs by two processes on a machine

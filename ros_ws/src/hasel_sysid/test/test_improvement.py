@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What an improvement finds in a made-up world, where it is known what every effect does."""
 
 import json

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Whether a model describes its runs, and where it does not."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Upper bounds of the noise where a model is badly wrong."""
 
 import numpy as np

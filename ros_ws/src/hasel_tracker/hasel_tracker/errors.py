@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The tracker's own exception (what was found, what was expected and what to do), and how a command ends with it."""
 
 from collections.abc import Callable

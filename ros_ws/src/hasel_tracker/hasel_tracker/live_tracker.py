@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Capture, decode and track in threads; hand every tracked frame on as soon as it is ready; say how that goes."""
 
 import threading

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Options of `track` and `calibrate`, and where these and `tracker_node` begin: before anything heavy is imported, so
 that --help answers at once and opens no camera."""
 

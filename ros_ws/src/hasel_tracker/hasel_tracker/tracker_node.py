@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The ROS node: camera in, bending angle out; images stay in this process."""
 
 import signal

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What several tests need: a small swimmer with three dots, drawn here in the simplest way, and its truth."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The node as a user runs it: in a process of its own, spoken to over ROS."""
 
 import signal

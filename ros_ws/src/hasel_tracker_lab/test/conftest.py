@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What several tests need: a small rendered swimmer, in memory and as a video."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What can be done with a session: each gives a step or a finding, and changes nothing."""
 
 from collections.abc import Mapping

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A browser without a window, by the Chrome DevTools Protocol without a driver program; and how fast the page is."""
 
 import base64

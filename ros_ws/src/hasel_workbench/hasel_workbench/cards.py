@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What is known of an effect or a value, for the person who decides whether to try it."""
 
 import math

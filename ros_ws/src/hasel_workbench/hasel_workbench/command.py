@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`workbench [RECORDING…]`: a page in the browser on which the four steps are done by hand."""
 
 import argparse

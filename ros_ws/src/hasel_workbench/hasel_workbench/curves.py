@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The curves of one run as one array of 32-bit numbers, and the map of where the model fails in all of them."""
 
 from collections.abc import Sequence

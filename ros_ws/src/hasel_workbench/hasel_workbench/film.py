@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The moving body as one array of 32-bit numbers: nodes, strain and contraction, with the measured markers over it."""
 
 from dataclasses import dataclass

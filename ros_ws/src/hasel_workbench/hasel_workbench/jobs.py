@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Long work, one at a time, in a thread of its own: with progress, and a way to break it off."""
 
 import threading

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Recordings read for the workbench: what can be used, and what must be said of them."""
 
 import warnings

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A session as files: a model and a line for every step; model, report, figures and a script at its end."""
 
 import json

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """All that a session of the workbench knows, never changed, only replaced as a whole; and how its error fell."""
 
 from collections.abc import Collection, Sequence

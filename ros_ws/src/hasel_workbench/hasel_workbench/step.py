@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """One model of a session: what it says of every run, how it came about, and what other values would change at once."""
 
 from collections.abc import Mapping

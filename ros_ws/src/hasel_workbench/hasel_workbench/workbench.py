@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """One session: runs, model, what was tried and kept; all that a page shows, without any page."""
 
 import threading

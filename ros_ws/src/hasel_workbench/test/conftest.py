@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A session with three short runs, its simulations in this process."""
 
 from collections.abc import Callable, Iterator

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Nobody comes into the page without the printed token, or from another site's page; the browser is led there."""
 
 import os

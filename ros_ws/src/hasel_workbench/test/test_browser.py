@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The page in a real browser: load, see, try, watch the error fall, take it back."""
 
 import http.client

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`workbench` where something it needs is not there."""
 
 from hasel_workbench import command as workbench

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What is heard of a rig becomes samples to draw, a running error, and recordings to fit."""
 
 import numpy as np

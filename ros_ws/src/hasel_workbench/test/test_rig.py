@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A simulator of the workbench's own, where the rig has none, and the proposed run as a line for the terminal."""
 
 import time

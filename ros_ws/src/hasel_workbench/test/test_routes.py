@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What is asked of the data routes is answered, or refused in a sentence."""
 
 from itertools import product

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What a page draws: curves, the moving body and the map, as plain numbers."""
 
 import numpy as np

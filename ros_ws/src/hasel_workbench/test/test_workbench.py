@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The session: load, compare, diagnose, try, keep, take back, export; no page is needed."""
 
 import json

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`bench_hidden`: how often the right hidden effect is named, beside the bars."""
 
 import argparse

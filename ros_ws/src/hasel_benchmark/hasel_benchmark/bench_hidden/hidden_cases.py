@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What is hidden: an effect, two, a fault of the set-up, or nothing; how large, under which noise, in which truth."""
 
 import zlib

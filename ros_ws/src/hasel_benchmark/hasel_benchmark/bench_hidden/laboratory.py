@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """From a case to what a laboratory would have measured."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What became of one case: the answer of `improve` beside what only the benchmark knows."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Two searches on the same cases: what one gets right and the other does not.
 
 McNemar's exact test (Psychometrika 12 (1947) 153) of every share: of the cases on which the two differ, as many are to

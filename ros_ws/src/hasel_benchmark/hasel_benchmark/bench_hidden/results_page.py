@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The results as a page for readers and as JSON for programs."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Run cases, each kept in a file of its own, so that hours of work survive a stop."""
 
 import json

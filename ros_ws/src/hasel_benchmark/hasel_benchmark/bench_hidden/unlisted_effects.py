@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Effects that are hidden in the truth and stand in no catalogue, as a user would write them."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The numbers of the benchmark, and the page that shows them."""
 
 from dataclasses import replace

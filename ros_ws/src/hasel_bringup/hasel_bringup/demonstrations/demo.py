@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`make demo`: fit, compare, watch it live, learn what is missing, add it, watch the error fall."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`ros2 run hasel_bringup live_demo`: the whole rig live without hardware, and an effect that it has to find."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The live loop: measure, learn what is missing, add it, measure again, open the secret."""
 
 import json

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What `hidden` says, of every command, node and launch file: nothing, any effect, named effects, or values."""
 
 from collections.abc import Iterable, Mapping, Sequence

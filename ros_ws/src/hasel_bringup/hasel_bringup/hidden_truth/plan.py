@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The standard plan of experiments: the seed paper's nine fitted runs and three unseen ones."""
 
 from dataclasses import dataclass

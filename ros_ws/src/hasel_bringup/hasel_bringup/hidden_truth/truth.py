@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The simulator that plays the measured swimmer: other mesh, time step and muscle law than the model's."""
 
 from collections.abc import Mapping, Sequence

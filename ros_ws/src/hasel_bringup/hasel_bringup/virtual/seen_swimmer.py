@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The true swimmer as a camera with a clock of its own sees it: its angle, or where its markers are."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`ros2 run hasel_bringup virtual_camera`: a swimmer with a secret in a tank, and the camera over it.
 
 The camera has a memory, as high-speed cameras have: where the machine draws pictures fast enough they are sent as they

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`ros2 run hasel_bringup virtual_rig`: supply, swimmer and camera without hardware, on the topics of the real ones."""
 
 import argparse

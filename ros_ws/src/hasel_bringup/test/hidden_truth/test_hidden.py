@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What `hidden` says, and the swimmer that comes of it."""
 
 import numpy as np

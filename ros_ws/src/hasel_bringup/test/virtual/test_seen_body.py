@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The angle of the simulated body at each frame, and its noise, of the strength and memory asked for."""
 
 import numpy as np

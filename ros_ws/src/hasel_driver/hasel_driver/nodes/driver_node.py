@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`ros2 run hasel_driver driver_node`: lifecycle node, whose safety process talks to the supply."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What the driver tells: the supply's state as messages, and the services that arm, stop and clear.
 
 Each service answers for what the supply reports, and only as the only driver.

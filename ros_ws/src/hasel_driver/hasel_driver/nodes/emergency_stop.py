@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The topic `emergency_stop`: heard from every publisher, and who of them holds the stop."""
 
 import threading

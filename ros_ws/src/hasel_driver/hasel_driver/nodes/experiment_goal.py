@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What a goal of `run_experiment` asks for: a waveform spelled out, a preset of the literature, or a file."""
 
 from collections.abc import Mapping

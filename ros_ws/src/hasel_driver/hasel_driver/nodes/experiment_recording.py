@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The recording of one experiment, and the proof from the file itself that it holds what it should."""
 
 import itertools

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The action `run_experiment`: runs a plan, records it, and vouches for the recording."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The ROS middleware below rclpy: what it may hear and hold up, and who published a message.
 
 Over shared memory Fast DDS may wait 333 ms when another node comes (Fast-DDS issue 6535), and rclpy lets no other

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Who else drives and commands: other drivers that answer to the same names, and the claim of one commander.
 
 Two drivers in one namespace would obey one `arm`, and the first answer to an emergency stop would win.

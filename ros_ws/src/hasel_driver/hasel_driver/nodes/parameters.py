@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The node's parameters: their table, which the README lists, their declaration in the node, and their guard."""
 
 from collections.abc import Callable, Iterator, Sequence

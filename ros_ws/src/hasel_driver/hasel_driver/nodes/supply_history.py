@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What a supply went through, kept on disk: faults, breakdowns, and how the muscles' leakage grows.
 
 One JSON object a line, appended and never rewritten:

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Commands and emergency stops of other nodes, and what those must not do.
 
 On an executor of their own, as the main one, with its services, is too slow.

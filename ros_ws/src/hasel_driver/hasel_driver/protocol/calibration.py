@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Corrections that a board keeps for one channel (`firmware/PROTOCOL.md`), and how they follow from measured points."""
 
 from dataclasses import astuple, dataclass

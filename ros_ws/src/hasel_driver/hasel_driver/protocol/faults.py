@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What can go wrong: errors that tell a caller, faults that ground the output, and those a restarted node has still."""
 
 import json

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The limits a supply is run within, and the clipping of commands to them."""
 
 import math

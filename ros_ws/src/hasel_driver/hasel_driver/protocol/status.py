@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The states of the supply, what is known of its ground contacts, and what is known about it now."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Voltage waveforms of two antagonistic muscles: as the board generates them (`firmware/PROTOCOL.md`), or in rows."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Lines of the serial protocol (`firmware/PROTOCOL.md`): encoding, checksum, parsing; no input or output."""
 
 import binascii

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """One run: rest, waveform, rest; advanced step by step in the safety process."""
 
 from collections.abc import Callable

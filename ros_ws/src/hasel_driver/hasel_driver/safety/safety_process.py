@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The process that alone talks to the supply: `python -m hasel_driver.safety.safety_process DESCRIPTOR`.
 
 It shares no interpreter lock with ROS, so that nothing the node does can hold up the heartbeat, a check or a stop.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Decides what the supply may do: arming, limits, timeouts, latched faults. No threads, no ROS.
 
 What it tells about the output comes from the supply's own recent report, never from what was asked for.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What the driver checks in every report of a supply: one row each, with how long it is borne and why."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The node's end of the safety process: asks it, and knows what it told last."""
 
 import contextlib

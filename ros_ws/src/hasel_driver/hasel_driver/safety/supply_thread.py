@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Runs a supervisor in a thread of its own, woken by the port and by requests, never held up by the node."""
 
 import concurrent.futures

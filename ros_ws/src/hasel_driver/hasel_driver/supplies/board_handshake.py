@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The conversation with a board whose port was just opened: who are you, disarm, these are your limits."""
 
 import time

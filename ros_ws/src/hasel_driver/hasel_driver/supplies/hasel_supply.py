@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The supply that speaks `firmware/PROTOCOL.md`."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A serial port opened for one host alone, read and written without waiting."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Two SHVPS boards, one for each muscle, as one supply.
 
 Unlike the supply of `firmware/`, an SHVPS goes on when its host dies, has no latched trip, reports no ground

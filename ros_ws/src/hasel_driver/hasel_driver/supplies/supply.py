@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What every high-voltage supply must do for the driver, whatever its protocol."""
 
 from abc import ABC, abstractmethod

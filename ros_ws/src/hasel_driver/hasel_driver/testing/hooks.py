@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Hooks for pytest: few or many rounds, repetition where the machine was late, and the times that were measured."""
 
 import time

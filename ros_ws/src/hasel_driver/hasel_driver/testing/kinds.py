@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Kinds of hardware that does not do as it is told, each injected while the driver drives, and judged by the truth."""
 
 import time

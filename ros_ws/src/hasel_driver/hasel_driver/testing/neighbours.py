@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Kinds of other nodes that a driver meets: a second driver of its name, strangers; judged by the supply's voltages."""
 
 import socket

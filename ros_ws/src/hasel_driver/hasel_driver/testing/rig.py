@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A supply in a process of its own that tells the truth about its output, and the driver's thread on it."""
 
 import os

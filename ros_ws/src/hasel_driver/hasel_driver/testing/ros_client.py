@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A user of the driver's topics and services, and the driver's node in a process of its own."""
 
 import subprocess

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A random walk over everything that can be done to a driver and its hardware, judged by the supply's voltages."""
 
 import random

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`ros2 run hasel_driver calibrate`: compares output and read-back with a probe, and corrects both on the board.
 
 End the driver's node first; connect a calibrated high-voltage probe to the muscle's terminals. Each voltage is put on

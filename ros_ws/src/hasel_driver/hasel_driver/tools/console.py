@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`ros2 run hasel_driver console`: arm, ramp, hold and stop by hand; its keyboard, and its link to the driver."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`ros2 run hasel_driver bench`: how fast a command, and the grounding of a dead node; what a busy machine ends."""
 
 import argparse

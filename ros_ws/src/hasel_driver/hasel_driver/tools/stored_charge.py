@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`ros2 run hasel_driver stored_charge`: what charge and energy wait on the output at a given capacitance.
 
 The bound for touching is that of IEC 60335-1, 8.1.4: 45 µC for peaks of 450 V to 15 kV.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The device's end of a pseudo-terminal, for supplies that exist only in software."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The supply's board in Python: the same protocol, states and faults as the sketch in `firmware/`."""
 
 import math

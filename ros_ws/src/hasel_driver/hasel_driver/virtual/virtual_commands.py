@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Commands of the virtual board: what each does, or why it is refused (`firmware/PROTOCOL.md`)."""
 
 import re

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Output stage of the virtual supply: muscles, contacts that break before they make, and what proves the ground."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`ros2 run hasel_driver virtual_shvps`: a small emulation of one SHVPS board's command set."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`ros2 run hasel_driver virtual_supply`: the board with supply and muscles, on a pseudo-terminal.
 
 Its standard input takes one fault or question per line (`help` lists them), its standard output tells when

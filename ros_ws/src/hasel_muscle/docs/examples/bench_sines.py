@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A load that hangs from a muscle under sines of the voltage: what a bench saw, and what the muscle's law says.
 
 `bench_muscle` compares lifts. This takes the muscle and the swing that it found to recordings of sines, which it never

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """When a muscle's law foretells lifts better than a table of measured strokes does, and when not.
 
 Both are given some of the voltages of a recording and asked for the others: every second one, third one … of them, or

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Speeds of a measured robot fish, from how its tail was seen to beat.
 
 The fish, its films and its markers are those of srl-ethz/fishsim on GitHub (MIT licence, Soft Robotics Lab, ETH Zürich;

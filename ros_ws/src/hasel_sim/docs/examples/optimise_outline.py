@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Find the outline that bends most under a given drive, with no more material and no higher than before.
 
 The six coefficients of the outline are free; the body keeps its area, stays below the default's largest height and

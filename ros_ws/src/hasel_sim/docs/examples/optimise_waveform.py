@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Find when to switch each muscle on and off so that the swimmer bends most at a given frequency.
 
 The voltage is 5.5 kV or nothing; free are the instants at which each muscle is switched on and off, as shares of the

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A run as differentiable functions of PyTorch: waveform -> contraction -> angle."""
 
 from collections.abc import Callable, Sequence

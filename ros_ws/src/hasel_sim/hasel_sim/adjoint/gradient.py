@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A run with everything kept that the way back needs, and the whole way back through it.
 
 Weights of the measured angles become weights of the markers, observation effects included, then of positions.

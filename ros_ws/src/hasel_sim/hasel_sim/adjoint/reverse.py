@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The way back through a step and through the first state: from weights after it to weights before it.
 
 Weights are the derivatives of what is optimised by every number of a state, in the shape of a `State`. A step solves

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What is timed, the default swimmer at 5.5 kV, 2 Hz; how, by processor time of one thread; and the bars beside it."""
 
 import cProfile

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Convergence of the swimmer's angle under refinement of mesh and time step, and what a fit to measurements prefers."""
 
 from dataclasses import asdict, dataclass

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What every effect of the catalogue costs: a run with it, and with all sensitivities, over the run without it."""
 
 import itertools

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Speed of this version against another checkout's, in turns: a ratio in one run, whatever the machine is doing."""
 
 import json

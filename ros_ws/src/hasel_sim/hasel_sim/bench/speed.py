@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Cost of a second of motion: forward, with all sensitivities, by the adjoint; by nodes and by parameters; of swims."""
 
 import itertools

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`bench`: speed of everything, of effects or of swims beside its bars, against another revision, or convergence."""
 
 import argparse

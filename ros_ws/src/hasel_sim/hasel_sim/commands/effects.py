@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """List the physical effects, print what one of them states as a card, or write the documentation's page of all."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`optimise`: the waveform, or the body, with which a free body swims best."""
 
 import argparse

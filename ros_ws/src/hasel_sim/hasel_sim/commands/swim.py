@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`swim`: how fast a free body swims, by voltage and frequency."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The baseline muscle: an amplitude per level of the drive, approached at a limited rate (the paper's sloped box)."""
 
 from collections.abc import Callable, Sequence

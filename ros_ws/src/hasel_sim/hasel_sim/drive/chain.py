@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The whole drive: commanded signal -> supply and electrode effects -> target -> response -> contraction.
 
 The target is that of the amplitudes or of the law of the Peano-HASEL against an elastic body; it has a corner where a

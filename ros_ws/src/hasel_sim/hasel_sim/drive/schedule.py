@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The commanded drive as step functions of time, one per channel, and the grid on which it is evaluated."""
 
 from dataclasses import dataclass

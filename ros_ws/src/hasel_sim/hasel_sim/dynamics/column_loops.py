@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Compiled loops for what parameters change at a fixed motion, see `parameter_columns`.
 
 The tuples that the functions share:

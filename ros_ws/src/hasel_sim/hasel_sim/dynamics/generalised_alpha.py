@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The generalised-alpha method, second order with chosen damping of what the step cannot resolve.
 
 Forces and inertia are balanced once per step at interpolated positions, velocities and accelerations ("generalised

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Bodies that step together, the calls of effects between compiled steps, and a single body with divided steps."""
 
 import time

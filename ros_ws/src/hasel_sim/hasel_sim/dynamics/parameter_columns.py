@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What every parameter of a model changes in the residual at a fixed motion: a column each, by compiled loops.
 
 A parameter of an effect's law is differentiated as the law was recorded; everything else by central differences of only

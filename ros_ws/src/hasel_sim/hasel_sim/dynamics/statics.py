@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Static equilibrium by Newton's method, and the state in which a run starts, with its derivatives by parameters.
 
 What is out of balance at first is taken away step by step where needed. A free body that nothing holds has no

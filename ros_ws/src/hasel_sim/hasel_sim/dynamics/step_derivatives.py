@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The derivatives of a step by all parameters at once, and the way back through it; each one compiled call.
 
 With A the matrix of the step and s the change of the positions at the balance that the derivatives before the step

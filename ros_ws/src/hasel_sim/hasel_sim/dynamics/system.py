@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The mechanical system: its residual, all derivatives of it at one motion, and what its effects add to a step.
 
 The residual is that of solid, inertia, loads and force effects.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The time loop: steps of the bodies in all lanes, one after the other, each found by Newton's method; compiled.
 
 A step is made with one matrix, that of the guess: a correction that is not small enough is followed by others with the

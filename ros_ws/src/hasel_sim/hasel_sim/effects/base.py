@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What every physical effect states, the four places where one can act, and what it finds there.
 
 An effect is one class in one file. It holds no state: its parameter values come as the argument `p`, with one attribute

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What is asked of an effect before it may act: declarations, null is null, a response, finite values, right shapes."""
 
 import math

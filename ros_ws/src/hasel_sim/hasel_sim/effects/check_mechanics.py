@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Checks of force and material effects: null, response, locality, sound constants, and what they say they depend on."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What the checks of an effect share: one sentence, a call whose result is looked at, equality to round-off, units."""
 
 import re

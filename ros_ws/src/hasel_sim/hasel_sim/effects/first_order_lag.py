@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """First-order lag of a signal with jumps: what charging electrodes and flowing liquid have in common."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The catalogue: every effect whose file lies in one of the four folders, and effects in a user's own file."""
 
 import importlib

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What hydrodynamic effects share: velocities along and across the centre line, and the fluid that a strip carries."""
 
 from dataclasses import dataclass

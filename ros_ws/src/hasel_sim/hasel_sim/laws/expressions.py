@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Expressions of numbers that are known later, and their derivatives.
 
 A graph grows as arithmetic is done with its nodes. Equal expressions are one node, and what is known at once

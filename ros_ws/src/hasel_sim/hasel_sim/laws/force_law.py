@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A force effect with its values, bound to a mesh: forces at its sites and their derivatives, in all lanes at once."""
 
 from collections.abc import Callable, Sequence

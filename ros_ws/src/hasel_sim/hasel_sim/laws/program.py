@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Expressions as a list of operations on registers, each of which holds one number for every point and lane.
 
 The compiled loop `operate` does them: a register is WIDTH numbers in a row, and the loop over them is what the

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Effects called as Python: once for all lanes with the same values, at copies of their points to be differentiated.
 
 An effect that looks at the drive is called lane by lane. Whoever waits for laws that cannot be compiled is told once.

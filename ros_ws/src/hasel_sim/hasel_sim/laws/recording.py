@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The law of an effect, recorded at one point: its value, and what it changes with the motion or with a parameter.
 
 NumPy takes `Traced` arrays of numbers that are known later for arrays: what is computed with them is recorded.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A material effect that adds stress, bound to the Gauss points of its regions."""
 
 from collections.abc import Callable, Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The compiled loops that do the programs of laws at all points, and add what they find to forces and stresses."""
 
 import numpy as np

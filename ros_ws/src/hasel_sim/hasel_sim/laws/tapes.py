@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Laws bound to their points, and their programs side by side with what they need, as the compiled loop takes them."""
 
 from collections.abc import Callable, Mapping, Sequence

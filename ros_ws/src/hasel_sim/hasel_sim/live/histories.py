@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The recent past of a running simulation: what drove it, and the angle that was observed."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A simulation that is fed with the supply's state as it comes in: its model, the order of the messages, the motion."""
 
 from dataclasses import dataclass

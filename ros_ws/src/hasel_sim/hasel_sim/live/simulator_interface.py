@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What the simulation shows of itself in ROS: the model's parameters, and its results as messages."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`ros2 run hasel_sim simulator`: the supply's state comes in, the simulated bending angle goes out at its stamps."""
 
 import sys

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """From Gauss points, elements and sites to nodal forces and the band matrix, and along given directions.
 
 Every array has the lanes as its last axis (see `simd.py`) but those that describe the mesh: elements, gradients and

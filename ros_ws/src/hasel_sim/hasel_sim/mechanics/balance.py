@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Forces out of balance and their matrix, in one compiled pass over the elements.
 
 What `constitutive` and `assembly` do in one loop per quantity, with the same laws, coefficients, sources and shapes;

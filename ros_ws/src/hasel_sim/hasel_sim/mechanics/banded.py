@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A narrow-banded matrix per lane, its LU factors without pivoting, and solves with them.
 
 Four pivots and four rows are eliminated at a time. For the nearly symmetric positive definite matrices of a time step

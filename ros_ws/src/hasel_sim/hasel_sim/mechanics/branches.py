@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Internal Maxwell branches of the material: stress that a strain leaves behind and that relaxes.
 
 Each branch holds a second Piola stress Q with dQ/dt = g C : dE/dt - Q / tau, which is a share of C : E when a run

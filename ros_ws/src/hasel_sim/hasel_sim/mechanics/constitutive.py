@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Strain and stress of the solid and its muscles at every Gauss point, and their derivatives.
 
 Every array has the lanes as its last axis (see `simd.py`) but those that describe the mesh: elements and gradients.

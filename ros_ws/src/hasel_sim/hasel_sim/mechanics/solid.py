@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The solid and its mass: constants at the Gauss points, internal force and its derivatives."""
 
 from collections.abc import Sequence

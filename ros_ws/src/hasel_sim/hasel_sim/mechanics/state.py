@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Motion, drive and state of the bodies in all lanes, what is kept of their way, and loops over nodal arrays."""
 
 from collections.abc import Callable, Sequence

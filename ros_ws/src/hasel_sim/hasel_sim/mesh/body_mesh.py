@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The mesh of a planar strip: soft halves, on a spine or not, columns along the body and layers through it.
 
 Columns stand evenly within a segment and are graded into the root of the fin. The corner between the body's blunt end

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Places where forces act: the body, the skin, the centre line, points of it; each interpolates a few nodes.
 
 Fields of the loops are [columns, nodes or sites, 2, lanes]; nodes and weights [sites, nodes per site].

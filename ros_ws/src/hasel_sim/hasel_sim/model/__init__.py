@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A model: body, material, numerics, effects and parameter values; read from and written to one YAML file."""
 
 from hasel_sim.model.model import Model

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A whole model file: what must fit together in it, and which effects can stand side by side on its body."""
 
 from collections.abc import Iterator, Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The model: a validated description, its effects and its parameters; never changed, only copied with changes."""
 
 from collections.abc import Mapping, Sequence

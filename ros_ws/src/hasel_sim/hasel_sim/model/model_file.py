@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Model files: reading with one-sentence errors, those of the former kinds of body too, and writing."""
 
 import json

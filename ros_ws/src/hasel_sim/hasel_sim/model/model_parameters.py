@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Which parameters a model can have: numbers of its file that are freed, and those that every body with muscles has.
 
 A number of the file is named by its path, such as `material.soft.youngs_modulus_pa`. What all materials of a body have

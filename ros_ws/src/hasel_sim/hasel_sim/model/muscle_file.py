@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Muscle files: the pouch of a muscle on its bench, the effects it has, and what may be fitted."""
 
 from collections.abc import Mapping

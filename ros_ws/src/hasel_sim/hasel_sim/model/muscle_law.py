@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The muscle section of a model file: a law of how far a voltage contracts, in place of a table of amplitudes."""
 
 from typing import Annotated, Literal

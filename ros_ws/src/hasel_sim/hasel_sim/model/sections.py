@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The sections of a model file: known keys only, each with its unit in its name, finite numbers, never changed."""
 
 from typing import Annotated, Any, Literal

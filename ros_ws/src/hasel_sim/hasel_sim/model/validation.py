@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What is wrong with a file, as one sentence: what was found, what was expected, what to do."""
 
 import re

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What an effect of the muscle on its bench states, the places where one can act, and the catalogue of all."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A Peano-HASEL muscle: pouches in series, what acts on them, and its numbers; changed only by copying."""
 
 from dataclasses import dataclass, field, replace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Geometry and electrostatics of one Peano-HASEL pouch: a bag of inextensible film with liquid that zips from one end.
 
 The liquid's cross-section A stays what it is. What is not zipped is bounded by two circular arcs of half angle alpha

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A load that hangs from a muscle and swings: what a bench sees between two balances.
 
 The muscle pulls with the force of its law at the voltage and contraction of the instant, the less the faster it

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What swims best: waveform of two muscles, outline and other numbers of the body, by exact gradients of the swim.
 
 Speed, heading and power are those of `free_swim`, as differentiable functions of PyTorch.

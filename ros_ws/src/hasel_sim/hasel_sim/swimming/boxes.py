@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Box voltages of two muscles that take turns."""
 
 from dataclasses import dataclass

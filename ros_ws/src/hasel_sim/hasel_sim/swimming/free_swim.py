@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """How a free body swims: position, speed, heading, power and cost of transport of a simulated run."""
 
 from dataclasses import dataclass

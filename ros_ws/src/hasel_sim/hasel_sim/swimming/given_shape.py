@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A swimmer whose changing shape is given and whose way through the fluid is sought, such as a fish seen to beat.
 
 The shape is known in a frame of the body; how that frame moves and turns follows from the effects of the fluid, which

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The search for a better swimmer: what may change, what its shape has to keep to, what is sought, what was tried."""
 
 from collections.abc import Mapping

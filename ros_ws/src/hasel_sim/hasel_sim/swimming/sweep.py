@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Swims under many drives: in parallel, kept in a file as they end, so that a sweep that was broken off goes on.
 
 Of their speeds: the frequency at which a swimmer is fastest, how well it is known, and the seed paper's figure.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A law whose stress changes with the rate of the deformation by no symmetric matrix, as none of the catalogue does."""
 
 from hasel_sim.effects.base import EffectParameter, MaterialEffect

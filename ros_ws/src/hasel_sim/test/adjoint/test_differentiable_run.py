@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Gradients by the adjoint against gradcheck, forward sensitivities and central differences."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Back through one step, against the matrices of that step written out."""
 
 from dataclasses import replace

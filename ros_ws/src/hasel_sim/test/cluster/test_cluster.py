@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A cluster that answers, one that cannot, and one that is lost in the middle."""
 
 import os

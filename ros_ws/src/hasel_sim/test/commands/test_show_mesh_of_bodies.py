@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The picture of a body shows all that its file describes."""
 
 from pathlib import Path

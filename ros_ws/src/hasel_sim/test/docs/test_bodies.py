@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Bodies that are YAML only: swimmer, arm, a beam with one muscle on one side, a finger with three."""
 
 from pathlib import Path

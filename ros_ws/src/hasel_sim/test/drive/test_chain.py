@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The whole drive from voltage to contraction.
 
 The instants at which a drive begins or ceases to contract.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What a free body must keep, and how much a time step may lose."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Static equilibrium: its derivatives and what it says when there is none.
 
 Static bending against beam theory.

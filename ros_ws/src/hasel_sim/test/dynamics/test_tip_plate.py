@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A plate on the tip: its mass and its rotary inertia against beam theory."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A coarse swimmer, a clamped beam, and what one measures on them."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Cards, the list of effects, and the documentation's page."""
 
 from pathlib import Path

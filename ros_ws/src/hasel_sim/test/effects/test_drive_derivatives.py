@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Derivatives by the parameters of effects on the drive, on the grid of a simulation."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """An effect of the user's own that fails where a search tries it: a sentence, and no stack trace."""
 
 import numpy as np

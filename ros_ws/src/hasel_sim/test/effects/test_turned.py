@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A body that lies another way: the same angle, except where an effect's physics names a direction."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Expressions: every operation of the compiled loop is NumPy's, and its derivative that of its values."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What effects are given: made when they ask for it, and lane by lane where they look at the drive.
 
 Copies of a state for one call of an effect, and what its answers say of the derivatives.

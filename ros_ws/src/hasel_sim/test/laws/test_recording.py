@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What NumPy does with an array of numbers that are known later is recorded, or it is said why not."""
 
 import math

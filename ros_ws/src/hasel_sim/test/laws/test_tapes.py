@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Laws in the compiled loop beside the same laws called as Python.
 
 An additional stress at Gauss points: what it changes with the contraction of the muscles.

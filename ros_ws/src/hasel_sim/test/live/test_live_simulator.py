@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The live simulation against the simulation of the whole run, and on bad messages."""
 
 import numpy as np

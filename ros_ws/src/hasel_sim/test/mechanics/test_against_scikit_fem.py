@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The same clamped beam solved by an independent finite-element library, with its own elements and time stepping."""
 
 import numpy as np

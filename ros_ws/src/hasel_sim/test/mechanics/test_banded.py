@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Band storage, factors and solves against dense linear algebra."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Stresses and moduli at one Gauss point against differences of the energy, and against theory."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What does not fit together in a model file is refused in one sentence, and never ignored."""
 
 from importlib import resources

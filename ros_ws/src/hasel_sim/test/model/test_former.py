@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Model files of the former kinds of body stay valid."""
 
 import numpy as np

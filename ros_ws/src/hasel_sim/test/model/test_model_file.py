@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Model files: what is refused and how, and what comes back."""
 
 from importlib import resources

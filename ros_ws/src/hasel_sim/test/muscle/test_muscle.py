@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A muscle of several pouches on its bench: hanging loads, held lengths, and what its effects change."""
 
 import numpy as np

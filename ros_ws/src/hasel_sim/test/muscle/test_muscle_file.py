@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Muscle files: what comes with the package, writing and reading back, one-sentence errors."""
 
 import pytest

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The pouch against closed forms, and against quadrature and root finding that share no code with it."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A load that hangs from a muscle and swings."""
 
 import numpy as np

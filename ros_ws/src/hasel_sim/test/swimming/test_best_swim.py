@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The waveform, and the body, that swim best.
 
 Speed, heading and power as differentiable functions.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Speed, heading, power and cost of transport of a free body."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Swimmers of given shape against closed forms of swimming theory."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Sweeps: side by side, in a file, broken off and taken up again.
 
 The fastest frequency and its interval.

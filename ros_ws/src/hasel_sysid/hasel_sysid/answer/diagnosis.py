@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What is said of every effect, and of all of them; how it prints and goes into JSON."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The next experiment: which of a small library of safe ones would make the remaining explanations differ most.
 
 Experiments are in the words of the RunExperiment action, differences in units of the noise.

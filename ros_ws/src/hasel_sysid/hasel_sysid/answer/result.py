@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What an improvement comes to, stage by stage; how it prints and goes into JSON."""
 
 from collections.abc import Collection, Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Faults of the set-up as hypotheses: how the runs would have to be read, each a rival of all that is physics.
 
 A dead channel, exchanged channels, an inverted angle, clocks that differ. What cannot be physics, such as frames out of

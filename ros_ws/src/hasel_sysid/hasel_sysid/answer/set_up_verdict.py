@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The runs as recorded, or as a fault of the set-up has them read: which of the two is believed."""
 
 from collections.abc import Callable, Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What a search says of every effect, and what it comes to: five verdicts, four statuses."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The façade behind `import hasel_sysid as h`: h.load, h.model, h.simulate, h.fit, h.diagnose, h.improve.
 
 Results print as sentences and plot; docs/reference/python.md lists them.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Pictures of recordings, comparisons, rankings and falling errors, and files that Python's user asks for."""
 
 from collections.abc import Callable, Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Results of the steps: each prints as sentences and plots."""
 
 from collections.abc import Sequence

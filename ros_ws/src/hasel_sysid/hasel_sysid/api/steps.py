@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The steps as functions: load, model, simulate, fit, diagnose, improve, save."""
 
 from collections.abc import Iterable, Mapping, Sequence

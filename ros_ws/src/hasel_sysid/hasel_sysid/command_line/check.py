@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`check RECORDING…`: what was understood of recordings, and what looks wrong, before anything is fitted."""
 
 import argparse

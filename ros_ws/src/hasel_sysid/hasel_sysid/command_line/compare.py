@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`compare RECORDING…`: how far and where a model is off, with a report."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`diagnose RECORDING…`: rank the missing effects, with a verdict each."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`add EFFECT…` and `remove EFFECT…`: write the model with, or without, an effect."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`fit RECORDING…`: identify a model's free parameters and write the fitted model."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`improve RECORDING…`: fit, diagnose, add, refit, and write what was found at every stage."""
 
 import argparse

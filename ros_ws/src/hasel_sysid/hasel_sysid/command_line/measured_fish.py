@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`measured_fish DIR`: speeds of a filmed fish against those that the forces of the fluid give it."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The options of every command, each declared once, and the executables, without anything that takes time to import."""
 
 import argparse

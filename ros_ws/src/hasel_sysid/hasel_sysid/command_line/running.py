@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What every command does alike: one sentence per error, an exit code, its cores, results for other programs."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`suggest RECORDING…`: the next experiment that would best tell the remaining explanations apart."""
 
 import argparse

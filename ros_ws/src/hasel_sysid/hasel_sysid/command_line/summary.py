@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What a person needs of an answer on the terminal: verdict, values, error before and after, doubt, next run."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Faults of the set-up, found before any physical effect is accused."""
 
 from hasel_sysid.data_quality.against_model import check_against_model

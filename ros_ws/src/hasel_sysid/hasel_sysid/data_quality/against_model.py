@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Checks that need what a model predicts for the same command."""
 
 import numpy as np

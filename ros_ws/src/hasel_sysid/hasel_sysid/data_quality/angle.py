@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Faults of the measured angle and of the markers that it comes from."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Faults of the command: unit, dead or doubled channel, clipping, irregular switching, a faked command."""
 
 import numpy as np

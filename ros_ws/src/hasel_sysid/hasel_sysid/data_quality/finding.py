@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A fault of the set-up, named as what it is."""
 
 from dataclasses import dataclass

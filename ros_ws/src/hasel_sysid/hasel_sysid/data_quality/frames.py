@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Faults of the header lines and of the frames' times: order, unit, gaps, jitter, rate."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """All checks of a recording that need no model, and what was understood of it before anything is fitted."""
 
 from collections.abc import Sequence

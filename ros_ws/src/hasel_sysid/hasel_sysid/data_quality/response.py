@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Faults in how the angle answers the command: direction, a dead side, clocks that differ, another frequency."""
 
 import numpy as np

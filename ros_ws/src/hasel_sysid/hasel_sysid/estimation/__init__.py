@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Identification of a model's free parameters from recordings."""
 
 from hasel_sysid.estimation.fit import FittedModel, fit_baseline

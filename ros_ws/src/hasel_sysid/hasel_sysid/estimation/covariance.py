@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Standard errors: of the noise (sandwich), of runs that disagree (CR2), and of the discretisation (type B)."""
 
 from collections.abc import Mapping

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """One fit: from each of its starts on the low-fidelity model, then the model itself by manifold mapping.
 
 Manifold mapping: Echeverría and Hemker, Computational Methods in Applied Mathematics 5 (2005) 107.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Growing horizons against cycle skipping (Bunks et al. 1995): the first swing of every run, then two, four and so on.
 
 A wrong frequency puts a model out of phase within a few swings; no derivative leads back from there.

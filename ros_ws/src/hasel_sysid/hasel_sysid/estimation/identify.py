@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Identification as a user asks for it: a fit by a named method, with honest standard errors.
 
 The seed paper's method: Adam on the mean squared error, 0.05 for amplitudes and 0.005 for the slope.

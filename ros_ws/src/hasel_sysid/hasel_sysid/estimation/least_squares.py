@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Bounded Gauss-Newton least squares in a trust region (Conn, Gould and Toint 2000), one step at a time.
 
 The region is a box in units of the parameters' scales, so that a step is a linear least-squares problem within bounds.

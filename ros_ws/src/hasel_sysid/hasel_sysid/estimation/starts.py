@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Where a fit begins: a typical size and the decades of the plausible range, at every time and place (multi-start)."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What was heard, as recordings to fit: a long stream of the supply's states and measured angles, cut into runs."""
 
 from collections import deque

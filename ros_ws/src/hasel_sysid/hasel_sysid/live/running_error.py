@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The error of the run that is going on, from streams that arrive independently and are brought together."""
 
 from bisect import bisect_left

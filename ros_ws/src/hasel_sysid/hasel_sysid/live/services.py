@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The fit and the diagnosis that the node's services ask for, and all results as ROS messages."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`ros2 run hasel_sysid sysid`: how far the simulation is from the measurement, and the model that is nearer."""
 
 import sys

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The identification node's parameters, without anything that takes time to import."""
 
 from hasel_common.node_parameter import AUTOSTART, NodeParameter

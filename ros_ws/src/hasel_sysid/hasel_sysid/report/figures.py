@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The report's figures, each a function from content to plotly's."""
 
 from collections.abc import Sequence

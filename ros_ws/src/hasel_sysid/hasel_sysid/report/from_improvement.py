@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The report's content from a diagnosis or an improvement: what was missing, what remains, what to measure next."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The report's content from a comparison or a fit."""
 
 from collections.abc import Callable, Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Measured against simulated angle of one run, and below it what each model leaves."""
 
 from collections.abc import Sequence

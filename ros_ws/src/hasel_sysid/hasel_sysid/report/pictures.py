@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The error by stage and the runs as pictures, vector or PNG, for a paper, a README or slides."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The body's extreme shapes, as it is simulated, and where the measured angle puts its tail."""
 
 from collections.abc import Sequence

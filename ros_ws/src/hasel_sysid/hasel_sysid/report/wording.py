@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Numbers, values and parameters in the words in which a reader wants them."""
 
 import math

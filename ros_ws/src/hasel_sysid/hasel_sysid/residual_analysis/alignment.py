@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """How much one further column explains beyond offset, gain and lag."""
 
 from dataclasses import dataclass

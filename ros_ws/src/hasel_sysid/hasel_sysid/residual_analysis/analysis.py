@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Where a model fails: run by run, in all runs together, and in which part of the cycle."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """One way in which a run differs from its simulation, with its size, in the words of a researcher at the plot."""
 
 from dataclasses import asdict, dataclass

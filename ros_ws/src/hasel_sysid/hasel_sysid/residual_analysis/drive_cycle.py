@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The cycle of a drive: its period, where in it a frame lies, and which channel is pulling."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Is a residual white, does it depend on the drive, and on the phase of its cycle?"""
 
 from dataclasses import dataclass

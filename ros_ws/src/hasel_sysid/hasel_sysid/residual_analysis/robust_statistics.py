@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Statistics that hold for correlated noise, single jumps and runs that disagree."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """One run as the pure numbers that are compared: frames, drive, measured and simulated angle."""
 
 from dataclasses import dataclass

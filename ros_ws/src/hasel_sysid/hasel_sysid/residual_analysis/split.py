@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Split the difference of one run into its components: offset, gain, lag, ringing, sides, drift, or a swing."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """How fast and how long a body that is let go swings, against the simulation."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The first-order log-likelihood of every compatible set of a few candidates: best subset selection.
 
 Furnival and Wilson, Technometrics 16 (1974) 499; Bertsimas, King and Mazumder, Annals of Statistics 44 (2016) 813. Made

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The answer among fitted models: the smallest one that predicts left-out runs as well as the best.
 
 One-standard-error rule: Breiman et al. 1984. What cannot be told from the answer is its model confidence set (Hansen,

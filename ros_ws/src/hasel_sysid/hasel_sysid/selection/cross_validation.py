@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """How well a model predicts every run from the others: elpd, its differences and their errors.
 
 Leave-one-run-out log predictive density (Vehtari, Gelman and Gabry 2017), linearised at the fit to all runs.

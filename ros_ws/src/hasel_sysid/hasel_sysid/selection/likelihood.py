@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The one currency: the log-likelihood of residuals under one declared covariance.
 
 Measured noise, white and shared by neighbouring frames; one slow discrepancy that no model is without (Kennedy and

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What every candidate does beside one fitted model, to first order: one batch of low-fidelity simulations."""
 
 from collections.abc import Mapping, Sequence

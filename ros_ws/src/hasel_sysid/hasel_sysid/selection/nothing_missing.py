@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Is anything missing? The largest of all scores against its distribution by noise alone (Westfall and Young 1993)."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Every candidate alone, fitted by the low-fidelity model until it converged or can no longer win.
 
 Racing: Maron and Moore, Advances in Neural Information Processing Systems 6 (1994) 59. Typical sizes take part first,

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The search: fit the likeliest models, linearise about the best of them, and go round again until nothing is better.
 
 models = {nothing: the baseline}, and every candidate alone as far as it can win

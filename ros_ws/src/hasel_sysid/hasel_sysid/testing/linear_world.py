@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Sets of candidates without a simulator, for tests: every effect adds a known series, and the noise is known."""
 
 from collections.abc import Callable, Collection, Iterable, Mapping

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Made-up effects, and models beside runs: what is missed in every frame is known, and nothing is simulated."""
 
 from collections.abc import Callable, Sequence

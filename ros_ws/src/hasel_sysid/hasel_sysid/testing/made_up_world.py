@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Runs of a swimmer in a world in which every parameter moves the angle by a known series, and of two such worlds."""
 
 import math

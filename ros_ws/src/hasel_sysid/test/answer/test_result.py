@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What is said of an effect: one answer, and no number that nobody can believe."""
 
 import json

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Faults of the set-up beside a model: told apart from physics, and from what is in order."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What is said of every effect, and the status that a search comes to."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`import hasel_sysid as h` and the notebook that uses it."""
 
 import inspect

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A laboratory with recordings of a swimmer that has what the model lacks, on a coarse model."""
 
 from collections.abc import Callable

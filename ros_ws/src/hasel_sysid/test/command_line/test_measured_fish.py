@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Films of a fish: read, their beat and speed found, their drive checked, their speeds compared.
 
 Made-up films stand for the public ones; with FISHSIM=DIR, a clone of srl-ethz/fishsim, these are treated too.

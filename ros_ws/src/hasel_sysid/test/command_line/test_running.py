@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Errors are one sentence on stderr with exit code 2, warnings one line."""
 
 import json

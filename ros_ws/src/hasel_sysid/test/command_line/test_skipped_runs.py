@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A run that cannot be simulated: one sentence with its name, and the rest goes on."""
 
 import json

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Commands start at once: nothing is imported that a command does not need."""
 
 import json

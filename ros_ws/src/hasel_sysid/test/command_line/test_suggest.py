@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The command `suggest` from end to end, on a coarse model with a hidden effect."""
 
 import json

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Faults that only a prediction reveals, and physics that must not be taken for one."""
 
 from dataclasses import replace

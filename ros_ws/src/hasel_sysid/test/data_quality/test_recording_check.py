@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Every injected fault is named as what it is, and clean recordings are left in peace."""
 
 from dataclasses import replace

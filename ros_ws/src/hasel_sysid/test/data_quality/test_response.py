@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A drive whose frequency is not that of the response."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Standard errors: by noise (sandwich), by runs that disagree (CR2), and by the discretisation (type B)."""
 
 import numpy as np

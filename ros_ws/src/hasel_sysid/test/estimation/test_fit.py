@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """One fit: multi-start on the low-fidelity model, manifold mapping, and what is said of its parameters."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Fits from so far away that a model is out of phase within a few swings (cycle skipping)."""
 
 import numpy as np

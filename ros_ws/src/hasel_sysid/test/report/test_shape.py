@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The body where it is bent most, with the measured markers."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Words for a difference, without numbers that nobody can believe."""
 
 import numpy as np

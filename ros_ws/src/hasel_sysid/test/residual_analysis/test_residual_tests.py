@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Whiteness, dependence on the drive, phase profile and noise of a residual."""
 
 import warnings

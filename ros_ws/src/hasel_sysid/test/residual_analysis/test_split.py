@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Every component is found with its true size, and no other one is blamed."""
 
 from dataclasses import replace

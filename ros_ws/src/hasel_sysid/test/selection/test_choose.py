@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The answer among fitted models: one-standard-error rule, backward check and model confidence set."""
 
 from itertools import combinations

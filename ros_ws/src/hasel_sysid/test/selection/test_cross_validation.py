@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Elpd of left-out runs, against the predictive density computed run by run."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What no model has, as a reason to leave a small effect out."""
 
 import numpy as np

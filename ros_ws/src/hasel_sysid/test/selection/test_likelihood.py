@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The likelihood of correlated residuals, against the covariance written out."""
 
 import numpy as np

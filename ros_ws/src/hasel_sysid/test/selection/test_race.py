@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Racing of single candidates on the low-fidelity model."""
 
 import numpy as np

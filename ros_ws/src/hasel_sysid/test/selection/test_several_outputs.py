@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Several outputs of a frame in one residual: what one angle cannot tell apart, two can."""
 
 import numpy as np

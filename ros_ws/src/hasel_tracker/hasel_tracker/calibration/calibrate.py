@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`calibrate colour|body|board|distance`: the markers' colour, how a body stands out, lens and scale."""
 
 import argparse

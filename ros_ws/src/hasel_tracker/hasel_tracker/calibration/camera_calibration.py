@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Lens and perspective of a camera, from pictures of a chessboard or a known distance, applied to points."""
 
 from dataclasses import dataclass

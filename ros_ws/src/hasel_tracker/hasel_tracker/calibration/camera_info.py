@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A camera's lens as ROS says it: `sensor_msgs/CameraInfo` of the full picture or of one drawn smaller.
 
 image_transport looks for it beside the picture's topic.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Learn from one picture the markers' colour, size and spacing, or how a swimmer without dots stands out."""
 
 from dataclasses import dataclass, replace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The drive's recording (voltages, or whatever drives the body, over time), and when it ran relative to the video."""
 
 from dataclasses import dataclass

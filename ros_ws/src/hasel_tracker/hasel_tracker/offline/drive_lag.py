@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """How much later than the drive's clock the video's ran, from the whole run.
 
 First the angle is predicted frame by frame from its own last values (whatever the body's dynamics, its rocking and its

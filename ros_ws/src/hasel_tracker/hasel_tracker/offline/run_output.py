@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Write a tracked run as a recording that compare, fit and diagnose read."""
 
 import warnings

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`track VIDEO`: from a video or a folder of images to a recording of the bending angle."""
 
 import argparse

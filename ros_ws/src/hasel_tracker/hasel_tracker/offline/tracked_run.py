@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """All frames of a run, tracked; corrected by hand where a file says so; cut from the first movement on."""
 
 from collections.abc import Callable, Iterable, Mapping

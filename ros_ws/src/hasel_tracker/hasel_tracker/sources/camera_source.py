@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A camera through OpenCV: what was asked of it, stamped frames, a thread that reads; opened again when unplugged."""
 
 import threading

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """One picture on its way from a source to the tracker: the queue in which it waits, and how it is decoded."""
 
 import threading

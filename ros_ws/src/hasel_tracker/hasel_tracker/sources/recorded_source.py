@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A video, a folder of images or a TIFF stack, whichever the user named; played as if it were a camera."""
 
 import re

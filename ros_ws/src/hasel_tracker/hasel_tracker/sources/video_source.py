@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Frames of a video file as it is meant to be seen: its times, the shape of its pixels, its fields, its orientation.
 
 FFmpeg (through PyAV) says all of this of a file; what it does not say is refused or stated by the user.

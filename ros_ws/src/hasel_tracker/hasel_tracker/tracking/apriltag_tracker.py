@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """AprilTags instead of dots: each tag says which marker it is, so nothing can be swapped or mistaken.
 
 A tag's corners are those of its black border: a straight line through the half-level edge of each side.

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """From images to the bending angle: a marker tracker, the calibration of its points, and the angle."""
 
 from dataclasses import dataclass, replace

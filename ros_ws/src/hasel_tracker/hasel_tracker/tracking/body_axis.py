@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Where the body's own axis runs between two dots, whether it leads through them, and whether the body ends there."""
 
 from dataclasses import dataclass

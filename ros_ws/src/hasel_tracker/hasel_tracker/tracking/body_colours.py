@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The colours of a body and of what lies beside it, in a view straightened from one dot to the next."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Whether a body runs from one dot to the next, and how wide it is.
 
 A body is a band that differs from what lies on either side of it and is alike along itself. Colours along a bowed

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Whether dots between which a body is seen are where its markers must be: on its axis, out to its ends, and on a body
 beside which no other of its shade lies."""
 

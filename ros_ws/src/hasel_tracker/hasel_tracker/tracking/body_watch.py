@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Look from time to time whether the body still leads from marker to marker, head first."""
 
 import numpy as np

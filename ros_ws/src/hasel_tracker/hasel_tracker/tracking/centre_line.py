@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The centre line of a silhouette: the ridge of its middle, refined by the two edges across it."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The seed paper's method, for comparison: one OpenCV CSRT tracker per marker, its box's centre; it never doubts."""
 
 import cv2

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Why an angle is withheld although every marker was seen, and when it counts: once further frames agree."""
 
 from enum import IntEnum

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Which end of a row is the head: what the user says, the body's thickness or the markers' distances tell."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Where a marker is, from its edge: the half-level crossing along rays from its middle, and an ellipse through them.
 
 On every ray the marker's level and the level just outside are known, and the edge is where the signal is half-way

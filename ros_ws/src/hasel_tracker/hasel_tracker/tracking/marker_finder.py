@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Patches of marker colour in a picture, and the marker near a place in it, measured."""
 
 from collections.abc import Callable, Sequence

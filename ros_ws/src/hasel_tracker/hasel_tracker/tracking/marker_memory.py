@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What is known of the markers from the frames so far, which things measured are they, and what gives rise to doubt."""
 
 from collections.abc import Sequence

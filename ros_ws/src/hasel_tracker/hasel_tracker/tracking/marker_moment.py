@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Where a marker is, to some thousandths of a pixel: the moment of its luma, corrected for the background.
 
 Colour says which pixels belong to the marker, but its edges are unreliable: video stores colour at half

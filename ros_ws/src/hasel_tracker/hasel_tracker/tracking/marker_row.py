@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Which blobs are a row of markers along one body: alike, apart, not folded, and with the body between them."""
 
 from collections.abc import Callable, Iterable, Sequence

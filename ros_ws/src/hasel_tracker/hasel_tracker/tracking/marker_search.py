@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Find markers in a whole picture: a row of which nothing is known but its looks, or what was lost of one."""
 
 from collections.abc import Callable, Iterable

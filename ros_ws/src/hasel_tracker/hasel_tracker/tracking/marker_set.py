@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What a method says of one marker, the markers as one frame shows them, and the bending angle that they make."""
 
 from dataclasses import dataclass, replace

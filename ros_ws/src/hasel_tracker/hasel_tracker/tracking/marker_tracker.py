@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Follow the markers from frame to frame; find them at the start and when lost; say when that is in doubt."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Points along the centre line of a swimmer without dots, followed from frame to frame; says when that is in doubt."""
 
 import numpy as np

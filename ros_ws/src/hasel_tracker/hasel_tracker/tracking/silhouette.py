@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The one body that stands out from the ground, lighter or darker, or the reason why none is taken."""
 
 from dataclasses import dataclass

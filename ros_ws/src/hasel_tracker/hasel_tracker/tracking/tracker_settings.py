@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What the tracker must know of markers and regions, as a ROS 2 parameter file too; the defaults suit 4 mm blue dots at
 6 px per mm."""
 

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Write video: H.264 for people, MJPEG for measuring and for live recording; both keep the frames' times."""
 
 import threading

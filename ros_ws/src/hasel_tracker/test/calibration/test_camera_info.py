@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The lens in ROS's own message: what image_geometry makes of it is where OpenCV sees a point."""
 
 import cv2

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The lag between video and drive, on a body whose dynamics the estimator does not know."""
 
 import numpy as np

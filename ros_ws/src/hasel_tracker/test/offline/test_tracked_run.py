@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What a tracked run says of itself, corrections by hand, and the cut from the first movement on."""
 
 import numpy as np

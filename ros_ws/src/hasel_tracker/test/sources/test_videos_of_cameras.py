@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Videos as cameras and phones make them: times, shape, fields and orientation are as the file says."""
 
 from fractions import Fraction

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """When frames in doubt come to count."""
 
 from hasel_tracker.tracking.doubt import Doubt, Trust

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 import numpy as np
 from hasel_tracker.tracking.bending_tracker import BendingTracker
 from hasel_tracker.video.annotation import BODY_COLOUR, HEAD_COLOUR, TAIL_COLOUR, annotate, preview

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """How often a tracker says `valid` to a wrong angle, and how far off the right ones are."""
 
 import tempfile

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What goes wrong at a rig: hidden markers, other blue things, lost order, leaving the picture."""
 
 from collections.abc import Callable, Iterator

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`bench`: accuracy, robustness, honesty, speed and latency of the tracker against drawn truth, beside the bars."""
 
 import argparse

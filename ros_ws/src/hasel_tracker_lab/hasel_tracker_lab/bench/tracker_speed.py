@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Frames per second on one core, and the time from a frame's capture to its angle."""
 
 import itertools

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The camera over the swimming plane: where it looks (pinhole, tilt, lens), and what it does to a clean picture."""
 
 from dataclasses import dataclass

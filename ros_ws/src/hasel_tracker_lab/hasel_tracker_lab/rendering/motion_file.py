@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Motions from files: centre lines, markers, or a bending angle alone."""
 
 import re

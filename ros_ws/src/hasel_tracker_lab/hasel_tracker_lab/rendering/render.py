@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """`render OUTPUT`: a swimmer whose markers' true places are known, as a video or images, and the truth beside."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Draw the swimmer, or a calibration's board, as a camera would see it, together with where its markers truly are."""
 
 from collections.abc import Iterator

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The drawn swimmer: what it looks like (lengths in m, colours as BGR), and its centre line over time."""
 
 from dataclasses import dataclass, field

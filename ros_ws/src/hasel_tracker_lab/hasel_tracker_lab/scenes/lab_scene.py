@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A scene: water or a textured ground, swimmers, other blue things, shadows, reflections, and one camera."""
 
 from collections.abc import Iterator

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A swimmer in the laboratory's pictures: how it bends, where its dots are, how it is painted (lengths in px)."""
 
 from dataclasses import dataclass, field, replace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What else gets into a picture: cables, hands, bubbles, glare; each moves with a velocity [px/s]."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Paint shapes with smooth edges by taking many samples in each pixel."""
 
 import cv2

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The scenes by name: where a tracker must not publish a wrong angle, real laboratories, swimmers without dots."""
 
 from collections.abc import Callable

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Scenes that nobody made a rule for, drawn at random: what a laboratory's day brings."""
 
 from collections.abc import Callable

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Scenes in which a wrong angle was once called valid, pictures of real laboratories, and swimmers without dots."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A swimmer without dots from the command line."""
 
 from dataclasses import replace

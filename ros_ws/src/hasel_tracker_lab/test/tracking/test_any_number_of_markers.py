@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Two to fifteen markers, in order along the body, in pixels and metres."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A row of dots must be a body's markers: on its axis, out to its ends, beside no other body."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Points along the centre line from frame to frame, and when there are none."""
 
 from dataclasses import replace

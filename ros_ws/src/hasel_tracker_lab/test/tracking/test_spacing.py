@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The distances between the markers tell them from other dots: even ones unless something else was learnt or said."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What a picture leaves open is settled by what the user says: --roi, --at, --head."""
 
 from dataclasses import replace

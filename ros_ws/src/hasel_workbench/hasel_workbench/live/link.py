@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The node of the workbench, spun in a thread of its own: hears the rig, asks its services."""
 
 import asyncio

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The rig as the page knows it: nobody, or the nodes that are heard; a simulator and a command line for it."""
 
 import os

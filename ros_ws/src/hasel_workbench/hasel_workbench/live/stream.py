@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What is heard of a rig, for a page that draws it and for the session that fits it; no ROS is needed."""
 
 import threading

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Who may come in: whom the host lets in, the printed address' token, and the browser that is led to it."""
 
 import secrets

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Tables, sliders, cards and the waterfall as plain HTML, so that a screen reader and a keyboard find their way."""
 
 import math

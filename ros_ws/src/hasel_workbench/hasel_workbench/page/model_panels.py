@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What is done to the model: the toolbar, values and effects that are tried, the steps so far, the next run, export."""
 
 from functools import partial

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """One browser page on the session: its parts, and what happens when something changes."""
 
 from collections.abc import Callable

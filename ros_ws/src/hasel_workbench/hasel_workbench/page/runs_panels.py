@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What is looked at: runs and their columns, the map, the moving body and its curves, the live rig."""
 
 from collections.abc import Mapping, Sequence

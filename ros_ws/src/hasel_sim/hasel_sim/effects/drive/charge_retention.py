@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Charge retention: charge creeps into the film and shields part of the field."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Charging lag: the electrodes are a capacitor behind a resistor."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Part of the drive arrives slowly, as the wall of an inflated chamber goes on giving way."""
 
 from types import SimpleNamespace

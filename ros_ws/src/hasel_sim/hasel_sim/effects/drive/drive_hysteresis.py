@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Drive hysteresis: the pouch zips at a higher voltage than it releases."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Gain drift: the muscles tire within a run."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Hydraulic lag: the liquid takes time to leave and to return."""
 
 from types import SimpleNamespace

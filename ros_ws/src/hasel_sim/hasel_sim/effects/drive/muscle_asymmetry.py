@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Muscle asymmetry: the two muscles are not equally strong."""
 
 from types import SimpleNamespace

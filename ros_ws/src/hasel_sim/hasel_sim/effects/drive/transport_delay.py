@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Transport delay: the command reaches the electrodes late."""
 
 from types import SimpleNamespace

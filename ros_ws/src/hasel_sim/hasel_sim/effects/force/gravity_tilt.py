@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Gravity tilt: the table or tank is not level."""
 
 from types import SimpleNamespace

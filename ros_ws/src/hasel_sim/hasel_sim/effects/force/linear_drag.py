@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Linear drag: slow surroundings brake in proportion to velocity."""
 
 from types import SimpleNamespace

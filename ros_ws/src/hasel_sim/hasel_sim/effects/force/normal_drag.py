@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Normal drag: fluid that flows across the body and around its edges."""
 
 from types import SimpleNamespace

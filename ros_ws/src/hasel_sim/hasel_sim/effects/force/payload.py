@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Payload: a mass at the tail marker, such as the marker itself."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Reactive force: the fluid that a slender body throws sideways, and leaves behind at its tail."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Skin friction: the laminar boundary layer that the body drags along."""
 
 from types import SimpleNamespace

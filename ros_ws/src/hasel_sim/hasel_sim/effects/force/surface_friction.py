@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Surface friction: dry friction of the body lying on a table."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Viscous drag: the slow fluid around a slender body."""
 
 from types import SimpleNamespace

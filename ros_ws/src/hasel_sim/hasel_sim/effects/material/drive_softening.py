@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Drive softening: where a muscle contracts, the body around it changes its stiffness."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Initial relaxation: stress of the starting shape that has yet to relax."""
 
 from types import SimpleNamespace

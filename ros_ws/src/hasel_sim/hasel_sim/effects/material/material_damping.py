@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Material damping: more Kelvin-Voigt viscosity than the model's nominal one."""
 
 from types import SimpleNamespace

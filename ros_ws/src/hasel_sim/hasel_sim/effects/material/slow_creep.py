@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Slow creep: a second, longer time with which stress relaxes."""
 
 from types import SimpleNamespace

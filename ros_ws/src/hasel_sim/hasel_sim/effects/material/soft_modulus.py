@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Soft modulus: the soft material's stiffness in the model file is wrong."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Strain softening: the soft material resists less, the more it is strained."""
 
 from types import SimpleNamespace

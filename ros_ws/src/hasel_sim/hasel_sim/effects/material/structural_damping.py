@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Structural damping: loss per cycle that does not depend on frequency."""
 
 from types import SimpleNamespace

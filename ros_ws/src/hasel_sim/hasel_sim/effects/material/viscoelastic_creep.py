@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Viscoelastic creep: stress that relaxes with one time."""
 
 from types import SimpleNamespace

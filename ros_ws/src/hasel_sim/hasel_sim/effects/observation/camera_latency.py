@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Camera latency: the pictures' time stamps are not the drive's."""
 
 from types import SimpleNamespace

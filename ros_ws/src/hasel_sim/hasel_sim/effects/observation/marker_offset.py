@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Marker offset: the middle marker sits beside the centre line."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Edge effect: near its side seals a pouch cannot become a cylinder."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Film creep: films and seals go on yielding while the muscle is contracted, and remember it."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Parallel stiffness: films, seals and electrodes resist being bent into arcs."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Pouch spread: the pouches of a muscle are not filled alike."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Series compliance: clamps, threads and the load cell give way."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Stiffening: wrinkles and side seals resist large contractions more than in proportion."""
 
 from types import SimpleNamespace

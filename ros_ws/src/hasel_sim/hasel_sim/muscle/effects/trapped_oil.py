@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Trapped oil: a thin layer of liquid stays between the zipped films."""
 
 from dataclasses import replace

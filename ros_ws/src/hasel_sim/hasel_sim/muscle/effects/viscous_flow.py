@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Viscous flow: the liquid takes time to move out from between the films."""
 
 from types import SimpleNamespace

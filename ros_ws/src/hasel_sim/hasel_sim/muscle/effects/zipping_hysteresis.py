@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Zipping hysteresis: films that have touched stick, and let go at a lower voltage."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Added mass of a body of finite depth."""
 
 from dataclasses import replace

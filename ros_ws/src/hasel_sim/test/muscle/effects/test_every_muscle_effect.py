@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What holds for every effect of the muscle on its bench."""
 
 import numpy as np

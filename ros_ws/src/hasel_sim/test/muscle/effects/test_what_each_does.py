@@ -1,3 +1,4 @@
+# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """What each effect of the bench changes, against its own closed form."""
 
 from dataclasses import replace
