@@ -70,11 +70,20 @@ class DriveHistory:
             schedule.channels,
         )
 
+    @property
+    def changed_at(self) -> float:
+        """When the voltage changed last [s]; the start where it has not."""
+        return float(self._schedule.time[-1]) if len(self._schedule.time) else self._start
+
+    def wait(self, times: np.ndarray) -> None:
+        """Let the next instants [s] [n] pass without asking what they lead to."""
+        self._instants.add(times, np.empty((len(times), 0)))
+
     def advance(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Voltage [V] and contraction [1], both [n, muscles], at the next instants [s] [n]; 0 V where none is known."""
         if len(self._schedule.time) == 0:
             self.hold(self._start, np.zeros(len(self._schedule.channels)))
-        self._instants.add(times, np.empty((len(times), 0)))
+        self.wait(times)
         voltage = self._chain.at_muscles(self._schedule.at(times))
         instants = np.concatenate([[self._start], self._instants.time])
         kept = self._sharp[self._sharp > self._instants.time[0]]

@@ -10,7 +10,7 @@ from hasel_common.inside_folder import inside_folder
 
 from hasel_sim.build import Builder
 from hasel_sim.drive.schedule import HASEL_CHANNELS
-from hasel_sim.dynamics.generalised_alpha import plan_steps
+from hasel_sim.dynamics.generalised_alpha import StepPlan, plan_steps
 from hasel_sim.dynamics.integrator import Stepper
 from hasel_sim.dynamics.statics import initial_state
 from hasel_sim.errors import ModelError, SimulationError
@@ -155,7 +155,8 @@ class LiveSimulator:
 
     history: how far back [s] drive and observation effects remember; gap, reset, late: see `StampOrder`;
     load_factor: a run starts in equilibrium under this many times all loads, 0: unloaded.
-    The angles agree with those of `simulate` on the same schedule.
+    The angles agree with those of `simulate` on the same schedule. A body that has not moved for `history` under a
+    drive that has not changed is at rest: it is not stepped until the drive changes.
     """
 
     def __init__(
@@ -231,6 +232,7 @@ class LiveSimulator:
             return
         self._drive.use(model)
         self._angles.use(model)
+        self._moved()
         _fit_branches(self._state, self._stepper)
 
     def _build(self, model: Model) -> None:
@@ -247,6 +249,7 @@ class LiveSimulator:
         self._state, _ = initial_state(self._stepper.system, self._drive.still, self.load_factor, [])
         self._stepper.start(self._state, self._drive.still)
         self._angles = AngleHistory(self.model, self.history)
+        self._moved()
         self._see(np.zeros(1), [self.position])
 
     def _move_to(self, stamp_ns: int) -> float:
@@ -257,17 +260,33 @@ class LiveSimulator:
             plan = plan_steps(
                 np.array([time]), numerics.steps_per_second, numerics.spectral_radius, self._time, time
             )
-            instants = plan.balance_times
-            voltage, contraction = self._drive.advance(instants)
-            positions = []
-            for index, coefficients in enumerate(plan.coefficients):
-                drive = DriveState.single(voltage[index], contraction[index], instants[index])
-                self._state = self._stepper.follow(self._state, drive, coefficients)[-1].after
-                positions.append(self.position)
+            if self._is_at_rest():
+                self._drive.wait(plan.balance_times)
+                positions = [self.position] * len(plan.balance_times)
+            else:
+                positions = self._steps(plan)
             self._see(plan.boundaries[1:], positions)
             self._time = time
         self._angles.expect(stamp_ns, self._time)
         return step
+
+    def _steps(self, plan: StepPlan) -> list[np.ndarray]:
+        """Make the steps of a plan; the positions [m] after each."""
+        voltage, contraction = self._drive.advance(plan.balance_times)
+        positions = []
+        for index, coefficients in enumerate(plan.coefficients):
+            drive = DriveState.single(voltage[index], contraction[index], plan.balance_times[index])
+            self._state = self._stepper.follow(self._state, drive, coefficients)[-1].after
+            positions.append(self.position)
+        if np.abs(self.position - self._still).max() > self._stepper.tolerance:
+            self._moved()
+        return positions
+
+    def _moved(self) -> None:
+        self._still, self._still_since = self.position.copy(), self._time
+
+    def _is_at_rest(self) -> bool:
+        return self._time - max(self._still_since, self._drive.changed_at) > self.history
 
     def _see(self, times: np.ndarray, positions: list[np.ndarray]) -> None:
         self._angles.add(times, *self._rows(np.array(positions)))

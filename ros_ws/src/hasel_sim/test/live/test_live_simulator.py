@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 from hasel_sim.drive.schedule import DriveSchedule
+from hasel_sim.dynamics.integrator import Stepper
 from hasel_sim.effects.base import DriveEffect, EffectParameter, ObservationEffect
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.live.live_simulator import Arrival, LiveSimulator
@@ -135,6 +136,20 @@ def test_the_catalogues_camera_agrees_from_the_first_frame(swimmer):
     expected = whole(model, stamps, voltage)[: len(heard)]
     assert len(heard) == len(stamps)
     assert np.abs(np.array(list(heard.values())) - expected).max() < 1e-4
+
+
+def test_a_body_at_rest_is_not_stepped_until_the_drive_changes(swimmer, monkeypatch):
+    """Nothing moved for as long as anything is remembered, so nothing will; then it moves as in the whole run."""
+    stamps, voltage = frames(2.0, 2.0)
+    voltage[: len(voltage) * 3 // 4] = 0.0
+    steps = []
+    follow = Stepper.follow
+    monkeypatch.setattr(Stepper, "follow", lambda *given: steps.append(given) or follow(*given))
+    heard = live(LiveSimulator(swimmer, history=0.5), stamps, voltage)
+    every = swimmer.description.numerics.steps_per_second * 2.0
+    assert 0.45 < len(steps) / every < 0.55  # 0.5 s until it is at rest, and 0.5 s driven
+    assert np.abs(np.array(list(heard.values())) - whole(swimmer, stamps, voltage)).max() < 1e-6
+    assert max(heard.values()) > 0.1
 
 
 def test_messages_out_of_order_leave_the_motion_alone(swimmer):
