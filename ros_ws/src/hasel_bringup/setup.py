@@ -21,6 +21,7 @@ setup(
         "setuptools",
         "numpy>=1.26",
         "opencv-contrib-python-headless>=4.10",
+        "psutil",
         "rich",
         "threadpoolctl",
     ],

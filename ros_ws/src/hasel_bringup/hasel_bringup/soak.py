@@ -5,9 +5,11 @@ import argparse
 import os
 import time
 from collections import defaultdict
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
+import psutil
 from hasel_common.endpoints import Role, subscription
 from hasel_common.topics import ERROR, MEASURED, SIMULATED, STATE
 from hasel_recording.ros_messages import nanoseconds
@@ -26,6 +28,7 @@ NODES = {
     "virtual_rig": ("hasel_bringup", "--body-only"),
     "simulator": ("hasel_sim",),
     "sysid": ("hasel_sysid",),
+    "recorder": ("hasel_bringup", "--ros-args", "-p", "folder:={folder}/recordings"),
 }  # fmt: skip
 KILLED = ("simulator", "sysid", "virtual_rig", "driver_node")
 MOST_GROWTH = 0.05  # of a process's memory, from the first to the last fifth of its life
@@ -90,11 +93,14 @@ class Soak:
         self._rig.pause(2.0)
         for stamps in self._stamps.values():
             stamps.clear()
-        end = time.monotonic() + seconds
+        begun = time.monotonic()
+        before = {name: self._used(name) for name in NODES}
+        end = begun + seconds
         while time.monotonic() < end:
             self._rig.pause(min(_MEMORY_PERIOD_S, max(0.0, end - time.monotonic())))
             for name in NODES:
-                self._memory[name].append((time.monotonic(), self._resident_mb(name)))
+                self._memory[name].append((time.monotonic(), self._used(name)[1]))
+        self._tell_cost(when, before, time.monotonic() - begun)
         heard = {topic: np.array(stamps) for topic, stamps in self._stamps.items()}
         # What was under way at either end of the watch is no loss.
         first = max(stamps[0] for stamps in heard.values()) + 500_000_000
@@ -132,10 +138,24 @@ class Soak:
             self.problems.append(f"another node ended when {name} was killed")
         self._memory[name].clear()
 
-    def _resident_mb(self, name: str) -> float:
-        status = Path(f"/proc/{self._processes.process_id(name)}/status").read_text()
-        line = next(line for line in status.splitlines() if line.startswith("VmRSS"))
-        return int(line.split()[1]) / 1024
+    def _used(self, name: str) -> tuple[float, float]:
+        """Processor time [s] so far and memory [MB] of a node and of what it started; shared pages count in parts."""
+        node = psutil.Process(self._processes.process_id(name))
+        seconds, memory = 0.0, 0.0
+        for process in (node, *node.children(recursive=True)):
+            with suppress(psutil.NoSuchProcess):
+                times = process.cpu_times()
+                seconds += times.user + times.system
+                memory += process.memory_full_info().pss / 1e6
+        return seconds, memory
+
+    def _tell_cost(self, when: str, before: dict[str, tuple[float, float]], seconds: float) -> None:
+        """Of all nodes while nothing is driven."""
+        now = {name: self._used(name) for name in NODES}
+        cores = {name: (used - before[name][0]) / seconds for name, (used, _) in now.items()}
+        each = ", ".join(f"{name} {cores[name]:.2f}" for name in NODES)
+        memory = sum(used for _, used in now.values())
+        print(f"{when}, at rest: {sum(cores.values()):.2f} cores ({each}), {memory:.0f} MB", flush=True)
 
     def _judge_memory(self) -> None:
         for name, samples in self._memory.items():
