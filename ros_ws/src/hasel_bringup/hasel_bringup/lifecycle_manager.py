@@ -9,8 +9,8 @@ from enum import Enum
 from hasel_common.declared_parameters import declare
 from hasel_common.diagnostics import Diagnostics, Level, Part
 from hasel_common.endpoints import STEADY
+from hasel_common.node_process import run_node
 from hasel_common.topics import NAMESPACE
-from hasel_sim.node_process import run_node
 from lifecycle_msgs.msg import State, Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 from rclpy.client import Client

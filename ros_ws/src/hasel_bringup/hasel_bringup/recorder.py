@@ -13,13 +13,13 @@ from hasel_common.declared_parameters import declare
 from hasel_common.endpoints import Role, subscription
 from hasel_common.inside_folder import inside_folder
 from hasel_common.managed_node import ManagedNode, start_and_spin
+from hasel_common.node_process import run_node
 from hasel_common.provenance import provenance
 from hasel_common.topics import ERROR, MEASURED, NAMESPACE, SIMULATED, STATE, relative
 from hasel_interfaces.msg import BendingAngle, RunningError, SupplyState
 from hasel_recording import RecordingError
 from hasel_recording.mcap_recorder import McapRecorder
 from hasel_recording.ros_messages import nanoseconds
-from hasel_sim.node_process import run_node
 from rcl_interfaces.srv import GetParameters, ListParameters
 from rclpy.client import Client
 from rclpy.node import Node

@@ -15,11 +15,11 @@ import cv2
 import numpy as np
 from hasel_common.declared_parameters import declare, words
 from hasel_common.endpoints import Role, frame_of, publisher, subscription
+from hasel_common.node_process import run_node
 from hasel_common.topics import MEASURED, NAMESPACE, STATE
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_sim.errors import HaselSimError
 from hasel_sim.live.simulator_interface import to_nanoseconds, to_time
-from hasel_sim.node_process import run_node
 from hasel_tracker_lab.rendering.camera_model import CameraView, Degradation
 from hasel_tracker_lab.rendering.renderer import Renderer
 from hasel_tracker_lab.rendering.swimmer_motion import BodyShape, line_through_markers

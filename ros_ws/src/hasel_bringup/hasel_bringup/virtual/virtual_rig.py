@@ -13,12 +13,12 @@ from pathlib import Path
 import numpy as np
 from hasel_common.declared_parameters import declare, words
 from hasel_common.endpoints import Role, frame_of, publisher, subscription
+from hasel_common.node_process import RepeatedWarnings, run_node
 from hasel_common.topics import MEASURED, NAMESPACE, STATE
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_sim.errors import HaselSimError
 from hasel_sim.live.live_simulator import live_model
 from hasel_sim.live.simulator_interface import angle_message, rig_voltage, to_nanoseconds
-from hasel_sim.node_process import RepeatedWarnings, run_node
 from rclpy.node import Node
 from threadpoolctl import threadpool_limits
 

@@ -11,6 +11,7 @@ from hasel_common.declared_parameters import declare, words
 from hasel_common.diagnostics import Diagnostics, Level, Part
 from hasel_common.endpoints import STEADY, Role, frame_of, publisher, subscription
 from hasel_common.managed_node import ManagedNode, start_and_spin
+from hasel_common.node_process import RepeatedWarnings, run_node
 from hasel_common.topics import NAMESPACE, SIMULATED, STATE, SWIMMER
 from hasel_interfaces.msg import BendingAngle, SupplyState
 from hasel_interfaces.srv import AddEffect, LoadModel, RemoveEffect
@@ -30,7 +31,6 @@ from hasel_sim.live.simulator_interface import (
 )
 from hasel_sim.live.simulator_parameters import PARAMETERS
 from hasel_sim.model import Model
-from hasel_sim.node_process import RepeatedWarnings, run_node
 from hasel_sim.parameter import value_with_error
 
 
@@ -256,7 +256,7 @@ class SimulatorNode(ManagedNode):
 def main() -> int:
     """Run the node until it is interrupted; returns the exit code."""
     with threadpool_limits(1):
-        return run_node(SimulatorNode, start_and_spin)
+        return run_node(SimulatorNode, start_and_spin, errors=(HaselSimError,))
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ from hasel_common.declared_parameters import declare, words
 from hasel_common.diagnostics import Diagnostics, Level, Part
 from hasel_common.endpoints import STEADY, Role, frame_of, publisher, subscription
 from hasel_common.managed_node import ManagedNode, start_and_spin
+from hasel_common.node_process import end_at_once, run_node
 from hasel_common.progress import HowFar, LogLines, Workload
 from hasel_common.topics import DIAGNOSIS, ERROR, FIT, MEASURED, NAMESPACE, SIMULATED, STATE
 from hasel_interfaces.msg import BendingAngle, Diagnosis, Fit, RunningError, SupplyState
@@ -20,7 +21,6 @@ from hasel_sim.errors import HaselSimError
 from hasel_sim.live.live_simulator import live_model, within
 from hasel_sim.live.simulator_interface import rig_voltage, to_nanoseconds
 from hasel_sim.model import Model, save_model
-from hasel_sim.node_process import end_at_once, run_node
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
 from std_msgs.msg import Header
@@ -224,7 +224,7 @@ def _how_far(now: HowFar) -> dict[str, object]:
 
 def main() -> None:
     """Run the node until it is interrupted, then end with its exit code; a fit under way is given up."""
-    end_at_once(run_node(SysidNode, _spin))
+    end_at_once(run_node(SysidNode, _spin, errors=(HaselSimError,)))
 
 
 def _spin(node: SysidNode) -> None:

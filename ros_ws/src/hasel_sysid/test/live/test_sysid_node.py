@@ -14,15 +14,16 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_common.endpoints import Role
 from hasel_common.managed_node import ManagedNode
+from hasel_common.node_process import run_node
 from hasel_common.progress import Stage
 from hasel_common.topics import MEASURED, SIMULATED, STATE
 from hasel_interfaces.msg import BendingAngle, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
 from hasel_recording import Recording
 from hasel_sim.drive.schedule import DriveSchedule
+from hasel_sim.errors import HaselSimError
 from hasel_sim.live.simulator_interface import angle_message, to_nanoseconds, to_time
 from hasel_sim.model import load_model, save_model
-from hasel_sim.node_process import run_node
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 from hasel_sysid.errors import SysidError
@@ -126,7 +127,7 @@ def test_a_misspelt_model_or_effect_ends_the_node(given, nearest, capsys):
     usual, arguments = signal.getsignal(signal.SIGINT), sys.argv
     try:
         sys.argv = ["sysid", "--ros-args", "-p", given]
-        assert run_node(SysidNode, ManagedNode.begin) == 1
+        assert run_node(SysidNode, ManagedNode.begin, errors=(HaselSimError,)) == 1
     finally:
         sys.argv = arguments
         signal.signal(signal.SIGINT, usual)

@@ -1,7 +1,7 @@
 # Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Warnings that keep coming."""
 
-from hasel_sim.node_process import RepeatedWarnings
+from hasel_common.node_process import RepeatedWarnings
 
 
 def test_nine_hundred_warnings_in_six_minutes_become_a_few():

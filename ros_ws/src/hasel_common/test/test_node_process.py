@@ -8,8 +8,7 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
 
 import rclpy
-from hasel_sim.errors import HaselSimError
-from hasel_sim.node_process import run_node
+from hasel_common.node_process import run_node
 
 CUT_SHORT = "Unable to convert call argument '0' to Python object"
 
@@ -61,7 +60,7 @@ def test_what_is_wrong_is_said_in_a_sentence(capsys):
     """On standard error, with an exit code that is not zero."""
 
     def make():
-        raise HaselSimError("found no such model; expected swimmer")
+        raise LookupError("found no such model; expected swimmer")
 
-    assert run_node(make) == 1
+    assert run_node(make, errors=(LookupError,)) == 1
     assert capsys.readouterr().err == "error: found no such model; expected swimmer\n"

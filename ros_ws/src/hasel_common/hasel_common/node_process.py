@@ -9,18 +9,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import rclpy
-from hasel_common.command_entry import end_with_parent
-from hasel_common.managed_node import quiet_at_shutdown
 from rclpy.exceptions import InvalidParameterValueException
 from rclpy.node import Node
 
-from hasel_sim.errors import HaselSimError
+from hasel_common.command_entry import end_with_parent
+from hasel_common.managed_node import quiet_at_shutdown
 
 
 def run_node(
     make: Callable[[], Node],
     spin: Callable[[Node], None] = rclpy.spin,
-    errors: tuple[type[Exception], ...] = (HaselSimError,),
+    errors: tuple[type[Exception], ...] = (),
 ) -> int:
     """Make a node and spin it until it is interrupted or its parent ends; returns the exit code.
 
@@ -49,7 +48,7 @@ def run_node(
 def end_at_once(code: int) -> None:
     """End the process without waiting for a thread that is in the middle of something long.
 
-    Worker processes notice and end too (`parallel.executor`).
+    Worker processes notice and end too.
     """
     sys.stdout.flush()
     sys.stderr.flush()
