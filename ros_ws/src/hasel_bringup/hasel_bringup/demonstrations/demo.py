@@ -13,7 +13,7 @@ from hasel_common.endpoints import Role, subscription
 from hasel_common.topics import DIAGNOSTICS, ERROR, SIMULATED
 from hasel_interfaces.msg import RunningError
 from hasel_interfaces.srv import LoadModel
-from hasel_muscle import command as bench_muscle
+from hasel_muscle import bench_muscle
 from hasel_recording import read_recording
 from hasel_sysid.command_line import fit, improve, measured_fish
 from hasel_sysid.command_line.running import MISLEADING

@@ -1,4 +1,3 @@
-# Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """Electrical cross-talk: part of each muscle's voltage appears on the other one's electrodes."""
 
 from hasel_sim.effects.base import DriveEffect, DriveStage, EffectParameter
