@@ -2,6 +2,7 @@
 """From a model to a mechanical system, and to the derivative of its residual by each parameter."""
 
 from types import SimpleNamespace
+from typing import TypeVar
 
 import numpy as np
 
@@ -35,6 +36,8 @@ from hasel_sim.model import Model
 from hasel_sim.model.description import Description
 from hasel_sim.model.model_parameters import REST_CONTRACTION, constants, outline_names
 from hasel_sim.model_mesh import marker_points, model_mesh
+
+_Kind = TypeVar("_Kind", bound=Effect)
 
 
 def _material(description: Description, mesh: Mesh, nodes: np.ndarray) -> tuple[Coefficients, np.ndarray]:
@@ -83,19 +86,21 @@ class Builder:
     def system(self) -> System:
         """The mechanical system at the model's values."""
         gravity = np.array(self.model.description.material.gravity_m_per_s2)
-        acting = {
-            kind: [e for e in self._of(kind) if not e.is_null_at(self._values[e.id])]
-            for kind in (ForceEffect, MaterialEffect)
-        }
-        forces = [law for e in acting[ForceEffect] for law in self._force_laws(e, self._values[e.id])]
-        stresses = [self._stress_law(e, self._values[e.id]) for e in acting[MaterialEffect] if e.regions]
+        forces = [law for e in self._acting(ForceEffect) for law in self._force_laws(e, self._values[e.id])]
+        stresses = [
+            self._stress_law(e, self._values[e.id]) for e in self._acting(MaterialEffect) if e.regions
+        ]
         solid, muscles = self._solid(self._values), len(self._described.muscles)
         return System(self.mesh, self.nodes, solid, self.mass, gravity, forces, stresses, muscles)
 
-    def _of(self, kind: type[Effect]) -> list:
+    def _of(self, kind: type[_Kind]) -> list[_Kind]:
         """Effects of one kind, in an order that the model file has no part in."""
         found = [effect for effect in self.model.effects if isinstance(effect, kind)]
         return sorted(found, key=lambda effect: effect.id)
+
+    def _acting(self, kind: type[_Kind]) -> list[_Kind]:
+        """Those of them that are not at their null."""
+        return [e for e in self._of(kind) if not e.is_null_at(self._values[e.id])]
 
     def _solid(self, values: dict[str, SimpleNamespace]) -> Solid:
         coefficients, _ = _material(self._described, self.mesh, self.nodes)

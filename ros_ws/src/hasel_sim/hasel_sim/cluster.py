@@ -38,7 +38,7 @@ _START_THEM = "in an environment of this workspace (. setup/environment.bash), o
 class Members:
     """The workers of a cluster, asked for their sources and libraries as they join; thread-safe."""
 
-    def __init__(self, client, address: str, packages: Sequence[str]) -> None:
+    def __init__(self, client: Any, address: str, packages: Sequence[str]) -> None:
         """client: a `distributed.Client` of the scheduler at `address`; packages: whose sources must be the same."""
         self.address, self._client = address, client
         self._own = environment(tuple(packages))
@@ -217,7 +217,7 @@ class _Call:
     def __init__(self, call: Callable[[], Any]) -> None:
         self._call = call
 
-    def __reduce__(self) -> tuple:
+    def __reduce__(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
         return _in_one_thread, (self._call,)
 
 
@@ -234,7 +234,7 @@ def _one_thread() -> None:
 @dataclass(eq=False)
 class _Sent:
     payload: bytes = b""
-    future: Future = field(default_factory=Future)
+    future: "Future[Any]" = field(default_factory=Future)
     workers: frozenset[str] = frozenset()
     there: Any = None
     """The future of Dask; of one that was sent again, the last."""
@@ -247,7 +247,7 @@ class ClusterExecutor(Executor):
     resized: called with the number of workers when it changes.
     """
 
-    def __init__(self, client, members: Members) -> None:
+    def __init__(self, client: Any, members: Members) -> None:
         self.resized: Callable[[int], None] = lambda count: None
         self.workers = len(members.fitting)
         self._client, self._members = client, members
@@ -257,7 +257,7 @@ class ClusterExecutor(Executor):
         self._ends = threading.Event()
         threading.Thread(target=self._watch, daemon=True).start()
 
-    def submit(self, function: Callable, /, *arguments, **keywords) -> Future:
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **keywords: Any) -> "Future[Any]":
         """A call on one of the workers. Raises ClusterError when they or the scheduler were lost."""
         one = _Sent()
         one.future.set_running_or_notify_cancel()
@@ -292,7 +292,7 @@ class ClusterExecutor(Executor):
             one.workers, one.there = workers, there
         there.add_done_callback(partial(self._ended, one))
 
-    def _ended(self, one: _Sent, there) -> None:
+    def _ended(self, one: _Sent, there: Any) -> None:
         from distributed import KilledWorker
 
         if one.there is not there:

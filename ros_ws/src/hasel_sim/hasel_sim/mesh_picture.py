@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 from hasel_recording.recording import turn_between
+from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Patch
@@ -80,7 +81,7 @@ def muscle_colour(number: int) -> str:
     return MUSCLES[(number - 1) % len(MUSCLES)]
 
 
-def _add_elements(axes, mesh: Mesh, model: Model) -> list[Patch]:
+def _add_elements(axes: Axes, mesh: Mesh, model: Model) -> list[Patch]:
     """Draw every element; what its colours and hatches mean comes back."""
     outlines = 1e3 * mesh.nodes[mesh.elements[:, AROUND]]
     description = model.description
@@ -105,14 +106,14 @@ def _add_elements(axes, mesh: Mesh, model: Model) -> list[Patch]:
     return handles
 
 
-def _add_nodes(axes, mesh: Mesh) -> None:
+def _add_nodes(axes: Axes, mesh: Mesh) -> None:
     x, y = 1e3 * mesh.nodes.T
     axes.plot(x, y, ".", color="black", markersize=1.5)
     if len(mesh.clamped):
         axes.plot(x[mesh.clamped], y[mesh.clamped], "s", color="black", markersize=5, label="clamped")
 
 
-def _add_markers(axes, model: Model) -> None:
+def _add_markers(axes: Axes, model: Model) -> None:
     points, names = 1e3 * marker_points(model), model.description.marker_names()
     for point, name in zip(points, names, strict=True):
         label = "markers" if name == names[0] else None
@@ -120,7 +121,7 @@ def _add_markers(axes, model: Model) -> None:
         axes.annotate(name, point, (0, 9), textcoords="offset points", ha="center", fontsize=9)
 
 
-def _add_loads(axes, mesh: Mesh, model: Model) -> None:
+def _add_loads(axes: Axes, mesh: Mesh, model: Model) -> None:
     """The plate on the tip, and an arrow along gravity."""
     plate = model.description.body.tip_plate
     if plate:
@@ -134,7 +135,7 @@ def _add_loads(axes, mesh: Mesh, model: Model) -> None:
     size = np.linalg.norm(gravity)
     if size > 0:
         centre, half = np.array([0.93, 0.9]), np.array([0.03, 0.08]) * gravity / (2 * size)
-        places = {"xycoords": "axes fraction", "textcoords": "axes fraction"}
+        places: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "axes fraction"}
         axes.annotate("", centre + half, centre - half, arrowprops={"arrowstyle": "-|>"}, **places)
         axes.annotate(f"g = {size:.3g} m/s²", (0.9, 0.9), ha="right", va="center", xycoords="axes fraction")
 
@@ -191,7 +192,7 @@ def _drawn(model: Model, shape: np.ndarray, markers: np.ndarray) -> Figure:
     return figure
 
 
-def _add_arc(axes, centre: np.ndarray, first: np.ndarray, second: np.ndarray) -> None:
+def _add_arc(axes: Axes, centre: np.ndarray, first: np.ndarray, second: np.ndarray) -> None:
     """θ from one line to the other about a point, all [2]."""
     _, turn = turn_between(first, second)
     size = 0.8 * min(np.linalg.norm(first), np.linalg.norm(second))
@@ -200,7 +201,7 @@ def _add_arc(axes, centre: np.ndarray, first: np.ndarray, second: np.ndarray) ->
     axes.add_patch(Arc(tuple(centre), 2 * size, 2 * size, theta1=low, theta2=high, linewidth=1.5))
     middle = np.radians(begin + 0.5 * sweep)
     place = centre + 1.12 * size * np.array([np.cos(middle), np.sin(middle)])
-    axes.text(*place, f"θ = {sweep:.0f}°", ha="left", va="center", fontsize=13, bbox=_BEHIND)
+    axes.text(place[0], place[1], f"θ = {sweep:.0f}°", ha="left", va="center", fontsize=13, bbox=_BEHIND)
 
 
 def run(options: argparse.Namespace) -> int:

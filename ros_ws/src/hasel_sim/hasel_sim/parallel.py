@@ -18,18 +18,20 @@ from dataclasses import dataclass, field
 from functools import partial
 from itertools import count, pairwise, product
 from numbers import Integral
-from typing import TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 from threadpoolctl import threadpool_limits
 
 from hasel_sim.cluster import cluster
-from hasel_sim.errors import SimulationError
+from hasel_sim.errors import HaselSimError, SimulationError
 from hasel_sim.model import Model
 from hasel_sim.run import Run, Simulation
 from hasel_sim.simd import LANES
-from hasel_sim.simulate import kind_of, simulate_many
+from hasel_sim.simulate import ModelKind, kind_of, simulate_many
 
 _ASKED = 0
+_Given = ParamSpec("_Given")
+Result = TypeVar("Result")
 
 
 @dataclass(eq=False)
@@ -42,8 +44,8 @@ class Turn:
 @dataclass(frozen=True, eq=False)
 class _Task:
     turn: Turn
-    call: Callable
-    future: Future = field(default_factory=Future)
+    call: Callable[[], Any]
+    future: "Future[Any]" = field(default_factory=Future)
 
 
 class Turns(Executor):
@@ -61,7 +63,9 @@ class Turns(Executor):
         self._running: list[_Task] = []
         self._places = count(_ASKED + 1)
 
-    def submit(self, function: Callable, /, *arguments, **keywords) -> Future:
+    def submit(
+        self, function: Callable[_Given, Result], /, *arguments: _Given.args, **keywords: _Given.kwargs
+    ) -> "Future[Result]":
         """A task in the turn of this thread."""
         turn = getattr(self._of_thread, "turn", None) or Turn()
         task = _Task(turn, partial(function, *arguments, **keywords))
@@ -123,7 +127,7 @@ class Turns(Executor):
         with self._lock:
             self._running.remove(task)
 
-    def _done(self, task: _Task, result: Future) -> None:
+    def _done(self, task: _Task, result: "Future[Any]") -> None:
         self._ended(task)
         error = CancelledError() if result.cancelled() else result.exception()
         if isinstance(error, BrokenExecutor):
@@ -162,15 +166,14 @@ def side_by_side(cases: Sequence[Case], share: int) -> list[Sequence[Case]]:
     return [cases[first:end] for first, end in pairwise([0, *ends])]
 
 
-Result = TypeVar("Result")
-
-
 class SerialExecutor(Executor):
     """Runs every call at once in this process; for one job, tests and debugging."""
 
-    def submit(self, function: Callable, /, *arguments, **keywords) -> Future:
+    def submit(
+        self, function: Callable[_Given, Result], /, *arguments: _Given.args, **keywords: _Given.kwargs
+    ) -> "Future[Result]":
         """Call now and return a finished future."""
-        future: Future = Future()
+        future: Future[Result] = Future()
         try:
             future.set_result(function(*arguments, **keywords))
         except Exception as error:  # noqa: BLE001  handed on by the future, as every executor does
@@ -274,7 +277,7 @@ def submit_each(
     if ended:
         for model, run in product(range(len(models)), range(len(runs))):
             futures[model][run].add_done_callback(partial(_tell, ended, model, run))
-    alike: dict[tuple, list[int]] = {}
+    alike: dict[tuple[ModelKind, tuple[str, ...]], list[int]] = {}
     for number, (model, names) in enumerate(zip(models, slopes_by, strict=True)):
         alike.setdefault((kind_of(model), tuple(names)), []).append(number)
     share = -(-len(models) * len(runs) // getattr(pool, "workers", 1))
@@ -288,11 +291,13 @@ def submit_each(
     return futures
 
 
-def _tell(ended: Callable[[int, int], None], model: int, run: int, _: Future) -> None:
+def _tell(ended: Callable[[int, int], None], model: int, run: int, _: "Future[Simulation]") -> None:
     ended(model, run)
 
 
-def _hand_on(batch: Future, futures: Sequence[Future]) -> None:
+def _hand_on(
+    batch: "Future[list[Simulation | HaselSimError]]", futures: Sequence["Future[Simulation]"]
+) -> None:
     """Give every run of a batch its own result or error."""
     failed = CancelledError() if batch.cancelled() else batch.exception()
     for future, result in zip(futures, [failed] * len(futures) if failed else batch.result(), strict=True):

@@ -59,7 +59,7 @@ class PreparedRun:
             self.rows = marker_rows(model, self.builder.mesh)
             self.residual_slopes = [self.builder.residual_slope(name) for name in names]
             self._chain = DriveChain(model)
-            self._starts: dict = {}
+            self._starts: dict[tuple[float, float, tuple[int, ...]], tuple[State, StateSlopes]] = {}
         else:
             self.builder, self.stepper, self.rows = like.builder, like.stepper, like.rows
             self.residual_slopes, self._chain, self._starts = like.residual_slopes, like._chain, like._starts

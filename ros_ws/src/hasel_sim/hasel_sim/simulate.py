@@ -19,6 +19,9 @@ from hasel_sim.prepared_run import PreparedRun
 from hasel_sim.run import Run, Simulation
 from hasel_sim.simd import LANES
 
+ModelKind = tuple[str, tuple[float, ...], tuple[tuple[str, bool], ...]]
+"""What `kind_of` gives."""
+
 
 class Lane:
     """One run with everything that stepping needs of it, and what is seen of its motion."""
@@ -170,7 +173,7 @@ def simulate_many(
     Every result is what `simulate` gives, or the error that it raises, in the order of the cases.
     """
     results: list[Simulation | HaselSimError | None] = [None] * len(cases)
-    batches: dict[tuple, list[tuple[int, PreparedRun]]] = {}
+    batches: dict[ModelKind, list[tuple[int, PreparedRun]]] = {}
     of_model: dict[int, PreparedRun] = {}
     for index, (model, run) in enumerate(cases):
         try:
@@ -189,7 +192,7 @@ def simulate_many(
     return results
 
 
-def kind_of(model: Model) -> tuple:
+def kind_of(model: Model) -> ModelKind:
     """What models must have in common to be simulated side by side: mesh, effects, and which of these have a size; the
     parameters' values may differ.
     """
@@ -235,7 +238,12 @@ def _observed(lane: Lane, seen: NodeTrajectories, place: int) -> Simulation:
 
 
 def _observed_slopes(
-    prepared: PreparedRun, markers, lines, d_markers, d_lines, moves: list[int]
+    prepared: PreparedRun,
+    markers: np.ndarray,
+    lines: np.ndarray,
+    d_markers: np.ndarray,
+    d_lines: np.ndarray,
+    moves: list[int],
 ) -> np.ndarray:
     """Derivatives of the measured series [boundaries, columns].
 
@@ -255,7 +263,9 @@ def _observed_slopes(
     return derivatives
 
 
-def slope_by_observation(prepared: PreparedRun, name: str, markers, lines) -> np.ndarray:
+def slope_by_observation(
+    prepared: PreparedRun, name: str, markers: np.ndarray, lines: np.ndarray
+) -> np.ndarray:
     """Derivative of the measured series [boundaries] by a parameter for given marker motions; mostly zero."""
     time, model = prepared.plan.boundaries, prepared.model
     if name.rpartition(".")[0] not in {effect.id for effect in prepared.observed_by}:

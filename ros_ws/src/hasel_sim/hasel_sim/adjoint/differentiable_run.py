@@ -2,6 +2,7 @@
 """A run as differentiable functions of PyTorch: waveform -> contraction -> angle."""
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import torch
@@ -13,6 +14,9 @@ from hasel_sim.model import Model
 from hasel_sim.model.model_parameters import outline_names
 from hasel_sim.prepared_run import PreparedRun
 from hasel_sim.run import Run
+
+_Schedules = Callable[[np.ndarray], DriveSchedule]
+"""From a waveform's numbers to the drive."""
 
 
 class DifferentiableRun:
@@ -44,7 +48,7 @@ class DifferentiableRun:
         return _Contraction.apply(self, self.values() if values is None else values)
 
     def contraction_from(
-        self, waveform: torch.Tensor, schedule: Callable[[np.ndarray], DriveSchedule], step: float = 1e-6
+        self, waveform: torch.Tensor, schedule: _Schedules, step: float = 1e-6
     ) -> torch.Tensor:
         """Contraction [steps, muscles] that a waveform [n] causes, `schedule` turning its numbers into the drive.
 
@@ -76,7 +80,9 @@ class DifferentiableRun:
         """
         return _Shapes.apply(self, *self._all(contraction, values, outline))
 
-    def _all(self, contraction, values, outline) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+    def _all(
+        self, contraction: torch.Tensor | None, values: torch.Tensor | None, outline: torch.Tensor | None
+    ) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
         """What is given, and the model's own of what is not."""
         return (
             self.contraction(values) if contraction is None else contraction,
@@ -107,13 +113,13 @@ class DifferentiableRun:
 
 class _Contraction(torch.autograd.Function):
     @staticmethod
-    def forward(ctx, run: DifferentiableRun, values: torch.Tensor) -> torch.Tensor:
+    def forward(ctx: Any, run: DifferentiableRun, values: torch.Tensor) -> torch.Tensor:
         ctx.run = run
         ctx.save_for_backward(values)
         return torch.from_numpy(run.voltages(values).contraction(run.balance_times))
 
     @staticmethod
-    def backward(ctx, weights: torch.Tensor):
+    def backward(ctx: Any, weights: torch.Tensor) -> tuple[None, torch.Tensor]:
         (values,) = ctx.saved_tensors
         slopes = ctx.run.voltages(values).contraction_slopes(ctx.run.balance_times)
         return None, torch.einsum("sm,spm->p", weights, torch.from_numpy(slopes))
@@ -121,18 +127,20 @@ class _Contraction(torch.autograd.Function):
 
 class _Waveform(torch.autograd.Function):
     @staticmethod
-    def forward(ctx, run: DifferentiableRun, waveform: torch.Tensor, schedule, step: float) -> torch.Tensor:
+    def forward(
+        ctx: Any, run: DifferentiableRun, waveform: torch.Tensor, schedule: _Schedules, step: float
+    ) -> torch.Tensor:
         ctx.run, ctx.schedule, ctx.step = run, schedule, step
         ctx.save_for_backward(waveform)
         return _Waveform._respond(run, schedule, waveform.detach().numpy())
 
     @staticmethod
-    def _respond(run: DifferentiableRun, schedule, waveform: np.ndarray) -> torch.Tensor:
+    def _respond(run: DifferentiableRun, schedule: _Schedules, waveform: np.ndarray) -> torch.Tensor:
         prepared = run.voltages(run.values(), schedule(waveform))
         return torch.from_numpy(prepared.contraction(run.balance_times))
 
     @staticmethod
-    def backward(ctx, weights: torch.Tensor):
+    def backward(ctx: Any, weights: torch.Tensor) -> tuple[None, torch.Tensor, None, None]:
         (waveform,) = ctx.saved_tensors
         out = torch.zeros_like(waveform)
         for index in range(len(waveform)):
@@ -146,7 +154,9 @@ class _Waveform(torch.autograd.Function):
         return None, out, None, None
 
 
-def _followed(run: DifferentiableRun, contraction, values, outline) -> Trajectory:
+def _followed(
+    run: DifferentiableRun, contraction: torch.Tensor, values: torch.Tensor, outline: torch.Tensor
+) -> Trajectory:
     prepared = run.prepared(values.detach(), outline.detach())
     expected = (len(prepared.plan.coefficients), prepared.muscles)
     if tuple(contraction.shape) != expected:
@@ -157,19 +167,27 @@ def _followed(run: DifferentiableRun, contraction, values, outline) -> Trajector
     return follow(prepared, contraction.detach().numpy())
 
 
-def _by_input(ctx, found: Gradient) -> tuple:
+def _by_input(ctx: Any, found: Gradient) -> tuple[None, torch.Tensor, torch.Tensor, torch.Tensor | None]:
     outline = torch.from_numpy(found.outline) if ctx.needs_input_grad[3] else None
     return None, torch.from_numpy(found.contraction), torch.from_numpy(found.parameters), outline
 
 
 class _Shapes(torch.autograd.Function):
     @staticmethod
-    def forward(ctx, run: DifferentiableRun, contraction, values, outline) -> torch.Tensor:
+    def forward(
+        ctx: Any,
+        run: DifferentiableRun,
+        contraction: torch.Tensor,
+        values: torch.Tensor,
+        outline: torch.Tensor,
+    ) -> torch.Tensor:
         ctx.trajectory = _followed(run, contraction, values, outline)
         return torch.from_numpy(ctx.trajectory.shapes)
 
     @staticmethod
-    def backward(ctx, weights: torch.Tensor):
+    def backward(
+        ctx: Any, weights: torch.Tensor
+    ) -> tuple[None, torch.Tensor, torch.Tensor, torch.Tensor | None]:
         return _by_input(
             ctx, gradient_of_shapes(ctx.trajectory, weights.detach().numpy(), ctx.needs_input_grad[3])
         )
@@ -177,12 +195,20 @@ class _Shapes(torch.autograd.Function):
 
 class _Angle(torch.autograd.Function):
     @staticmethod
-    def forward(ctx, run: DifferentiableRun, contraction, values, outline) -> torch.Tensor:
+    def forward(
+        ctx: Any,
+        run: DifferentiableRun,
+        contraction: torch.Tensor,
+        values: torch.Tensor,
+        outline: torch.Tensor,
+    ) -> torch.Tensor:
         ctx.trajectory = _followed(run, contraction, values, outline)
         return torch.from_numpy(ctx.trajectory.prepared.at_frames(ctx.trajectory.series))
 
     @staticmethod
-    def backward(ctx, weights: torch.Tensor):
+    def backward(
+        ctx: Any, weights: torch.Tensor
+    ) -> tuple[None, torch.Tensor, torch.Tensor, torch.Tensor | None]:
         plan = ctx.trajectory.prepared.plan
         at_boundaries = np.zeros(len(plan.boundaries))
         np.add.at(at_boundaries, plan.frames, weights.detach().numpy()[-len(plan.frames) :])

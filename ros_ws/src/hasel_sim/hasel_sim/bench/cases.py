@@ -10,6 +10,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from hasel_common.measured_bar import MeasuredBar
@@ -146,7 +147,7 @@ class BarsReport:
         """The figures that have a bar."""
         raise NotImplementedError
 
-    def values(self) -> dict:
+    def values(self) -> dict[str, Any]:
         """Everything as plain values, for JSON."""
         return asdict(self) | {"bars": [asdict(bar) | {"met": bar.met} for bar in self.bars()]}
 

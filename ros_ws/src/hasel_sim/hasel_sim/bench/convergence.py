@@ -2,6 +2,7 @@
 """Convergence of the swimmer's angle under refinement of mesh and time step, and what a fit to measurements prefers."""
 
 from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from rich.console import Console
@@ -63,7 +64,7 @@ class ConvergenceReport:
     meshes: list[MeshError]
     steps: list[StepError]
 
-    def values(self) -> dict:
+    def values(self) -> dict[str, Any]:
         """Everything as plain values, for JSON."""
         return asdict(self)
 

@@ -8,6 +8,7 @@ import sys
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from rich.console import Console
@@ -110,7 +111,7 @@ class InTurns:
         """How many times less this version takes."""
         return {name: self.other[name] / self.own[name] for name in self.own}
 
-    def values(self) -> dict:
+    def values(self) -> dict[str, Any]:
         """For JSON."""
         return {"nodes": self.nodes, "other_s": self.other, "own_s": self.own, "ratios": self.ratios}
 

@@ -4,8 +4,10 @@
 import argparse
 import json
 import sys
+from concurrent.futures import Executor
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from hasel_common.progress import counted
 from rich.console import Console
@@ -82,7 +84,7 @@ def _label(pair: tuple[float, float]) -> str:
     return f"{first:g} V" if first == second else f"{first:g}/{second:g} V"
 
 
-def _sweep(pool, model: Model, options: argparse.Namespace, name: str) -> Swept:
+def _sweep(pool: Executor, model: Model, options: argparse.Namespace, name: str) -> Swept:
     ledger = SweepLedger(options.output / f"{name}.csv", model, options.duration)
     drives = [Boxes(pair[0], pair[1], f) for pair in options.voltage for f in options.frequency]
     check_drives(model, drives, options.duration)
@@ -99,7 +101,9 @@ def _sweep(pool, model: Model, options: argparse.Namespace, name: str) -> Swept:
     return Swept(model, curves, optima)
 
 
-def _with_error(pool, model: Model, top: Optimum, pair, options: argparse.Namespace) -> Optimum:
+def _with_error(
+    pool: Executor, model: Model, top: Optimum, pair: tuple[float, float], options: argparse.Namespace
+) -> Optimum:
     """The optimum with what the parameters' standard errors mean for its frequency."""
     spacing = sorted(options.frequency)
     step = min((b - a for a, b in zip(spacing, spacing[1:], strict=False)), default=0.5)
@@ -115,7 +119,9 @@ def _with_error(pool, model: Model, top: Optimum, pair, options: argparse.Namesp
     return Optimum(top.frequency, top.speed, top.at_edge, error)
 
 
-def _vary(pool, model: Model, name: str, values: tuple[float, ...], options) -> dict[float, Swept]:
+def _vary(
+    pool: Executor, model: Model, name: str, values: tuple[float, ...], options: argparse.Namespace
+) -> dict[float, Swept]:
     out = {}
     for value in values:
         varied = _model(model, {name: value})
@@ -171,8 +177,8 @@ def _draw_varied(name: str, sweeps: dict[float, Swept], path: Path) -> None:
     save_picture(draw_speeds(f"{label}, by {name}", curves, tops), path)
 
 
-def _values(swept: Swept, varied: dict[str, dict[float, Swept]]) -> dict:
-    def of(one: Swept) -> dict:
+def _values(swept: Swept, varied: dict[str, dict[float, Swept]]) -> dict[str, Any]:
+    def of(one: Swept) -> dict[str, Any]:
         return {
             "model": one.model.name,
             "fingerprint": fingerprint(one.model),

@@ -1,7 +1,7 @@
 # Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """The baseline muscle: an amplitude per level of the drive, approached at a limited rate (the paper's sloped box)."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
@@ -70,7 +70,7 @@ class AmplitudeTable:
             return f"'{self.name(level)}'"
         return f"'{self._prefix}<level>{self._suffix}' with the level in {self.unit}, such as '{self.name(5500)}'"
 
-    def levels(self, names) -> np.ndarray:
+    def levels(self, names: Iterable[str]) -> np.ndarray:
         """All levels that these parameter names speak of, ascending."""
         found = [self.level(name) for name in names]
         return np.sort(np.array([level for level in found if level is not None]))

@@ -147,7 +147,11 @@ class DriveChain:
         return signal[:, self._of_muscle]
 
     def contraction(
-        self, schedule: DriveSchedule, times: np.ndarray, values: dict[str, float], effect_values: dict
+        self,
+        schedule: DriveSchedule,
+        times: np.ndarray,
+        values: dict[str, float],
+        effect_values: dict[str, SimpleNamespace],
     ) -> np.ndarray:
         """Contraction [1] [n, muscles] at ascending times [s] [n], its value at rest included.
 
@@ -158,7 +162,11 @@ class DriveChain:
         return self.contraction_on(schedule, sharp, values, effect_values)[np.searchsorted(sharp, times)]
 
     def contraction_on(
-        self, schedule: DriveSchedule, times: np.ndarray, values: dict[str, float], effect_values: dict
+        self,
+        schedule: DriveSchedule,
+        times: np.ndarray,
+        values: dict[str, float],
+        effect_values: dict[str, SimpleNamespace],
     ) -> np.ndarray:
         """The same by way of just these times: right where they are `sharpened`."""
         if self.count == 0:
@@ -171,7 +179,11 @@ class DriveChain:
         return self._rest + np.stack(series, axis=1)
 
     def sharpened(
-        self, schedule: DriveSchedule, times: np.ndarray, values: dict[str, float], effect_values: dict
+        self,
+        schedule: DriveSchedule,
+        times: np.ndarray,
+        values: dict[str, float],
+        effect_values: dict[str, SimpleNamespace],
     ) -> np.ndarray:
         """These times [s] and, where the drive follows the command by and by, those at which it passes an onset."""
         if not self._follows(effect_values):
@@ -188,7 +200,7 @@ class DriveChain:
             times = np.union1d(times, nearer)
         return times
 
-    def _follows(self, effect_values: dict) -> bool:
+    def _follows(self, effect_values: dict[str, SimpleNamespace]) -> bool:
         """Whether anything before the target acts on the drive."""
         return self._response == "first_order" or any(
             getattr(effect_values[effect.id], p.name) != p.null
@@ -204,7 +216,7 @@ class DriveChain:
         time: np.ndarray,
         signal: np.ndarray,
         values: dict[str, float],
-        effect_values: dict,
+        effect_values: dict[str, SimpleNamespace],
     ) -> tuple[np.ndarray, np.ndarray]:
         for stage in stages:
             if stage == DriveStage.ELECTRODE and self._response == "first_order":

@@ -18,16 +18,50 @@ room: nodal forces, stress, history, and a band that nobody writes to.
 import numpy as np
 from numba import njit
 
-from hasel_sim.laws.tape_loops import add_stresses, evaluate, subtract_forces
+from hasel_sim.laws.tape_loops import Tables, add_stresses, evaluate, subtract_forces
 from hasel_sim.mechanics.assembly import add_stress, add_to_nodes, scatter_stress
-from hasel_sim.mechanics.balance import balance
+from hasel_sim.mechanics.balance import Further, SolidOfLoops, balance
 from hasel_sim.mechanics.branches import add_parameter, carried
 from hasel_sim.mechanics.constitutive import deformation, first_piola, green_stress
-from hasel_sim.simd import add, four, load, store, zero
+from hasel_sim.mechanics.state import Fields
+from hasel_sim.simd import LaneTuple, add, four, load, store, zero
+
+MemoryOfLoops = tuple[
+    np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray]
+]
+"""`memory` of the time loop."""
+_Start = MemoryOfLoops | tuple[np.ndarray, np.ndarray]
+"""Its first two alone, in statics."""
+Bodies = tuple[
+    np.ndarray,
+    np.ndarray,
+    np.ndarray,
+    tuple[np.ndarray, ...],
+    np.ndarray,
+    np.ndarray,
+    np.ndarray,
+    tuple[np.ndarray, ...],
+]
+Columns = tuple[
+    Tables,
+    tuple[np.ndarray, np.ndarray],
+    np.ndarray,
+    Further,
+    Bodies,
+    tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray],
+]
+"""`columns` of the loops."""
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def add_further_forces(place, stress, factors, solid, out, lane):
+def add_further_forces(
+    place: np.ndarray,
+    stress: np.ndarray,
+    factors: np.ndarray,
+    solid: SolidOfLoops,
+    out: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Add the nodal forces of a further stress times a factor of each element's muscle [1 + muscles, lanes]."""
     elements, gradients, areas, stretch, muscle, _ = solid
     lanes, points = len(lane), areas.shape[1]
@@ -47,7 +81,15 @@ def add_further_forces(place, stress, factors, solid, out, lane):
 
 
 @njit(inline="always")
-def _differentiated_laws(columns, motion, solid, signals, loads, out, lane):
+def _differentiated_laws(
+    columns: Columns,
+    motion: Fields,
+    solid: SolidOfLoops,
+    signals: np.ndarray,
+    loads: float,
+    out: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     tables, (laws, factors), _, (place, stress, _), _, _ = columns
     lanes = len(lane)
     for n in range(laws.shape[0]):
@@ -63,7 +105,17 @@ def _differentiated_laws(columns, motion, solid, signals, loads, out, lane):
 
 
 @njit(inline="always")
-def _differences(columns, kind, motion, solid, signals, memory, loads, out, lane):
+def _differences(
+    columns: Columns,
+    kind: int,
+    motion: Fields,
+    solid: SolidOfLoops,
+    signals: np.ndarray,
+    memory: _Start,
+    loads: float,
+    out: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     tables, _, _, further, bodies, (vector, found, history, band) = columns
     which, programs, factors, (gradients, areas, stretch), coefficients, masses, weight, branches = bodies
     elements, _, _, _, muscle, plane_stress = solid
@@ -94,7 +146,16 @@ def _differences(columns, kind, motion, solid, signals, memory, loads, out, lane
 
 
 @njit(inline="always")
-def _stress_differences(columns, kind, motion, solid, signals, memory, out, lane):
+def _stress_differences(
+    columns: Columns,
+    kind: int,
+    motion: Fields,
+    solid: SolidOfLoops,
+    signals: np.ndarray,
+    memory: _Start,
+    out: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     _, _, _, _, (which, _, factors, _, coefficients, _, _, branches), (_, _, history, _) = columns
     elements, gradients, areas, stretch, muscle, plane_stress = solid
     count = which.shape[0] if which[:, 3].any() else 0
@@ -117,7 +178,17 @@ def _stress_differences(columns, kind, motion, solid, signals, memory, out, lane
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def add_residual_columns(columns, kind, motion, solid, signals, memory, loads, out, lane):
+def add_residual_columns(
+    columns: Columns,
+    kind: int,
+    motion: Fields,
+    solid: SolidOfLoops,
+    signals: np.ndarray,
+    memory: _Start,
+    loads: float,
+    out: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Add what every parameter changes in the residual to its column of out [columns, nodes or more, 2, lanes].
 
     kind: of the step; motion, solid, signals: as in `balance`; memory: stresses of the branches and C : E where the
@@ -129,7 +200,15 @@ def add_residual_columns(columns, kind, motion, solid, signals, memory, loads, o
 
 
 @njit(cache=True, error_model="numpy")
-def add_laws_by_contraction(columns, motion, solid, signals, by_contraction, out, lane):
+def add_laws_by_contraction(
+    columns: Columns,
+    motion: Fields,
+    solid: SolidOfLoops,
+    signals: np.ndarray,
+    by_contraction: np.ndarray,
+    out: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Add what laws change with the contraction, by_contraction [columns, 1 + muscles, lanes], to the columns."""
     tables, _, laws, (place, stress, _), _, _ = columns
     if laws.shape[0] == 0 or not by_contraction.any():
@@ -152,7 +231,17 @@ def add_laws_by_contraction(columns, motion, solid, signals, by_contraction, out
 
 
 @njit(cache=True, error_model="numpy")
-def add_branch_columns(columns, kind, position, elements, F, memory, branch, green, lane):
+def add_branch_columns(
+    columns: Columns,
+    kind: int,
+    position: np.ndarray,
+    elements: np.ndarray,
+    F: np.ndarray,
+    memory: _Start,
+    branch: np.ndarray,
+    green: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Add what parameters change in the branches' stresses and in C : E at the end of a step, at its position.
 
     F: deformation there [elements, points, 4, lanes], that of the bodies of which only the stress differs.

@@ -2,7 +2,7 @@
 """Bodies that step together, the calls of effects between compiled steps, and a single body with divided steps."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from operator import is_not
 
@@ -101,7 +101,7 @@ class Integrator:
         """What depends on the kind of a step."""
         each, solid, lanes = self.coefficients, self.system.solid, self.system.lanes
 
-        def table(of_one) -> np.ndarray:
+        def table(of_one: Callable[[StepCoefficients], np.ndarray]) -> np.ndarray:
             return np.stack([np.broadcast_to(of_one(c), (*np.shape(of_one(c))[:-1], lanes)) for c in each])
 
         self._scheme = (

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from hasel_sim.dynamics import column_loops
+from hasel_sim.dynamics.column_loops import Columns
 from hasel_sim.dynamics.system import System
 from hasel_sim.laws.force_law import ForceLaw
 from hasel_sim.laws.stress_law import StressLaw, places_of_stress
@@ -73,7 +74,7 @@ class LawSlope(ResidualSlope):
 class _Difference(ResidualSlope):
     """Two of a kind, for a little more and a little less of a parameter, and the width between [lanes]."""
 
-    def __init__(self, more, less, width: float | np.ndarray) -> None:
+    def __init__(self, more: Any, less: Any, width: float | np.ndarray) -> None:
         self.more, self.less, self.width = more, less, np.atleast_1d(width)
 
     @classmethod
@@ -83,7 +84,7 @@ class _Difference(ResidualSlope):
         return cls(more, less, np.concatenate([slope.width for slope in each]))
 
     @staticmethod
-    def _joined(each: list) -> Any:
+    def _joined(each: Sequence[Any]) -> Any:
         return type(each[0]).beside(each)
 
     @property
@@ -96,7 +97,7 @@ class ForceSlope(_Difference):
     """A parameter that moves the sites of a force: its laws for a little more and a little less of it."""
 
     @staticmethod
-    def _joined(each: list) -> list[ForceLaw]:
+    def _joined(each: Sequence[Sequence[ForceLaw]]) -> list[ForceLaw]:
         return [law for laws in zip(*each, strict=True) for law in ForceLaw.beside(laws)]
 
 
@@ -187,7 +188,7 @@ class ResidualColumns:
         stress, history = (np.zeros((*shape, 3, lanes)) for _ in range(2))
         self._further, self._room = self._places(), (np.zeros(system.weight.shape), stress, history, none)
         self._fixed = self._fixed_of_bodies()
-        self._known: dict[tuple[bytes, ...], tuple] = {}
+        self._known: dict[tuple[bytes, ...], Columns] = {}
 
     def __len__(self) -> int:
         return len(self.parameters)
@@ -215,7 +216,17 @@ class ResidualColumns:
         shape = count, solid.areas.shape[1]
         return place, np.zeros((*shape, 4, self._system.lanes)), np.zeros((0, 1, 4, 4, self._system.lanes))
 
-    def _fixed_of_bodies(self) -> tuple:
+    def _fixed_of_bodies(
+        self,
+    ) -> tuple[
+        np.ndarray,
+        np.ndarray,
+        tuple[np.ndarray, ...],
+        np.ndarray,
+        np.ndarray,
+        np.ndarray,
+        np.ndarray,
+    ]:
         """What no kind of step changes: columns and programs, factors, shapes, masses, weights, moduli of C : E."""
         own, mass, weight = self._system.solid, self._system.mass.masses, self._system.weight
         nothing, lanes = (np.zeros_like(mass), np.zeros_like(weight)), self._system.lanes
@@ -245,7 +256,7 @@ class ResidualColumns:
             stacked([solid.linear_lame for solid in solids], own.linear_lame),
         )
 
-    def table(self, steps: _Steps) -> tuple:
+    def table(self, steps: _Steps) -> Columns:
         """`columns` of `column_loops` for these kinds of step."""
         key = tuple(np.asarray(length, dtype=float).tobytes() for step in steps for length in step)
         if key not in self._known:
@@ -253,7 +264,7 @@ class ResidualColumns:
             self._known[key] = self._tabulated(steps)
         return self._known[key]
 
-    def _tabulated(self, steps: _Steps) -> tuple:
+    def _tabulated(self, steps: _Steps) -> Columns:
         which, factors, shapes, masses, weight, shear, lame = self._fixed
         own, lanes = self._system.solid, self._system.lanes
         solids = [body.solid for body in self._bodies]

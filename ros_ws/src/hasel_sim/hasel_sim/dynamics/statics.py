@@ -6,6 +6,8 @@ equilibrium under loads that do not cancel: it sets off as a rigid body. It star
 own inertia bend it into ("inertia relief"), its centre and heading unchanged.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from hasel_sim.dynamics.parameter_columns import ResidualColumns, ResidualSlope
@@ -56,7 +58,11 @@ def equilibrium(
 
 
 def _balanced(
-    linearised, position: np.ndarray, borne: np.ndarray, inertia: np.ndarray, tolerance: float
+    linearised: Callable[[np.ndarray], tuple[np.ndarray, Linearisation]],
+    position: np.ndarray,
+    borne: np.ndarray,
+    inertia: np.ndarray,
+    tolerance: float,
 ) -> np.ndarray | None:
     """Positions at which the residual is `borne`, by Newton's method from others; None where it does not converge."""
     for _ in range(_MOST_ITERATIONS):

@@ -15,22 +15,54 @@ from collections.abc import Sequence
 import numpy as np
 from numba import njit
 
-from hasel_sim.dynamics.column_loops import add_branch_columns, add_laws_by_contraction, add_residual_columns
+from hasel_sim.dynamics.column_loops import (
+    Columns,
+    MemoryOfLoops,
+    add_branch_columns,
+    add_laws_by_contraction,
+    add_residual_columns,
+)
 from hasel_sim.dynamics.generalised_alpha import StepCoefficients
 from hasel_sim.dynamics.parameter_columns import ResidualColumns, ResidualSlope
 from hasel_sim.dynamics.system import System
-from hasel_sim.laws.tape_loops import add_slopes, respond, subtract_directions
-from hasel_sim.mechanics.assembly import add_site_matrix, add_stress, add_to_nodes, product
-from hasel_sim.mechanics.balance import balance
-from hasel_sim.mechanics.banded import clear_band, factorise, is_spoilt, solve, solve_transposed
+from hasel_sim.laws.tape_loops import Tables, Terms, add_slopes, respond, subtract_directions
+from hasel_sim.mechanics.assembly import SitesOfLoops, add_site_matrix, add_stress, add_to_nodes, product
+from hasel_sim.mechanics.balance import Body, DriveOfLoops, Further, SolidOfLoops, balance
+from hasel_sim.mechanics.banded import (
+    MatrixOfLoops,
+    clear_band,
+    factorise,
+    is_spoilt,
+    solve,
+    solve_transposed,
+)
 from hasel_sim.mechanics.branches import advance_stresses, carried_columns, green_along
 from hasel_sim.mechanics.constitutive import COEFFICIENTS, deformation
-from hasel_sim.mechanics.state import StateSlopes, chosen_of, combine, copy_lanes, difference
-from hasel_sim.simd import add, four, load, square_root, store, three, zero
+from hasel_sim.mechanics.state import Fields, StateSlopes, chosen_of, combine, copy_lanes, difference
+from hasel_sim.simd import LaneTuple, add, four, load, square_root, store, three, zero
+
+Laws = tuple[Terms, Tables, np.ndarray]
+Scheme = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+Progress = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+_NodalRoom = tuple[np.ndarray, ...]
+_Slopes = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+_Room = tuple[_NodalRoom, tuple[np.ndarray, ...], np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+Derivatives = tuple[_Slopes, np.ndarray, Columns, _Room]
+"""The tuples of `time_loop`."""
+_AtStep = tuple[
+    Fields,
+    np.ndarray,
+    Body,
+    DriveOfLoops,
+    tuple[SitesOfLoops, Further, np.ndarray],
+    tuple[np.ndarray, np.ndarray],
+    MatrixOfLoops,
+]
+"""A step as `pull_back` takes it: motion, weights of the matrix, body, drive, laws, room for residual and stress."""
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def directions(slopes, weights, out, lane):
+def directions(slopes: Fields, weights: np.ndarray, out: Fields, lane: LaneTuple) -> None:
     """Changes of velocity and acceleration at the balance, less what A (s / c) has of them; A's own share comes last.
 
     slopes: derivatives of position, velocity and acceleration before the step, out: three arrays, all
@@ -50,7 +82,17 @@ def directions(slopes, weights, out, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def right_hand_sides(position, body, drive, moved, by_contraction, stress, further, out, lane):
+def right_hand_sides(
+    position: np.ndarray,
+    body: Body,
+    drive: DriveOfLoops,
+    moved: tuple[np.ndarray, np.ndarray],
+    by_contraction: np.ndarray,
+    stress: np.ndarray,
+    further: tuple[np.ndarray, np.ndarray],
+    out: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Add to out [columns, nodes or more, 2, lanes] what damping, inertia, contraction and further stress change.
 
     position: at the balance; body, drive: as in `integrate` and `balance`; moved: changes of velocity and acceleration
@@ -129,7 +171,14 @@ def right_hand_sides(position, body, drive, moved, by_contraction, stress, furth
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def advance_columns(slopes, instead, solution, to_end, chosen, lane):
+def advance_columns(
+    slopes: Fields,
+    instead: np.ndarray,
+    solution: np.ndarray,
+    to_end: np.ndarray,
+    chosen: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Bring the derivatives of position, velocity and acceleration to the end of the step in the lanes chosen [lanes].
 
     instead: A's own share [columns, nodes, 2, lanes]; solution: of the right-hand sides [columns, more, 2, lanes].
@@ -149,7 +198,14 @@ def advance_columns(slopes, instead, solution, to_end, chosen, lane):
 
 
 @njit(inline="always")
-def _motion(before, new, to_balance, chosen, room, lane):
+def _motion(
+    before: Fields,
+    new: np.ndarray,
+    to_balance: np.ndarray,
+    chosen: np.ndarray,
+    room: _NodalRoom,
+    lane: LaneTuple,
+) -> None:
     """The motion at the balance of a step that ends with an acceleration; in lanes not chosen one that is known."""
     x, v, a, end, _, _ = room
     for at in range(0, new.size, len(lane)):
@@ -158,7 +214,16 @@ def _motion(before, new, to_balance, chosen, room, lane):
 
 
 @njit(inline="always")
-def _laws(laws, motion, solid, signals, weights, only_rate, by_rate, lane):
+def _laws(
+    laws: Laws,
+    motion: Fields,
+    solid: SolidOfLoops,
+    signals: np.ndarray,
+    weights: np.ndarray,
+    only_rate: np.ndarray,
+    by_rate: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Differentiate all laws; further stress by the rate alone into `by_rate`."""
     terms, tapes, programs = laws
     _, (_, by_value, by_tangent), (place, _, _) = terms
@@ -172,7 +237,18 @@ def _laws(laws, motion, solid, signals, weights, only_rate, by_rate, lane):
 
 
 @njit(inline="always")
-def _matrix(motion, weights, body, drive, terms, found, residual, matrix, bad, lane):
+def _matrix(
+    motion: Fields,
+    weights: np.ndarray,
+    body: Body,
+    drive: DriveOfLoops,
+    terms: Terms,
+    found: np.ndarray,
+    residual: np.ndarray,
+    matrix: MatrixOfLoops,
+    bad: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Factorise the exact matrix of a step at the motion that it found; its stress comes along."""
     forces, sites, further = terms
     band, reach, (diagonal, _, _), spoilt = matrix
@@ -190,7 +266,18 @@ def _matrix(motion, weights, body, drive, terms, found, residual, matrix, bad, l
 
 
 @njit(inline="always")
-def _advance_branches(before, memory, kind, scheme, solid, columns, slopes, room, chosen, lane):
+def _advance_branches(
+    before: Fields,
+    memory: MemoryOfLoops,
+    kind: int,
+    scheme: Scheme,
+    solid: SolidOfLoops,
+    columns: Columns,
+    slopes: _Slopes,
+    room: _NodalRoom,
+    chosen: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Bring the derivatives of the branches' stresses to the end of a step, those of the positions being there."""
     x, v, a, end, branch, green = room
     combine(before[0], before[1], before[2], end, scheme[2][kind], x, v, a, lane)
@@ -207,8 +294,20 @@ def _advance_branches(before, memory, kind, scheme, solid, columns, slopes, room
 
 @njit(inline="always")
 def differentiate(
-    before, new, kind, scheme, drive, body, matrix, laws, memory, expected, derivatives, progress, lane
-):
+    before: Fields,
+    new: np.ndarray,
+    kind: int,
+    scheme: Scheme,
+    drive: DriveOfLoops,
+    body: Body,
+    matrix: MatrixOfLoops,
+    laws: Laws,
+    memory: MemoryOfLoops,
+    expected: np.ndarray,
+    derivatives: tuple[_Slopes, np.ndarray, Columns, _Room, tuple[np.ndarray, np.ndarray]],
+    progress: Progress,
+    lane: LaneTuple,
+) -> None:
     """Bring the derivatives of the state to the end of a step, in place, in the lanes that made it.
 
     before, new: position, velocity and acceleration before the step, and the acceleration after it; drive: as in
@@ -246,7 +345,16 @@ def differentiate(
 
 
 @njit(cache=True, error_model="numpy")
-def pull_back(at_step, weights, moved, by_contraction, carried, pulled, bad, lane):
+def pull_back(
+    at_step: _AtStep,
+    weights: np.ndarray,
+    moved: tuple[np.ndarray, np.ndarray],
+    by_contraction: np.ndarray,
+    carried: np.ndarray,
+    pulled: np.ndarray,
+    bad: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Solve with the transposed matrix of a step, and pull the solution back to the rate and to the acceleration.
 
     weights [1, more, 2, lanes]: of the end-of-step acceleration, replaced by the solution; moved: two arrays
@@ -297,7 +405,7 @@ class StepSlopes:
 
     def plan(
         self, slopes: StateSlopes, by_contraction: np.ndarray, coefficients: Sequence[StepCoefficients]
-    ) -> tuple:
+    ) -> Derivatives:
         """What `integrate` takes of derivatives that are moved in place from now on.
 
         by_contraction: derivatives of the contraction at every step [steps, columns, muscles, lanes].

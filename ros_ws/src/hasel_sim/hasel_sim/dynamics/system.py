@@ -16,6 +16,7 @@ from hasel_sim.laws.tape_loops import add_slopes, respond
 from hasel_sim.laws.tapes import BoundLaw, Tapes
 from hasel_sim.mechanics import assembly, constitutive
 from hasel_sim.mechanics.assembly import site_groups
+from hasel_sim.mechanics.balance import Body
 from hasel_sim.mechanics.banded import BandMatrix
 from hasel_sim.mechanics.solid import Deformation, Mass, Solid
 from hasel_sim.mechanics.state import DriveState, Memory, Motion, State
@@ -70,7 +71,7 @@ class System:
         return self.weight.shape[-1]
 
     @property
-    def for_loops(self) -> tuple:
+    def for_loops(self) -> Body:
         """`body` of the compiled loops, see `time_loop`."""
         solid = self.solid
         return (*solid.places, solid.muscle, solid.plane_stress), self.mass.masses, self.weight

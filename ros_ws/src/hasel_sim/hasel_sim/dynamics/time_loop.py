@@ -20,24 +20,39 @@ columns are wanted.
 import numpy as np
 from numba import njit
 
-from hasel_sim.dynamics.step_derivatives import differentiate
+from hasel_sim.dynamics.column_loops import MemoryOfLoops
+from hasel_sim.dynamics.step_derivatives import Derivatives, Laws, Progress, Scheme, differentiate
 from hasel_sim.laws.tape_loops import respond
 from hasel_sim.mechanics.assembly import add_site_matrix
-from hasel_sim.mechanics.balance import balance
-from hasel_sim.mechanics.banded import clear_band, factorise, is_spoilt, solve
+from hasel_sim.mechanics.balance import Body, DriveOfLoops, SolidOfLoops, balance
+from hasel_sim.mechanics.banded import MatrixOfLoops, clear_band, factorise, is_spoilt, solve
 from hasel_sim.mechanics.branches import carried
 from hasel_sim.mechanics.constitutive import deformation, green_stress
-from hasel_sim.mechanics.state import chosen_of, combine, copy_lanes, difference, subtract_lanes
-from hasel_sim.simd import load, store
+from hasel_sim.mechanics.state import Fields, chosen_of, combine, copy_lanes, difference, subtract_lanes
+from hasel_sim.simd import LaneTuple, load, store
 
 PREDICT, BALANCE, DIFFERENTIATE, COMMIT = 1, 2, 4, 8
 MOST_WITH_ONE_MATRIX, MOST_ITERATIONS = 5, 15
 SLOW_WITH_ONE_MATRIX, SLOW = 0.1, 1.0
 """Corrections that do not shrink to this share of the last, with one matrix: in the mean, want another way."""
+_Moving = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+_Plan = tuple[np.ndarray, Scheme, np.ndarray, np.ndarray, np.ndarray]
+_Room = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+_Rules = tuple[tuple[float, float], tuple[int, int, bool, bool]]
 
 
 @njit(cache=True, error_model="numpy")
-def _judge(iteration, always, vector, unknowns, end_position, bad, progress, taken, limits):
+def _judge(
+    iteration: int,
+    always: bool,
+    vector: np.ndarray,
+    unknowns: int,
+    end_position: np.ndarray,
+    bad: np.ndarray,
+    progress: Progress,
+    taken: np.ndarray,
+    limits: tuple[float, float],
+) -> None:
     """Which lanes take the correction in `vector`, and which arrive with it.
 
     limits: the tolerance [m], and the largest square of a correction with a fresh matrix that leaves no more than that.
@@ -64,7 +79,21 @@ def _judge(iteration, always, vector, unknowns, end_position, bad, progress, tak
 
 
 @njit(inline="always")
-def newton(before, guess, kind, scheme, body, matrix, drive, laws, expected, room, progress, rules, lane):
+def newton(
+    before: Fields,
+    guess: np.ndarray,
+    kind: int,
+    scheme: Scheme,
+    body: Body,
+    matrix: MatrixOfLoops,
+    drive: DriveOfLoops,
+    laws: Laws,
+    expected: np.ndarray,
+    room: _Room,
+    progress: Progress,
+    rules: _Rules,
+    lane: LaneTuple,
+) -> None:
     """Correct a guess of the end-of-step acceleration in the lanes wanted; those that fail are wanted no more.
 
     expected: second Piola stress of the last balance, replaced by that of this one in the lanes that arrive.
@@ -115,7 +144,9 @@ def newton(before, guess, kind, scheme, body, matrix, drive, laws, expected, roo
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def _advance_branches(memory, kind, new_green, chosen, lane):
+def _advance_branches(
+    memory: MemoryOfLoops, kind: int, new_green: np.ndarray, chosen: np.ndarray, lane: LaneTuple
+) -> None:
     """Bring the branches to the end of a step, in the lanes chosen."""
     stresses, green, _, _, left, gain, _ = memory
     lanes, branches = len(lane), left.shape[1]
@@ -130,7 +161,7 @@ def _advance_branches(memory, kind, new_green, chosen, lane):
 
 
 @njit(inline="always")
-def _predict(moving, kind, step, guess, lane):
+def _predict(moving: _Moving, kind: int, step: np.ndarray, guess: np.ndarray, lane: LaneTuple) -> None:
     """Extrapolate the acceleration into `guess`."""
     _, _, acceleration, jerk = moving
     lanes = len(lane)
@@ -140,7 +171,17 @@ def _predict(moving, kind, step, guess, lane):
 
 
 @njit(inline="always")
-def _commit(moving, kind, scheme, solid, memory, guess, room, chosen, lane):
+def _commit(
+    moving: _Moving,
+    kind: int,
+    scheme: Scheme,
+    solid: SolidOfLoops,
+    memory: MemoryOfLoops,
+    guess: np.ndarray,
+    room: _Room,
+    chosen: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Go to the end of a step in the lanes chosen [lanes], which know its acceleration; the others stay."""
     position, velocity, acceleration, jerk = moving
     _, _, to_end, _, step = scheme
@@ -163,7 +204,13 @@ def _commit(moving, kind, scheme, solid, memory, guess, room, chosen, lane):
 
 
 @njit(inline="always")
-def _note(position, slopes, trajectories, boundary, lane):
+def _note(
+    position: np.ndarray,
+    slopes: np.ndarray,
+    trajectories: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray],
+    boundary: int,
+    lane: LaneTuple,
+) -> None:
     """Keep the positions at a boundary between steps: at the markers, and all of them where there is room.
 
     slopes: derivatives of the positions [columns, nodes, 2, lanes].
@@ -190,24 +237,24 @@ def _note(position, slopes, trajectories, boundary, lane):
 
 @njit(cache=True, fastmath=True, error_model="numpy")
 def integrate(
-    parts,
-    steps,
-    rules,
-    moving,
-    plan,
-    body,
-    matrix,
-    laws,
-    memory,
-    derivatives,
-    history,
-    expected,
-    guess,
-    room,
-    trajectories,
-    progress,
-    lane,
-):
+    parts: int,
+    steps: tuple[int, int],
+    rules: _Rules,
+    moving: _Moving,
+    plan: _Plan,
+    body: Body,
+    matrix: MatrixOfLoops,
+    laws: Laws,
+    memory: MemoryOfLoops,
+    derivatives: Derivatives,
+    history: np.ndarray,
+    expected: np.ndarray,
+    guess: np.ndarray,
+    room: _Room,
+    trajectories: tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray],
+    progress: Progress,
+    lane: LaneTuple,
+) -> int:
     """Make steps from the first until before the last of `steps`, or to one that fails in a lane: this step comes back.
 
     parts: which of PREDICT, BALANCE, DIFFERENTIATE and COMMIT to do; rules: see `newton`. moving: position, velocity,

@@ -26,7 +26,7 @@ def check_effect(effect: Effect) -> None:
     """Refuse an effect that does not keep to the rules of its place, with a ModelError that says what to change."""
     _check_declarations(effect)
     null, typical = SimpleNamespace(**effect.null()), SimpleNamespace(**effect.typical())
-    checks: dict[type[Effect], Callable] = {
+    checks: dict[type[Effect], Callable[..., None]] = {
         DriveEffect: _check_drive,
         ForceEffect: check_force,
         MaterialEffect: check_material,

@@ -5,6 +5,7 @@ import re
 from collections.abc import Collection
 from copy import deepcopy
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -31,7 +32,7 @@ def check_depends_on(effect: ForceEffect | MaterialEffect, known: Collection[str
     must(not unknown, f"depends on {unknown}", f"name some of {names} in depends_on")
 
 
-def called(effect: Effect, method: str, shape: tuple[int, ...], *arguments) -> np.ndarray:
+def called(effect: Effect, method: str, shape: tuple[int, ...], *arguments: Any) -> np.ndarray:
     """What a method returns, as an array of the shape expected and of finite numbers, the same at every call."""
     must = partial(expect, effect)
     result, again = (np.asarray(guarded(effect, method, *deepcopy(arguments)), dtype=float) for _ in range(2))

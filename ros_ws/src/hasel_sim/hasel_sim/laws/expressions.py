@@ -147,6 +147,8 @@ class Graph:
 
 
 Apply = Callable[..., Node]
+_Partials = tuple[Callable[[], Node | float], ...]
+"""What makes the derivative by each operand."""
 
 
 def _derivative(f: Apply, node: Node, moved: Sequence[Node]) -> Node:
@@ -164,7 +166,7 @@ def _derivative(f: Apply, node: Node, moved: Sequence[Node]) -> Node:
     return total
 
 
-def _power_partials(f: Apply, node: Node, base: Node, exponent: Node) -> tuple:
+def _power_partials(f: Apply, node: Node, base: Node, exponent: Node) -> _Partials:
     above = f("greater", base, 0.0)
     return (
         lambda: f("multiply", exponent, f("divide_or_zero", node, base)),
@@ -172,16 +174,16 @@ def _power_partials(f: Apply, node: Node, base: Node, exponent: Node) -> tuple:
     )
 
 
-def _quotient_partials(f: Apply, operation: str, quotient: Node, divisor: Node) -> tuple:
+def _quotient_partials(f: Apply, operation: str, quotient: Node, divisor: Node) -> _Partials:
     inverse = f(operation, 1.0, divisor)
     return lambda: inverse, lambda: f("negative", f("multiply", quotient, inverse))
 
 
-def _flat(f: Apply, node: Node, *x: Node) -> tuple:
+def _flat(f: Apply, node: Node, *x: Node) -> _Partials:
     return tuple(lambda: 0.0 for _ in x)
 
 
-_PARTIAL: dict[str, Callable[..., tuple]] = {
+_PARTIAL: dict[str, Callable[..., _Partials]] = {
     "add": lambda f, y, a, b: (lambda: 1.0, lambda: 1.0),
     "subtract": lambda f, y, a, b: (lambda: 1.0, lambda: -1.0),
     "multiply": lambda f, y, a, b: (lambda: b, lambda: a),

@@ -1,7 +1,7 @@
 # Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A force effect with its values, bound to a mesh: forces at its sites and their derivatives, in all lanes at once."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from copy import copy
 from functools import cached_property
 from types import SimpleNamespace
@@ -12,9 +12,10 @@ import numpy as np
 from hasel_sim.effects.base import ForceEffect, SiteState, Surroundings, normal
 from hasel_sim.laws.python_calls import OF_THE_DRIVE, Copies, on_demand
 from hasel_sim.laws.recording import force_law
-from hasel_sim.laws.tapes import BoundLaw, Places
+from hasel_sim.laws.tapes import BoundLaw, Rows
 from hasel_sim.mechanics.assembly import SiteGroups, add_site_matrix, site_groups
 from hasel_sim.mechanics.state import DriveState, Motion
+from hasel_sim.mesh.mesh import Places
 from hasel_sim.mesh.sites import Sites
 from hasel_sim.simd import lane_tuple
 
@@ -28,6 +29,8 @@ _DIFFERENCES = {
 """Steps by each quantity, in its unit."""
 _ROW = {"position": 0, "velocity": 1, "acceleration": 2, "tangent": 0, "tangent_rate": 1}
 """Which of position, velocity and acceleration moves it."""
+Weight = float | np.ndarray
+"""The same for all lanes, or one each [lanes]."""
 _State = on_demand(SiteState)
 NO_MESH = np.zeros((0, 8), dtype=np.intp), np.zeros((0, 0, 8, 2)), np.zeros((0, 0)), np.zeros((0, 0, 1))
 _SLOPE_OF = {"tangent": "position", "tangent_rate": "velocity"}
@@ -90,7 +93,7 @@ class ForceLaw(BoundLaw):
             kind._use_lanes([law.values[0] if law.sites.same_as(kind.sites) else None for law in each])
         return out
 
-    def _rows(self, motion: Motion, mesh: Places, copies: Copies) -> Callable[[str], np.ndarray]:
+    def _rows(self, motion: Motion, mesh: Places, copies: Copies) -> Rows:
         """What moves in copies of the sites; zero beyond the position and what this effect depends on."""
         made: dict[str, np.ndarray] = {}
 
@@ -105,7 +108,14 @@ class ForceLaw(BoundLaw):
 
         return rows
 
-    def _state(self, rows, drive: DriveState, copies: int, lanes: np.ndarray, surroundings) -> Any:
+    def _state(
+        self,
+        rows: Rows,
+        drive: DriveState,
+        copies: int,
+        lanes: np.ndarray,
+        surroundings: Surroundings | None,
+    ) -> Any:
         everyone, times = len(lanes) == len(self.values), copies * len(lanes)
         if times not in self._unmoved:
             self._unmoved[times] = {
@@ -155,7 +165,9 @@ class ForceLaw(BoundLaw):
         found = response[2:].reshape(-1, 2, 2, *response.shape[1:]).transpose(0, 3, 2, 1, 4)
         self._slopes = dict(zip(self.moving, found.copy(), strict=True))
 
-    def weighted(self, position, velocity, acceleration) -> tuple[np.ndarray, np.ndarray]:
+    def weighted(
+        self, position: Weight, velocity: Weight, acceleration: Weight
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Less the derivatives, weighted per lane: by the value and by the tangent at the sites [n, 2, 2, lanes]."""
         shares = {"position": position, "velocity": velocity, "acceleration": acceleration}
         nothing = np.zeros((len(self._reference), 2, 2, len(self.values)))
@@ -164,7 +176,9 @@ class ForceLaw(BoundLaw):
         along = nothing - sum(shares[name] * slope for name, slope in self._slopes.items() if name in shares)
         return direct, along
 
-    def add_matrix(self, position, velocity, acceleration, band: np.ndarray, diagonal: int) -> None:
+    def add_matrix(
+        self, position: Weight, velocity: Weight, acceleration: Weight, band: np.ndarray, diagonal: int
+    ) -> None:
         """Subtract the derivatives, weighted per lane, from a band matrix (the force stands on the right-hand side)."""
         if not self.moving:
             return

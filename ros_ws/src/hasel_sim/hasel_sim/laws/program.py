@@ -19,7 +19,7 @@ WIDTH = 128
 
 
 @njit(cache=True, fastmath={"contract", "nsz"}, error_model="numpy")
-def operate(operations, first, last, registers):
+def operate(operations: np.ndarray, first: int, last: int, registers: np.ndarray) -> None:
     """Do the operations [n, 5] from the first until before the last on the registers [n, WIDTH]."""
     for n in range(first, last):
         what, out = operations[n, 0], registers[operations[n, 1]]

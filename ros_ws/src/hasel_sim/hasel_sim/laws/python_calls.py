@@ -21,7 +21,7 @@ Pairs = tuple[np.ndarray, np.ndarray, float]
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def _in_rows(field, moved, step, out):
+def _in_rows(field: np.ndarray, moved: np.ndarray, step: np.ndarray, out: np.ndarray) -> None:
     """Write a field [n, k, lanes] to every copy of [copies, lanes, n, k], moved by a step in one component or none."""
     n, components, lanes = field.shape
     for c in range(len(moved)):
@@ -36,7 +36,9 @@ def _in_rows(field, moved, step, out):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def _add_changes(found, more, less, factor, out):
+def _add_changes(
+    found: np.ndarray, more: np.ndarray, less: np.ndarray, factor: np.ndarray, out: np.ndarray
+) -> None:
     """Add what an answer [copies, lanes, n, k] changes, times a factor [lanes], to out [n, k, components, lanes].
 
     Component j is moved in copy more[j], and less or not at all in copy less[j].

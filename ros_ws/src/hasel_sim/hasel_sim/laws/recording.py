@@ -4,7 +4,7 @@
 NumPy takes `Traced` arrays of numbers that are known later for arrays: what is computed with them is recorded.
 """
 
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache, partial
 from types import SimpleNamespace
 from typing import Any
@@ -43,7 +43,9 @@ class Traced(np.ndarray):
             nodes[index] = graph.input((name, place))
         return Traced.of(nodes)
 
-    def __array_ufunc__(self, ufunc, method, *inputs, out=None, **options):
+    def __array_ufunc__(
+        self, ufunc: np.ufunc, method: str, *inputs: Any, out: Any = None, **options: Any
+    ) -> "Traced":
         """Record an elementwise function, a matrix product or a sum."""
         options = {
             name: given for name, given in options.items() if given is not _DEFAULTS.get(name, _UNKNOWN)
@@ -64,17 +66,23 @@ class Traced(np.ndarray):
         out[0][...] = result
         return out[0]
 
-    def __array_function__(self, function, types, args, kwargs):
+    def __array_function__(
+        self,
+        function: Callable[..., Any],
+        types: Iterable[type],
+        args: Iterable[Any],
+        kwargs: Mapping[str, Any],
+    ) -> Any:
         """Functions that only move entries are NumPy's own."""
         if function in _FUNCTIONS:
             return _FUNCTIONS[function](*args, **kwargs)
         result = super().__array_function__(function, types, args, kwargs)
         return Traced.of(result) if isinstance(result, np.ndarray) else result
 
-    def __getitem__(self, key):
+    def __getitem__(self, key: Any) -> "Traced":
         return Traced.of(np.asarray(self)[key])
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator["Traced"]:
         return (self[index] for index in range(len(self)))
 
     def __bool__(self) -> bool:
@@ -89,12 +97,12 @@ class Traced(np.ndarray):
         )
 
 
-def _where(condition, yes, no) -> Traced:
+def _where(condition: Any, yes: Any, no: Any) -> Traced:
     plain = [np.asarray(x, dtype=object) for x in (condition, yes, no)]
     return Traced.of(np.frompyfunc(partial(_applied, _graph_of(plain), "where"), 3, 1)(*plain))
 
 
-def _norm(x, ord=None, axis=None, keepdims=False) -> Traced:
+def _norm(x: Traced, ord: Any = None, axis: int | None = None, keepdims: bool = False) -> Traced:
     if ord not in (None, 2):
         raise NotTraceableError(f"it uses np.linalg.norm with ord={ord}")
     return np.sqrt(np.sum(x * x, axis=axis, keepdims=keepdims))
@@ -103,7 +111,7 @@ def _norm(x, ord=None, axis=None, keepdims=False) -> Traced:
 _UNKNOWN = object()
 _DEFAULTS = {"where": True, "initial": np._NoValue, "dtype": None}
 """Options that NumPy's own sums name though nobody asks for them."""
-_FUNCTIONS: dict[Callable, Callable] = {np.where: _where, np.linalg.norm: _norm}
+_FUNCTIONS: dict[Callable[..., Any], Callable[..., Traced]] = {np.where: _where, np.linalg.norm: _norm}
 
 
 def _graph_of(arrays: list[np.ndarray]) -> Graph:
@@ -117,8 +125,8 @@ def _applied(graph: Graph, operation: str, *operands: Node | float) -> Node:
         raise NotTraceableError(f"it uses np.{operation}, which is not compiled") from None
 
 
-def _operator(operation: str, turned: bool) -> Callable:
-    def apply(self: Node, other):
+def _operator(operation: str, turned: bool) -> Callable[[Node, Any], Any]:
+    def apply(self: Node, other: Any) -> Any:
         if not isinstance(other, Node | float | int | np.floating | np.integer):
             return NotImplemented
         return _applied(self.graph, operation, *((other, self) if turned else (self, other)))
@@ -191,7 +199,7 @@ class Law:
             self._programs[of] = Program(list(enumerate(outputs)), self._is_uniform)
         return self._programs[of]
 
-    def _is_uniform(self, name: tuple) -> bool:
+    def _is_uniform(self, name: tuple[Any, int]) -> bool:
         return isinstance(name[0], tuple) or name[0] in self._uniform
 
 
@@ -206,7 +214,9 @@ def alike(laws: Sequence[Law | None]) -> list[Law | None]:
     return list(laws)
 
 
-def _outputs(effect, method: str, at, p: SimpleNamespace, count: int, graph: Graph) -> list[Node]:
+def _outputs(
+    effect: Effect, method: str, at: SiteState | MaterialPoints, p: SimpleNamespace, count: int, graph: Graph
+) -> list[Node]:
     """What the method returns for one point. Raises NotTraceableError where it does what cannot be recorded."""
     try:
         with np.errstate(all="ignore"):
@@ -256,7 +266,7 @@ def _recorded(
     with np.errstate(all="ignore"):
         expected = np.asarray(getattr(effect, method)(points(states), p), dtype=float).reshape(_STATES, k)
 
-    def value(name: tuple) -> np.ndarray | float:
+    def value(name: tuple[Any, int]) -> np.ndarray | float:
         if isinstance(name[0], tuple):
             return getattr(p, name[0][1])
         state = np.asarray(states[name[0]])

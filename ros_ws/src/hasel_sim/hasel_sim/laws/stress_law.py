@@ -1,24 +1,24 @@
 # Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A material effect that adds stress, bound to the Gauss points of its regions."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from copy import copy
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
-from hasel_sim.effects.base import MaterialEffect, MaterialPoints
+from hasel_sim.effects.base import MaterialEffect, MaterialPoints, Surroundings
 from hasel_sim.laws.python_calls import (
     Copies,
     on_demand,
 )
 from hasel_sim.laws.recording import stress_law
-from hasel_sim.laws.tapes import BoundLaw, Places
+from hasel_sim.laws.tapes import BoundLaw, Rows
 from hasel_sim.mechanics.constitutive import deformation
 from hasel_sim.mechanics.solid import Deformation
 from hasel_sim.mechanics.state import DriveState, Motion
-from hasel_sim.mesh.mesh import Mesh
+from hasel_sim.mesh.mesh import Mesh, Places
 from hasel_sim.simd import lane_tuple
 
 _DIFFERENCES = {"deformation": 1e-6, "rate": 1e-4}
@@ -87,7 +87,7 @@ class StressLaw(BoundLaw):
         with np.errstate(invalid="ignore", divide="ignore"):  # inside out: NaN, and the step is refused
             return super()._respond(state, values)
 
-    def _rows(self, motion: Motion, mesh: Places, copies: Copies) -> Callable[[str], np.ndarray]:
+    def _rows(self, motion: Motion, mesh: Places, copies: Copies) -> Rows:
         """F and its rate, by name, in copies of the points here, [copies, lanes, n, 4]."""
         made: dict[str, np.ndarray] = {}
         elements, gradients, areas, stretch = mesh
@@ -103,7 +103,14 @@ class StressLaw(BoundLaw):
 
         return rows
 
-    def _state(self, rows, drive: DriveState, copies: int, lanes: np.ndarray, surroundings) -> Any:
+    def _state(
+        self,
+        rows: Rows,
+        drive: DriveState,
+        copies: int,
+        lanes: np.ndarray,
+        surroundings: Surroundings | None,
+    ) -> Any:
         everyone = self._shear.shape[-1]
 
         def at_points(of_each: np.ndarray, which: np.ndarray) -> np.ndarray:

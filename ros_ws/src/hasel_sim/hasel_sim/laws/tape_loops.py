@@ -5,7 +5,11 @@ import numpy as np
 from numba import njit
 
 from hasel_sim.laws.program import WIDTH, operate
-from hasel_sim.simd import add, load, store, zero
+from hasel_sim.mechanics.assembly import SitesOfLoops
+from hasel_sim.mechanics.balance import Further
+from hasel_sim.mechanics.state import Fields
+from hasel_sim.mesh.mesh import Places
+from hasel_sim.simd import LaneTuple, Value, add, load, store, zero
 
 POSITION, VELOCITY, ACCELERATION, TANGENT, TANGENT_RATE, DEFORMATION, RATE, FIXED, OF_MUSCLE = range(9)
 """Where an input comes from."""
@@ -13,10 +17,37 @@ HEAD = 15
 INPUTS, INPUTS_END, UNIFORM, UNIFORM_END, BEFORE, OPERATIONS, OPERATIONS_END, OUTPUTS = range(8)
 OUTPUTS_END, POINTS, PER, NUMBERS, REALS, FOUND, CONSTANTS = range(8, HEAD)
 """What is noted of every program, see `Tapes`."""
+Tables = tuple[
+    np.ndarray,
+    np.ndarray,
+    np.ndarray,
+    np.ndarray,
+    np.ndarray,
+    np.ndarray,
+    np.ndarray,
+    np.ndarray,
+    np.ndarray,
+    np.ndarray,
+]
+"""`tables` of the loops, see `Tapes`."""
+Terms = tuple[np.ndarray, SitesOfLoops, Further]
+"""`terms` of the loops, see `system.LawTable`."""
 
 
 @njit(inline="always")
-def _at_sites(field, reals, nodes, weights, per, first, count, R, to_x, to_y, lane):
+def _at_sites(
+    field: np.ndarray,
+    reals: np.ndarray,
+    nodes: np.ndarray,
+    weights: int,
+    per: int,
+    first: int,
+    count: int,
+    R: np.ndarray,
+    to_x: int,
+    to_y: int,
+    lane: LaneTuple,
+) -> None:
     """Interpolate a nodal field at sites, its components into registers."""
     lanes = len(lane)
     for s in range(count):
@@ -29,7 +60,18 @@ def _at_sites(field, reals, nodes, weights, per, first, count, R, to_x, to_y, la
 
 
 @njit(inline="always")
-def _at_points(field, component, mesh, chosen, per, first, count, R, to, lane):
+def _at_points(
+    field: np.ndarray,
+    component: int,
+    mesh: Places,
+    chosen: np.ndarray,
+    per: int,
+    first: int,
+    count: int,
+    R: np.ndarray,
+    to: int,
+    lane: LaneTuple,
+) -> None:
     """One component of the gradient of a nodal field at Gauss points, into a register."""
     elements, gradients, _, stretch = mesh
     lanes, row, column = len(lane), component // 2, component % 2
@@ -48,7 +90,17 @@ def _at_points(field, component, mesh, chosen, per, first, count, R, to, lane):
 
 
 @njit(inline="always")
-def _gather(tables, head, n, motion, mesh, signals, first, count, lane):
+def _gather(
+    tables: Tables,
+    head: np.ndarray,
+    n: int,
+    motion: Fields,
+    mesh: Places,
+    signals: np.ndarray,
+    first: int,
+    count: int,
+    lane: LaneTuple,
+) -> None:
     """Write an input at some points into its register."""
     _, inputs, _, _, _, numbers, reals, _, _, R = tables
     source, component, lanes = inputs[n, 0], inputs[n, 1], len(lane)
@@ -78,7 +130,9 @@ def _gather(tables, head, n, motion, mesh, signals, first, count, lane):
 
 
 @njit(cache=True, fastmath={"contract", "nsz"}, error_model="numpy")
-def evaluate(tables, program, motion, mesh, signals, lane):
+def evaluate(
+    tables: Tables, program: int, motion: Fields, mesh: Places, signals: np.ndarray, lane: LaneTuple
+) -> None:
     """Do a program for all its points, and write its outputs.
 
     motion: position, velocity, acceleration [nodes, 2, lanes]; mesh: elements, gradients, areas, stretch; signals: the
@@ -109,7 +163,7 @@ def evaluate(tables, program, motion, mesh, signals, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def subtract_forces(tables, program, factor, out, lane):
+def subtract_forces(tables: Tables, program: int, factor: Value, out: np.ndarray, lane: LaneTuple) -> None:
     """Subtract a factor times forces at sites, rows 0 and 1 found by a program, from nodal ones [nodes, 2, lanes]."""
     heads, _, _, _, _, numbers, reals, _, found, _ = tables
     head, lanes = heads[program], len(lane)
@@ -125,7 +179,7 @@ def subtract_forces(tables, program, factor, out, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def add_stresses(tables, program, place, out, lane):
+def add_stresses(tables: Tables, program: int, place: np.ndarray, out: np.ndarray, lane: LaneTuple) -> None:
     """Add stresses, rows 0 to 3, to those of the elements in their places, [n, points, 4, lanes]."""
     heads, _, _, _, outputs, numbers, _, _, found, _ = tables
     head, lanes = heads[program], len(lane)
@@ -142,7 +196,16 @@ def add_stresses(tables, program, place, out, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def add_slopes(tables, program, first, place, weights, site_matrices, stress_matrix, lane):
+def add_slopes(
+    tables: Tables,
+    program: int,
+    first: int,
+    place: np.ndarray,
+    weights: np.ndarray,
+    site_matrices: tuple[np.ndarray, np.ndarray],
+    stress_matrix: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Add the derivatives by the end-of-step acceleration, which moves position, velocity and acceleration by weights
     [3, lanes]: less those of forces at sites, from number `first` on, by the value and by the tangent there
     [sites, 2, 2, lanes]; those of stresses [n, points, 4, 4, lanes].
@@ -172,7 +235,17 @@ def add_slopes(tables, program, first, place, weights, site_matrices, stress_mat
 
 
 @njit(cache=True, error_model="numpy")
-def respond(tables, laws, with_slopes, motion, mesh, signals, weights, terms, lane):
+def respond(
+    tables: Tables,
+    laws: np.ndarray,
+    with_slopes: bool,
+    motion: Fields,
+    mesh: Places,
+    signals: np.ndarray,
+    weights: np.ndarray,
+    terms: Terms,
+    lane: LaneTuple,
+) -> None:
     """What all laws add to a step; with their derivatives where wanted, weighted as in `add_slopes`.
 
     laws [n, 3]: of every law the program of its value, that of its response, and its first site, or -1 for a stress;
@@ -198,7 +271,17 @@ def respond(tables, laws, with_slopes, motion, mesh, signals, weights, terms, la
 
 
 @njit(inline="always")
-def _interpolate_column(field, column, head, tables, weights, site, out, to, lane):
+def _interpolate_column(
+    field: np.ndarray,
+    column: int,
+    head: np.ndarray,
+    tables: Tables,
+    weights: int,
+    site: int,
+    out: np.ndarray,
+    to: int,
+    lane: LaneTuple,
+) -> None:
     """Write the components of a nodal field [columns, nodes, 2, lanes] at a site."""
     numbers, reals, per = tables[5], tables[6], head[PER]
     lanes, x, y = len(lane), zero(lane), zero(lane)
@@ -211,7 +294,16 @@ def _interpolate_column(field, column, head, tables, weights, site, out, to, lan
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def _subtract_direction(tables, program, looks, fields, column, height, out, lane):
+def _subtract_direction(
+    tables: Tables,
+    program: int,
+    looks: np.ndarray,
+    fields: tuple[np.ndarray, np.ndarray],
+    column: int,
+    height: int,
+    out: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     heads, _, _, _, outputs, numbers, reals, _, found, _ = tables
     head, lanes, (rate, acceleration) = heads[program], len(lane), fields
     points, per, first = head[POINTS], head[PER], head[REALS]
@@ -242,7 +334,14 @@ def _subtract_direction(tables, program, looks, fields, column, height, out, lan
 
 
 @njit(cache=True, error_model="numpy")
-def subtract_directions(tables, laws, rate, acceleration, out, lane):
+def subtract_directions(
+    tables: Tables,
+    laws: np.ndarray,
+    rate: np.ndarray,
+    acceleration: np.ndarray,
+    out: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Subtract what the forces at sites change along velocities and accelerations [columns, nodes, 2, lanes] from
     columns of at least as many nodes; `respond` has found their derivatives.
     """

@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from hasel_sim.effects.base import ForceEffect, MaterialEffect, guarded
+from hasel_sim.effects.base import ForceEffect, MaterialEffect, Surroundings, guarded
 from hasel_sim.laws import tape_loops as loops
 from hasel_sim.laws.program import WIDTH
 from hasel_sim.laws.python_calls import ALONE, Copies, Groups, around, by_group, grouped, one_by_one
 from hasel_sim.laws.recording import OF_THE_SITES, Law, NotTraceableError, alike
 from hasel_sim.mechanics.state import DriveState, Motion
+from hasel_sim.mesh.mesh import Places
 from hasel_sim.simd import lane_tuple
 
 _SOURCES = {name: source for source, name in enumerate((*OF_THE_SITES, "deformation", "rate"))}
@@ -21,8 +22,8 @@ _SOURCES = {name: source for source, name in enumerate((*OF_THE_SITES, "deformat
 
 _CONTRACTION_DIFFERENCE = 1e-6
 
-Places = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
-"""What the compiled loops know of a mesh: elements, gradients, areas and stretch of the stress-free shape."""
+Rows = Callable[[str], np.ndarray]
+"""What moves at the points of a law, by name, [copies, lanes, points, k]."""
 
 
 class BoundLaw:
@@ -69,18 +70,25 @@ class BoundLaw:
         """What does not move, [points, lanes]."""
         raise NotImplementedError
 
-    def _rows(self, motion: Motion, mesh: "Places", copies: Copies) -> Callable[[str], np.ndarray]:
+    def _rows(self, motion: Motion, mesh: Places, copies: Copies) -> Rows:
         """What moves, by name, in copies of the points, [copies, lanes, points, k]."""
         raise NotImplementedError
 
-    def _state(self, rows, drive: DriveState, copies: int, lanes: np.ndarray, surroundings) -> Any:
+    def _state(
+        self,
+        rows: Rows,
+        drive: DriveState,
+        copies: int,
+        lanes: np.ndarray,
+        surroundings: Surroundings | None,
+    ) -> Any:
         """The points in some lanes, one lane after the other and one copy after the other."""
         raise NotImplementedError
 
     def _respond(self, state: Any, values: SimpleNamespace) -> np.ndarray:
         return np.asarray(guarded(self.effect, self._method, state, values))
 
-    def _answer(self, rows, drive: DriveState, copies: int, groups: Groups) -> np.ndarray:
+    def _answer(self, rows: Rows, drive: DriveState, copies: int, groups: Groups) -> np.ndarray:
         """The effect's answer in rows and for any groups of lanes with their values, [copies, lanes, points, k]."""
 
         def ask(lanes: np.ndarray, values: SimpleNamespace) -> np.ndarray | None:
@@ -94,7 +102,7 @@ class BoundLaw:
         return by_group(groups, (copies, len(self.values), self.points, self.k), ask)
 
     def fill(
-        self, of: Any, motion: Motion, drive: DriveState, mesh: "Places", rows: np.ndarray, exact: bool
+        self, of: Any, motion: Motion, drive: DriveState, mesh: Places, rows: np.ndarray, exact: bool
     ) -> None:
         """Write the rows [rows, points, lanes] of a program, called as Python; central differences where exact, else
         one-sided ones, which find a step as well.
@@ -113,7 +121,7 @@ class BoundLaw:
                 copies.add_derivative(name, found, np.ones(len(self.values)), slope)
             rows[self.k :] = slopes.transpose(0, 3, 2, 1, 4).reshape(rows[self.k :].shape)
 
-    def _change_with(self, of: tuple, rows, drive: DriveState) -> np.ndarray:
+    def _change_with(self, of: tuple[Any, Any], rows: Rows, drive: DriveState) -> np.ndarray:
         """Derivative by a parameter or by a muscle's contraction, [k, points, lanes]."""
         if of[0] == "contraction":
             own = np.arange(len(drive.contraction)) == of[1]
@@ -140,7 +148,7 @@ class Tapes:
         """wanted: laws and what of them, see `Law.program`."""
         self._lane, self._muscles, self._wanted = lane_tuple(lanes), muscles, list(wanted)
         self._places: dict[int, tuple[int, int]] = {}
-        self._fixed: dict[tuple, int] = {}
+        self._fixed: dict[tuple[int, str, int], int] = {}
         self._heads: list[list[int]] = []
         self._inputs, self._uniform, self._outputs = [], [], []  # type: ignore[var-annotated]
         self._operations, self._numbers, self._reals = [], [], []  # type: ignore[var-annotated]
@@ -150,7 +158,7 @@ class Tapes:
         for law, of in wanted:
             registers = max(registers, self._append(law, of))
 
-        def table(rows: list, columns: int) -> np.ndarray:
+        def table(rows: Sequence[Sequence[int]], columns: int) -> np.ndarray:
             return np.array(rows, dtype=np.intp).reshape(-1, columns)
 
         none = np.zeros(0)
@@ -167,7 +175,7 @@ class Tapes:
             np.zeros((registers, WIDTH)),
         )
 
-    def _kept(self, kind: str, parts: list, array: np.ndarray) -> int:
+    def _kept(self, kind: str, parts: list[np.ndarray], array: np.ndarray) -> int:
         """Where an array begins among others of its kind."""
         parts.append(array if kind == "operations" else array.ravel())
         self._counts[kind] += len(parts[-1])

@@ -90,7 +90,14 @@ class BodyMessage:
         for marker in self._message.markers:
             marker.header.frame_id = frame_id
 
-    def _add(self, kind: int, name: str, nodes: np.ndarray, colour: tuple, scale: tuple) -> None:
+    def _add(
+        self,
+        kind: int,
+        name: str,
+        nodes: np.ndarray,
+        colour: tuple[float, float, float],
+        scale: tuple[float, float, float],
+    ) -> None:
         marker = Marker(ns=name, type=kind, action=Marker.ADD, id=0)
         marker.pose.orientation.w = 1.0
         marker.scale.x, marker.scale.y, marker.scale.z = scale

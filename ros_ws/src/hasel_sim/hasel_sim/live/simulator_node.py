@@ -4,7 +4,9 @@
 import sys
 import time
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, TypeVar
 
 import numpy as np
 from hasel_common.declared_parameters import declare, words
@@ -32,6 +34,8 @@ from hasel_sim.live.simulator_interface import (
 from hasel_sim.live.simulator_parameters import PARAMETERS
 from hasel_sim.model import Model
 from hasel_sim.parameter import value_with_error
+
+_Response = TypeVar("_Response", AddEffect.Response, RemoveEffect.Response, LoadModel.Response)
 
 
 @dataclass(frozen=True)
@@ -142,7 +146,7 @@ class SimulatorNode(ManagedNode):
         self.model_parameters.forget()
         self._live = None
 
-    def _value(self, name: str):
+    def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
 
     def _warn(self, sentence: str) -> None:
@@ -152,7 +156,7 @@ class SimulatorNode(ManagedNode):
 
     # Topics
 
-    def _on_state(self, state: SupplyState, info: dict) -> None:
+    def _on_state(self, state: SupplyState, info: dict[str, Any]) -> None:
         begun = time.perf_counter()
         answer = self.live.receive(to_nanoseconds(state.header.stamp), rig_voltage(state))
         self._publish(answer)
@@ -222,7 +226,9 @@ class SimulatorNode(ManagedNode):
 
         return self._serve(add, response)
 
-    def _remove_effect(self, request: RemoveEffect.Request, response: RemoveEffect.Response):
+    def _remove_effect(
+        self, request: RemoveEffect.Request, response: RemoveEffect.Response
+    ) -> RemoveEffect.Response:
         def remove() -> str:
             self._change(self.live.model.without_effects(request.effect))
             return f"Effect '{request.effect}' is out of the model."
@@ -243,7 +249,7 @@ class SimulatorNode(ManagedNode):
         self._use(model)
         self.model_parameters.declare(model)
 
-    def _serve(self, action, response):
+    def _serve(self, action: Callable[[], str], response: _Response) -> _Response:
         try:
             response.message, response.success = action(), True
             self.get_logger().info(response.message)

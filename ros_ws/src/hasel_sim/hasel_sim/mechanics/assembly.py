@@ -18,11 +18,11 @@ from numba import njit
 
 from hasel_sim.mechanics.constitutive import COEFFICIENTS, FIBRE
 from hasel_sim.mesh.sites import Sites
-from hasel_sim.simd import add, four, load, square_root, store, three, zero
+from hasel_sim.simd import Four, LaneTuple, Value, add, four, load, square_root, store, three, zero
 
 
 @njit(inline="always")
-def product(matrix, at, vector, lane):
+def product(matrix: np.ndarray, at: int, vector: Four, lane: LaneTuple) -> Four:
     """The 4 x 4 numbers that start at a flat index, rows one after the other, times four numbers."""
     lanes = len(lane)
     x0, x1, x2, x3 = vector
@@ -39,7 +39,16 @@ def product(matrix, at, vector, lane):
 
 
 @njit(inline="always")
-def add_stress(local, P, gradients, e, g, area, wide, lane):
+def add_stress(
+    local: np.ndarray,
+    P: Four,
+    gradients: np.ndarray,
+    e: int,
+    g: int,
+    area: float,
+    wide: Value,
+    lane: LaneTuple,
+) -> None:
     """Add to local [8, 2, lanes] what the first Piola stress at a Gauss point (row by row) does to its element's nodes.
 
     gradients: [elements, points, 8, 2] of the shape functions; area: of the point; wide: times its stretch.
@@ -54,7 +63,9 @@ def add_stress(local, P, gradients, e, g, area, wide, lane):
 
 
 @njit(inline="always")
-def add_to_nodes(local, elements, e, first, out, lane):
+def add_to_nodes(
+    local: np.ndarray, elements: np.ndarray, e: int, first: int, out: np.ndarray, lane: LaneTuple
+) -> None:
     """Add an element's forces [8, 2, lanes] to those of all nodes [columns, nodes, 2, lanes], from node `first` on."""
     lanes = len(lane)
     for n in range(8):
@@ -64,7 +75,15 @@ def add_to_nodes(local, elements, e, first, out, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def scatter_stress(P, elements, gradients, areas, stretch, force, lane):
+def scatter_stress(
+    P: np.ndarray,
+    elements: np.ndarray,
+    gradients: np.ndarray,
+    areas: np.ndarray,
+    stretch: np.ndarray,
+    force: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Add the nodal forces of a stress field [elements, points, 4, lanes] to force [nodes, 2, lanes]."""
     lanes, points = len(lane), areas.shape[1]
     local = np.empty(16 * lanes)
@@ -80,8 +99,18 @@ def scatter_stress(P, elements, gradients, areas, stretch, force, lane):
 
 @njit(cache=True, fastmath=True, error_model="numpy")
 def scatter_matrix(
-    elastic, viscous, masses, weights, elements, gradients, areas, stretch, band, diagonal, lane
-):
+    elastic: np.ndarray,
+    viscous: np.ndarray,
+    masses: np.ndarray,
+    weights: np.ndarray,
+    elements: np.ndarray,
+    gradients: np.ndarray,
+    areas: np.ndarray,
+    stretch: np.ndarray,
+    band: np.ndarray,
+    diagonal: int,
+    lane: LaneTuple,
+) -> None:
     """Add weights[0] K + weights[1] C + weights[2] M to a band matrix, entry (i, j) at [i, diagonal + j - i].
 
     elastic, viscous: moduli [elements, points, 4, 4, lanes]; masses: [elements, 8, 8, lanes]; weights: [3, lanes].
@@ -135,7 +164,16 @@ def scatter_matrix(
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def scatter_directions(moduli, elements, gradients, areas, stretch, directions, force, lane):
+def scatter_directions(
+    moduli: np.ndarray,
+    elements: np.ndarray,
+    gradients: np.ndarray,
+    areas: np.ndarray,
+    stretch: np.ndarray,
+    directions: np.ndarray,
+    force: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Add to force [columns, nodes, 2, lanes] the change of the nodal forces along many directions at once.
 
     moduli: [elements, points, 4, 4, lanes], by F or by its rate; directions: of the nodal positions or velocities
@@ -166,7 +204,7 @@ def scatter_directions(moduli, elements, gradients, areas, stretch, directions, 
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def transpose_moduli(moduli, out, lane):
+def transpose_moduli(moduli: np.ndarray, out: np.ndarray, lane: LaneTuple) -> None:
     """Exchange the rows and columns of moduli [elements, points, 4, 4, lanes]."""
     lanes = len(lane)
     for point in range(moduli.shape[0] * moduli.shape[1]):
@@ -180,7 +218,16 @@ def transpose_moduli(moduli, out, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def contraction_force(F, coefficients, muscle, elements, gradients, areas, force, lane):
+def contraction_force(
+    F: np.ndarray,
+    coefficients: np.ndarray,
+    muscle: np.ndarray,
+    elements: np.ndarray,
+    gradients: np.ndarray,
+    areas: np.ndarray,
+    force: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Derivative of the internal force by the contraction of each muscle, into force [muscles, nodes, 2, lanes]."""
     lanes, points, nodes = len(lane), areas.shape[1], force.shape[1]
     force[:] = 0.0
@@ -200,7 +247,9 @@ def contraction_force(F, coefficients, muscle, elements, gradients, areas, force
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def mass_product(masses, elements, columns, out, lane):
+def mass_product(
+    masses: np.ndarray, elements: np.ndarray, columns: np.ndarray, out: np.ndarray, lane: LaneTuple
+) -> None:
     """Add to out [columns, nodes, 2, lanes] the element masses [elements, 8, 8, lanes] times the nodal vectors."""
     lanes, nodes = len(lane), columns.shape[1]
     for e in range(elements.shape[0]):
@@ -232,6 +281,10 @@ class SiteGroups(NamedTuple):
     products: np.ndarray
 
 
+SitesOfLoops = tuple[SiteGroups, np.ndarray, np.ndarray]
+"""`sites` of the compiled loops: with the site matrices by value and by tangent [sites, 2, 2, lanes]."""
+
+
 def site_groups(laws: Sequence[tuple[Sites, bool]]) -> SiteGroups:
     """Of the sites of all laws, one after the other; with each, whether it looks at the tangent."""
     first, start, nodes, value, tangent, alike = [0], [0], [np.zeros(0)], [], [], []
@@ -259,7 +312,9 @@ def site_groups(laws: Sequence[tuple[Sites, bool]]) -> SiteGroups:
 
 
 @njit(inline="always")
-def _summed(products, place, matrices, first, count, lane):
+def _summed(
+    products: np.ndarray, place: int, matrices: np.ndarray, first: int, count: int, lane: LaneTuple
+) -> Four:
     """The four components of the sum of site matrices, each times its product."""
     lanes = len(lane)
     xx, xy, yx, yy = zero(lane), zero(lane), zero(lane), zero(lane)
@@ -273,7 +328,7 @@ def _summed(products, place, matrices, first, count, lane):
 
 
 @njit(inline="always")
-def _add_block(band, at, below, block, lane):
+def _add_block(band: np.ndarray, at: int, below: int, block: Four, lane: LaneTuple) -> None:
     """Add two rows of two components, the second `below` the first."""
     lanes, (xx, xy, yx, yy) = len(lane), block
     add(band, at, xx)
@@ -283,7 +338,7 @@ def _add_block(band, at, below, block, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def add_site_matrix(sites, band, diagonal, lane):
+def add_site_matrix(sites: SitesOfLoops, band: np.ndarray, diagonal: int, lane: LaneTuple) -> None:
     """Add the site matrices [sites, 2, 2, lanes], by value and by tangent, to a band matrix; sites: `SiteGroups` and
     these two.
     """

@@ -11,11 +11,34 @@ from numba import njit
 
 from hasel_sim.mechanics.assembly import add_stress, add_to_nodes
 from hasel_sim.mechanics.constitutive import COEFFICIENTS, thickness
-from hasel_sim.simd import add, four, load, logarithm_near_one, square_root, store, three, zero
+from hasel_sim.mechanics.state import Fields
+from hasel_sim.simd import (
+    Four,
+    LaneTuple,
+    Value,
+    add,
+    four,
+    load,
+    logarithm_near_one,
+    square_root,
+    store,
+    three,
+    zero,
+)
+
+SolidOfLoops = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, bool]
+DriveOfLoops = tuple[np.ndarray, np.ndarray, np.ndarray]
+Further = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""`solid`, `drive` and `added` of `balance`."""
+Body = tuple[SolidOfLoops, np.ndarray, np.ndarray]
+"""`body` of the compiled loops, see `time_loop`."""
+_Rows = tuple[Four, Four, Four, Four]
 
 
 @njit(inline="always")
-def _along(own, f, trace, rest, turned, lane):
+def _along(
+    own: Value, f: tuple[Value, Value], trace: Four, rest: Four, turned: tuple[Value, Value], lane: LaneTuple
+) -> Four:
     """Row of `viscous_rows` for a component of the stress in column 0.
 
     own: that component of F, f: its row of F; trace, rest: F and its rate weighted with Lamé's parameter and with the
@@ -30,7 +53,9 @@ def _along(own, f, trace, rest, turned, lane):
 
 
 @njit(inline="always")
-def _across(own, f, trace, rest, turned, lane):
+def _across(
+    own: Value, f: tuple[Value, Value], trace: Four, rest: Four, turned: tuple[Value, Value], lane: LaneTuple
+) -> Four:
     """The same for a component in column 1."""
     return (
         own * trace[0] + f[0] * rest[1],
@@ -41,7 +66,9 @@ def _across(own, f, trace, rest, turned, lane):
 
 
 @njit(inline="always")
-def viscous_rows(F, rate, by_F, by_rate, lane):
+def viscous_rows(
+    F: Four, rate: Four, by_F: tuple[Value, Value], by_rate: tuple[Value, Value], lane: LaneTuple
+) -> _Rows:
     """Of F (lambda tr(E') I + 2 mu E') with the second Piola stress held.
 
     by_F, by_rate: (lambda, mu) of E' = F^T dF and of E' = (dF/dt)^T dF, made symmetric.
@@ -63,7 +90,16 @@ def viscous_rows(F, rate, by_F, by_rate, lane):
 
 
 @njit(inline="always")
-def add_elastic_rows(rows, F, inverse, bulk, pull, held, slope, lane):
+def add_elastic_rows(
+    rows: _Rows,
+    F: Four,
+    inverse: Value,
+    bulk: Value,
+    pull: Value,
+    held: tuple[Value, Value, Value],
+    slope: Value,
+    lane: LaneTuple,
+) -> _Rows:
     """Add those of the neo-Hookean solid, of the stress that is held and of the fibres, which are symmetric.
 
     inverse: 1 / J; bulk: derivative of lambda ln J by ln J; pull: mu - lambda ln J; held: second Piola stress and what
@@ -87,7 +123,18 @@ def add_elastic_rows(rows, F, inverse, bulk, pull, held, slope, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def balance(motion, solid, drive, added, masses, weights, expected, wanted, out, lane):
+def balance(
+    motion: Fields,
+    solid: SolidOfLoops,
+    drive: DriveOfLoops,
+    added: Further,
+    masses: np.ndarray,
+    weights: np.ndarray,
+    expected: np.ndarray,
+    wanted: tuple[bool, bool],
+    out: tuple[np.ndarray, np.ndarray, np.ndarray, int],
+    lane: LaneTuple,
+) -> None:
     """Add inertia and internal force to the residual; where wanted, their matrix to the band.
 
     motion: position, velocity, acceleration [nodes, 2, lanes]; solid: elements, gradients, areas, stretch, muscle of

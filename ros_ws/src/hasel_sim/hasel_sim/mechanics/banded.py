@@ -15,13 +15,21 @@ import numpy as np
 from numba import njit
 
 from hasel_sim.errors import SimulationError
-from hasel_sim.simd import four, lane_tuple, load, of_lane, store, zero
+from hasel_sim.simd import Four, LaneTuple, Value, four, lane_tuple, load, of_lane, store, zero
 
 LEFT, RIGHT = 6, 3
+MatrixOfLoops = tuple[np.ndarray, np.ndarray, tuple[int, int, int], np.ndarray]
+"""`matrix` of the compiled loops, see `time_loop`."""
 
 
 @njit(inline="always")
-def _multipliers(A, at, upper, inverse, lane):
+def _multipliers(
+    A: np.ndarray,
+    at: int,
+    upper: tuple[Value, Value, Value, Value, Value, Value],
+    inverse: Four,
+    lane: LaneTuple,
+) -> Four:
     """Multipliers of one row for four pivot rows, stored in the place of what they eliminate."""
     lanes = len(lane)
     f0 = load(A, at, lane) * inverse[0]
@@ -36,7 +44,7 @@ def _multipliers(A, at, upper, inverse, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def lu_factorise(A, n, k, reach, bad, lane):
+def lu_factorise(A: np.ndarray, n: int, k: int, reach: np.ndarray, bad: np.ndarray, lane: LaneTuple) -> None:
     """Overwrite A [rows, width, lanes] with its factors (unit lower triangle, upper triangle).
 
     bad [lanes] takes the first unknown whose pivot vanishes beside the matrix's own diagonal; it comes in as -1.
@@ -90,7 +98,7 @@ def lu_factorise(A, n, k, reach, bad, lane):
 
 
 @njit(inline="always")
-def _store_four(array, at, values, lane):
+def _store_four(array: np.ndarray, at: int, values: Four, lane: LaneTuple) -> None:
     lanes = len(lane)
     store(array, at, values[0])
     store(array, at + lanes, values[1])
@@ -99,7 +107,15 @@ def _store_four(array, at, values, lane):
 
 
 @njit(inline="always")
-def _less_products(A, rows, x, place, count, y, lane):
+def _less_products(
+    A: np.ndarray,
+    rows: tuple[int, int, int, int],
+    x: np.ndarray,
+    place: int,
+    count: int,
+    y: Four,
+    lane: LaneTuple,
+) -> Four:
     """Four entries y less the products of four rows of A with `count` entries of x."""
     lanes = len(lane)
     r0, r1, r2, r3 = rows
@@ -112,7 +128,9 @@ def _less_products(A, rows, x, place, count, y, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def lu_solve(A, n, k, reach, x, skipped, lane):
+def lu_solve(
+    A: np.ndarray, n: int, k: int, reach: np.ndarray, x: np.ndarray, skipped: int, lane: LaneTuple
+) -> None:
     """Solve in place for the columns x [columns, skipped + n + k + 4, lanes], each of which ends with k + 4 zeros."""
     lanes, line, middle = len(lane), A.shape[1] * len(lane), LEFT + k
     columns, height, begin = x.shape[0], x.shape[1] * len(lane), skipped * len(lane)
@@ -157,7 +175,9 @@ def lu_solve(A, n, k, reach, x, skipped, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def lu_solve_transposed(A, n, k, reach, x, lane):
+def lu_solve_transposed(
+    A: np.ndarray, n: int, k: int, reach: np.ndarray, x: np.ndarray, lane: LaneTuple
+) -> None:
     """The same with the transposed matrix."""
     lanes, line, middle = len(lane), A.shape[1] * len(lane), LEFT + k
     columns, height = x.shape[0], x.shape[1] * len(lane)
@@ -179,7 +199,7 @@ def lu_solve_transposed(A, n, k, reach, x, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def clear_band(band, reach, diagonal, lane):
+def clear_band(band: np.ndarray, reach: np.ndarray, diagonal: int, lane: LaneTuple) -> None:
     """Set to zero what lies within reach of the diagonal; the rest of a band matrix always is."""
     lanes, width, first = len(lane), band.shape[1], 0
     for row in range(band.shape[0]):
@@ -193,7 +213,7 @@ def clear_band(band, reach, diagonal, lane):
 
 
 @njit(cache=True, error_model="numpy")
-def is_spoilt(vector, unknowns, bad):
+def is_spoilt(vector: np.ndarray, unknowns: int, bad: np.ndarray) -> bool:
     """Whether factors may have left what is no number beyond the band, where `clear_band` does not look."""
     spoilt = False
     for k in range(len(bad)):
@@ -202,7 +222,7 @@ def is_spoilt(vector, unknowns, bad):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def factorise(matrix, bad, lane):
+def factorise(matrix: MatrixOfLoops, bad: np.ndarray, lane: LaneTuple) -> None:
     """Replace a band matrix by its factors; bad [lanes]: see `factorise`."""
     band, reach, (diagonal, half_bandwidth, held), _ = matrix
     n, lanes = len(reach), len(lane)
@@ -216,7 +236,7 @@ def factorise(matrix, bad, lane):
 
 
 @njit(inline="always")
-def _unknowns_of(columns, c, unknowns, held, lane):
+def _unknowns_of(columns: np.ndarray, c: int, unknowns: int, held: int, lane: LaneTuple) -> np.ndarray:
     """One right-hand side [1, unknowns and padding, lanes] from the first unknown that is not held, all others zero."""
     lanes = len(lane)
     height = 2 * columns.shape[1] * lanes
@@ -229,7 +249,7 @@ def _unknowns_of(columns, c, unknowns, held, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def solve(matrix, columns, lane):
+def solve(matrix: MatrixOfLoops, columns: np.ndarray, lane: LaneTuple) -> None:
     """Solve in place with the factors for right-hand sides [columns, nodes and padding, 2, lanes]."""
     band, reach, (_, half_bandwidth, held), _ = matrix
     n = len(reach)
@@ -240,7 +260,7 @@ def solve(matrix, columns, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def solve_transposed(matrix, columns, lane):
+def solve_transposed(matrix: MatrixOfLoops, columns: np.ndarray, lane: LaneTuple) -> None:
     """The same with the transposed matrix."""
     band, reach, (_, half_bandwidth, held), _ = matrix
     n = len(reach)
@@ -275,7 +295,7 @@ class BandMatrix:
         self.padding = half_bandwidth + 4
 
     @property
-    def for_loops(self) -> tuple:
+    def for_loops(self) -> MatrixOfLoops:
         """`matrix` of the compiled loops, see `time_loop`."""
         shape = self.diagonal, self.half_bandwidth, self.held
         return self.entries, self.reach, shape, np.zeros(1, dtype=bool)

@@ -16,11 +16,22 @@ import numpy as np
 from numba import njit
 
 from hasel_sim.mechanics.constitutive import deformation, green_stress_direction
-from hasel_sim.simd import lane_tuple, load, store, zero
+from hasel_sim.mesh.mesh import Places
+from hasel_sim.simd import LaneTuple, lane_tuple, load, store, zero
+
+StepLength = float | np.ndarray | Sequence[float]
+"""[s], the same for all lanes, or one each [lanes]."""
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def carried(left, gain, stresses, green, out, lane):
+def carried(
+    left: np.ndarray,
+    gain: np.ndarray,
+    stresses: np.ndarray,
+    green: np.ndarray,
+    out: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """The part of the branches' stress after a step that no new strain changes, [elements, points, 3, lanes]."""
     lanes = len(lane)
     for at in range(0, out.size, lanes):
@@ -32,14 +43,29 @@ def carried(left, gain, stresses, green, out, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def carried_columns(left, gain, stresses, green, out, lane):
+def carried_columns(
+    left: np.ndarray,
+    gain: np.ndarray,
+    stresses: np.ndarray,
+    green: np.ndarray,
+    out: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Derivatives of what the branches carry over a step, [columns, elements, points, 3, lanes]."""
     for c in range(green.shape[0]):
         carried(left, gain, stresses[c], green[c], out[c], lane)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def green_along(moved, F, places, shear, lame, out, lane):
+def green_along(
+    moved: np.ndarray,
+    F: np.ndarray,
+    places: Places,
+    shear: np.ndarray,
+    lame: np.ndarray,
+    out: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Derivatives of C : E along those of the positions, moved [columns, nodes, 2, lanes], at a deformation F."""
     elements, gradients, _, stretch = places
     change = np.empty_like(F)
@@ -49,7 +75,15 @@ def green_along(moved, F, places, shear, lame, out, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def advance_stresses(left, gain, stresses, green, new_green, out, lane):
+def advance_stresses(
+    left: np.ndarray,
+    gain: np.ndarray,
+    stresses: np.ndarray,
+    green: np.ndarray,
+    new_green: np.ndarray,
+    out: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Derivatives of the branches' stresses at the end of a step, where those of C : E are `new_green`."""
     lanes, branches = len(lane), stresses.shape[1]
     size = green.shape[1] * green.shape[2] * green.shape[3] * lanes
@@ -63,7 +97,17 @@ def advance_stresses(left, gain, stresses, green, new_green, out, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def add_parameter(left, gain, stresses, green, own, factor, more, more_green, lane):
+def add_parameter(
+    left: np.ndarray,
+    gain: np.ndarray,
+    stresses: np.ndarray,
+    green: np.ndarray,
+    own: np.ndarray,
+    factor: np.ndarray,
+    more: np.ndarray,
+    more_green: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Add to the derivatives `more` and `more_green` of one column a factor [lanes] times what the branches and C : E
     of one body are at the end of a step: stresses and green at its beginning, own C : E at its end.
     """
@@ -111,7 +155,7 @@ class Branches:
         """Stresses of all branches when a run starts, [branches, elements, points, 3, lanes]."""
         return self.share[:, None, None, None] * green
 
-    def factors(self, step: float | np.ndarray | Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
+    def factors(self, step: StepLength) -> tuple[np.ndarray, np.ndarray]:
         """What a step [s] leaves of Q, and what it adds per C : (E1 - E0), both [branches, lanes]."""
         key = np.asarray(step, dtype=float).tobytes()
         if key not in self._factors:

@@ -17,11 +17,31 @@ A trial shape with an element of no area gives infinities, which end that trial,
 import numpy as np
 from numba import njit
 
-from hasel_sim.simd import add, four, load, logarithm, of_lane, square_root, store, three, with_lane, zero
+from hasel_sim.simd import (
+    LaneTuple,
+    Value,
+    add,
+    four,
+    load,
+    logarithm,
+    of_lane,
+    square_root,
+    store,
+    three,
+    with_lane,
+    zero,
+)
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def deformation(field, elements, gradients, stretch, out, lane):
+def deformation(
+    field: np.ndarray,
+    elements: np.ndarray,
+    gradients: np.ndarray,
+    stretch: np.ndarray,
+    out: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Gradient of a nodal field [nodes, 2, lanes] at every Gauss point, into out [elements, points, 4, lanes]."""
     lanes, points = len(lane), gradients.shape[1]
     for e in range(elements.shape[0]):
@@ -41,7 +61,9 @@ def deformation(field, elements, gradients, stretch, out, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def green_stress(F, shear, lame, out, lane):
+def green_stress(
+    F: np.ndarray, shear: np.ndarray, lame: np.ndarray, out: np.ndarray, lane: LaneTuple
+) -> None:
     """C : E (xx, yy, xy) of the Green strain at every Gauss point, into out [elements, points, 3, lanes]."""
     lanes, points = len(lane), F.shape[1]
     for e in range(F.shape[0]):
@@ -56,7 +78,9 @@ def green_stress(F, shear, lame, out, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def green_stress_direction(F, change, shear, lame, out, lane):
+def green_stress_direction(
+    F: np.ndarray, change: np.ndarray, shear: np.ndarray, lame: np.ndarray, out: np.ndarray, lane: LaneTuple
+) -> None:
     """Change of C : E along a change of F [elements, points, 4, lanes], into out [elements, points, 3, lanes]."""
     lanes, points = len(lane), F.shape[1]
     for e in range(F.shape[0]):
@@ -72,7 +96,7 @@ def green_stress_direction(F, change, shear, lame, out, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def second_piola(F, P, S, lane):
+def second_piola(F: np.ndarray, P: np.ndarray, S: np.ndarray, lane: LaneTuple) -> None:
     """Symmetric second Piola stress (xx, yy, xy) F^-1 P [elements, points, 3, lanes] of a first Piola stress."""
     lanes = len(lane)
     for point in range(F.shape[0] * F.shape[1]):
@@ -95,7 +119,7 @@ SHEAR, LAME, VISCOUS_SHEAR, VISCOUS_LAME, BRANCH_SHEAR, BRANCH_LAME, FIBRE = ran
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def through_thickness_stretch(shear, lame, area_ratio):
+def through_thickness_stretch(shear: float, lame: float, area_ratio: float) -> float:
     """Stretch f with no stress through the thickness: mu (f^2 - 1) + lambda ln(area_ratio f) = 0 (Newton)."""
     f = area_ratio ** (-lame / (lame + 2.0 * shear))
     for _ in range(50):
@@ -107,7 +131,7 @@ def through_thickness_stretch(shear, lame, area_ratio):
 
 
 @njit(inline="always")
-def thickness(shear, lame, area_ratio, lane):
+def thickness(shear: Value, lame: Value, area_ratio: Value, lane: LaneTuple) -> Value:
     """The same in every lane."""
     out = zero(lane)
     for n in range(len(lane)):
@@ -118,7 +142,17 @@ def thickness(shear, lame, area_ratio, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def first_piola(F, rate, coefficients, muscle, contraction, history, plane_stress, P, lane):
+def first_piola(
+    F: np.ndarray,
+    rate: np.ndarray,
+    coefficients: np.ndarray,
+    muscle: np.ndarray,
+    contraction: np.ndarray,
+    history: np.ndarray,
+    plane_stress: bool,
+    P: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """First Piola stress [Pa] at every Gauss point.
 
     F, rate: deformation gradient and its rate, P: result, all [elements, points, 4, lanes]; contraction:
@@ -159,7 +193,18 @@ def first_piola(F, rate, coefficients, muscle, contraction, history, plane_stres
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def moduli(F, rate, coefficients, muscle, contraction, history, plane_stress, elastic, viscous, lane):
+def moduli(
+    F: np.ndarray,
+    rate: np.ndarray,
+    coefficients: np.ndarray,
+    muscle: np.ndarray,
+    contraction: np.ndarray,
+    history: np.ndarray,
+    plane_stress: bool,
+    elastic: np.ndarray,
+    viscous: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Derivatives of the first Piola stress by F (elastic) and its rate (viscous), [elements, points, 4, 4, lanes]."""
     lanes, points = len(lane), F.shape[1]
     none = zero(lane)

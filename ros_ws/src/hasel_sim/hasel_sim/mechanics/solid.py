@@ -9,9 +9,9 @@ import numpy as np
 
 from hasel_sim.effects.base import Coefficients
 from hasel_sim.mechanics import assembly, constitutive
-from hasel_sim.mechanics.branches import Branches, green_along
+from hasel_sim.mechanics.branches import Branches, StepLength, green_along
 from hasel_sim.mechanics.state import Motion
-from hasel_sim.mesh.mesh import Mesh, reference_gradients
+from hasel_sim.mesh.mesh import Mesh, Places, reference_gradients
 from hasel_sim.simd import lane_tuple
 
 
@@ -131,7 +131,7 @@ class Solid:
         return np.array_equal(self.gradients, other.gradients) and np.array_equal(self.stretch, other.stretch)
 
     @property
-    def places(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    def places(self) -> Places:
         """What the compiled loops know of the mesh: elements, gradients, areas and stretch of the stress-free shape."""
         return self.elements, self.gradients, self.areas, self.stretch
 
@@ -147,7 +147,7 @@ class Solid:
         )
         return out
 
-    def table(self, step: float | np.ndarray | Sequence[float]) -> np.ndarray:
+    def table(self, step: StepLength) -> np.ndarray:
         """Coefficients for the compiled loops when the branches have run for `step` [s] since the last known state.
 
         A step of 0 means at rest for ever: the branches have relaxed.
@@ -175,7 +175,14 @@ class Solid:
         green_along(np.ascontiguousarray(moved), F, *law, out, self._lane)
         return out
 
-    def _at(self, F, rate, contraction: np.ndarray, history: np.ndarray | None, step) -> tuple:
+    def _at(
+        self,
+        F: np.ndarray,
+        rate: np.ndarray,
+        contraction: np.ndarray,
+        history: np.ndarray | None,
+        step: StepLength,
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, bool]:
         rest = np.zeros((1, contraction.shape[-1]))
         return (
             F,
@@ -187,13 +194,27 @@ class Solid:
             self.plane_stress,
         )
 
-    def stress(self, F, rate, contraction: np.ndarray, history: np.ndarray | None, step) -> np.ndarray:
+    def stress(
+        self,
+        F: np.ndarray,
+        rate: np.ndarray,
+        contraction: np.ndarray,
+        history: np.ndarray | None,
+        step: StepLength,
+    ) -> np.ndarray:
         """First Piola stress; history: `Branches.history` or None; contraction: [muscles, lanes]."""
         P = np.empty_like(F)
         constitutive.first_piola(*self._at(F, rate, contraction, history, step), P, self._lane)
         return P
 
-    def moduli(self, F, rate, contraction, history, step) -> tuple[np.ndarray, np.ndarray]:
+    def moduli(
+        self,
+        F: np.ndarray,
+        rate: np.ndarray,
+        contraction: np.ndarray,
+        history: np.ndarray | None,
+        step: StepLength,
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of `stress` by F and by its rate, [elements, points, 4, 4, lanes]; valid until the next call."""
         elastic, viscous = self.kept_moduli
         constitutive.moduli(*self._at(F, rate, contraction, history, step), elastic, viscous, self._lane)
@@ -218,7 +239,7 @@ class Deformation:
         self.solid, self.motion = solid, motion
 
     @property
-    def places(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    def places(self) -> Places:
         """What the compiled loops know of the mesh."""
         return self.solid.places
 

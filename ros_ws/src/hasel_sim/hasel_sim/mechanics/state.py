@@ -3,11 +3,15 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
+from typing import TypeVar
 
 import numpy as np
 from numba import njit
 
-from hasel_sim.simd import four, load, of_lane, store, with_lane, zero
+from hasel_sim.simd import LaneTuple, Value, four, load, of_lane, store, with_lane, zero
+
+Fields = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Position, velocity and acceleration of the nodes as the compiled loops take them."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +70,7 @@ class Motion:
         return Motion(position, still, still)
 
     @property
-    def fields(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def fields(self) -> Fields:
         """All three as the compiled loops take them."""
         x, v, a = map(np.ascontiguousarray, (self.position, self.velocity, self.acceleration))
         return x, v, a
@@ -78,6 +82,9 @@ class Memory:
 
     history: np.ndarray | None = None
     step: float | np.ndarray | Sequence[float] = 0.0
+
+
+_Own = TypeVar("_Own", bound="State")
 
 
 @dataclass
@@ -99,29 +106,29 @@ class State:
         """Its motion."""
         return Motion(self.position, self.velocity, self.acceleration)
 
-    def _each(self, of_array: Callable[[np.ndarray], np.ndarray]):
+    def _each(self: _Own, of_array: Callable[[np.ndarray], np.ndarray]) -> _Own:
         return type(self)(*(None if array is None else of_array(array) for array in vars(self).values()))
 
-    def lane(self, index: int):
+    def lane(self: _Own, index: int) -> _Own:
         """What belongs to one lane, as arrays of their own."""
         return self._each(lambda array: array[..., index : index + 1].copy())
 
-    def copy(self):
+    def copy(self: _Own) -> _Own:
         """The same in arrays of their own."""
         return self._each(np.copy)
 
-    def zeros(self):
+    def zeros(self: _Own) -> _Own:
         """Zeros in the same shape."""
         return self._each(np.zeros_like)
 
-    def put(self, lanes: int | np.ndarray, other, place: int | np.ndarray = 0) -> None:
+    def put(self, lanes: int | np.ndarray, other: "State", place: int | np.ndarray = 0) -> None:
         """Take over the lanes of another, from these places in it."""
         for name, own in vars(self).items():
             if own is not None:
                 own[..., lanes] = getattr(other, name)[..., place]
 
     @classmethod
-    def beside(cls, each: Sequence):
+    def beside(cls: type[_Own], each: Sequence[_Own]) -> _Own:
         """Several, one lane after the other."""
         arrays = ([getattr(one, field.name) for one in each] for field in fields(cls))
         return cls(*(None if a[0] is None else np.concatenate(a, axis=-1) for a in arrays))
@@ -166,7 +173,7 @@ class NodeTrajectories:
 
 
 @njit(inline="always")
-def chosen_of(new, old, chosen, lane):
+def chosen_of(new: Value, old: Value, chosen: np.ndarray, lane: LaneTuple) -> Value:
     """New numbers in the lanes chosen [lanes], old ones in the others."""
     for k in range(len(lane)):
         if not chosen[k]:
@@ -175,14 +182,14 @@ def chosen_of(new, old, chosen, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def copy_lanes(source, to, chosen, lane):
+def copy_lanes(source: np.ndarray, to: np.ndarray, chosen: np.ndarray, lane: LaneTuple) -> None:
     """Copy the lanes chosen [lanes]."""
     for at in range(0, to.size, len(lane)):
         store(to, at, chosen_of(load(source, at, lane), load(to, at, lane), chosen, lane))
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def subtract_lanes(change, out, chosen, lane):
+def subtract_lanes(change: np.ndarray, out: np.ndarray, chosen: np.ndarray, lane: LaneTuple) -> None:
     """Subtract the beginning of an array from another in the lanes chosen [lanes]."""
     for at in range(0, out.size, len(lane)):
         step = chosen_of(load(change, at, lane), zero(lane), chosen, lane)
@@ -190,7 +197,7 @@ def subtract_lanes(change, out, chosen, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def difference(more, less, out, lane):
+def difference(more: np.ndarray, less: np.ndarray, out: np.ndarray, lane: LaneTuple) -> None:
     """The difference of two arrays at the beginning of another, zeros behind it."""
     for at in range(0, out.size, len(lane)):
         if at < more.size:
@@ -200,7 +207,17 @@ def difference(more, less, out, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def combine(position, velocity, acceleration, new, weights, x, v, a, lane):
+def combine(
+    position: np.ndarray,
+    velocity: np.ndarray,
+    acceleration: np.ndarray,
+    new: np.ndarray,
+    weights: np.ndarray,
+    x: np.ndarray,
+    v: np.ndarray,
+    a: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Weighted sums of nodal vectors [nodes, 2, lanes], as a time step needs them, into x, v and a.
 
     weights [8, lanes]: of the velocity, acceleration and new acceleration in x; of the two accelerations in v and in a;

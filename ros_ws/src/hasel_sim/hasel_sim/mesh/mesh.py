@@ -12,6 +12,8 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
+Places = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+"""What the compiled loops know of a mesh: elements, gradients, areas and stretch of the stress-free shape."""
 _CORNER = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 
 
@@ -121,7 +123,7 @@ class Mesh:
         return self._points[position]
 
     @cached_property
-    def _points(self) -> dict:
+    def _points(self) -> dict[tuple[float, float], tuple[np.ndarray, np.ndarray, np.ndarray]]:
         """Points that were asked for before."""
         return {}
 

@@ -10,11 +10,13 @@ import numpy as np
 from numba import njit
 
 from hasel_sim.mesh.mesh import Mesh, edge_functions, reference_gradients
-from hasel_sim.simd import add, lane_tuple, load, store, zero
+from hasel_sim.simd import LaneTuple, Value, add, lane_tuple, load, store, zero
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def interpolate(field, nodes, weights, out, lane):
+def interpolate(
+    field: np.ndarray, nodes: np.ndarray, weights: np.ndarray, out: np.ndarray, lane: LaneTuple
+) -> None:
     """Write what the weights make of a nodal field at the sites."""
     lanes, to = len(lane), 0
     for c in range(field.shape[0]):
@@ -26,7 +28,9 @@ def interpolate(field, nodes, weights, out, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def spread(force, nodes, weights, out, lane):
+def spread(
+    force: np.ndarray, nodes: np.ndarray, weights: np.ndarray, out: np.ndarray, lane: LaneTuple
+) -> None:
     """Add forces at the sites, times the weights, to a nodal field."""
     lanes, at = len(lane), 0
     for c in range(force.shape[0]):
@@ -37,7 +41,15 @@ def spread(force, nodes, weights, out, lane):
 
 
 @njit(cache=True, fastmath=True, error_model="numpy")
-def subtract_products(field, slope, nodes, shape, weights, out, lane):
+def subtract_products(
+    field: np.ndarray,
+    slope: np.ndarray,
+    nodes: np.ndarray,
+    shape: np.ndarray,
+    weights: np.ndarray,
+    out: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     """Subtract slope [sites, 2, 2, lanes] times the field at the sites, times the weights, from a nodal field."""
     lanes = len(lane)
     for c in range(field.shape[0]):
@@ -50,7 +62,9 @@ def subtract_products(field, slope, nodes, shape, weights, out, lane):
 
 
 @njit(inline="always")
-def _at_site(field, c, s, nodes, weights, lane):
+def _at_site(
+    field: np.ndarray, c: int, s: int, nodes: np.ndarray, weights: np.ndarray, lane: LaneTuple
+) -> tuple[Value, Value]:
     lanes, x, y = len(lane), zero(lane), zero(lane)
     for k in range(nodes.shape[1]):
         at = 2 * lanes * (c * field.shape[1] + nodes[s, k])
@@ -60,7 +74,16 @@ def _at_site(field, c, s, nodes, weights, lane):
 
 
 @njit(inline="always")
-def _add_at_nodes(x, y, c, s, nodes, weights, out, lane):
+def _add_at_nodes(
+    x: Value,
+    y: Value,
+    c: int,
+    s: int,
+    nodes: np.ndarray,
+    weights: np.ndarray,
+    out: np.ndarray,
+    lane: LaneTuple,
+) -> None:
     lanes = len(lane)
     for k in range(nodes.shape[1]):
         at = 2 * lanes * (c * out.shape[1] + nodes[s, k])

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 from hasel_common.names import nearest_name
@@ -14,7 +15,7 @@ from hasel_sim.drive.amplitudes import AmplitudeTable, amplitude_tables
 from hasel_sim.effects.base import Effect
 from hasel_sim.effects.registry import find_effects
 from hasel_sim.errors import ModelError
-from hasel_sim.model.description import Description, Numerics, check_together
+from hasel_sim.model.description import Description, check_together
 from hasel_sim.model.model_parameters import (
     amplitude_parameters,
     constants,
@@ -23,6 +24,7 @@ from hasel_sim.model.model_parameters import (
     unit_of,
     with_constants,
 )
+from hasel_sim.model.sections import Numerics
 from hasel_sim.model.validation import sentence_for
 from hasel_sim.parameter import (
     Parameter,
@@ -251,7 +253,7 @@ class Model(Parametrised):
         return f"<Model {named}, {len(self.parameters)} parameters>"
 
 
-def _validated(content: dict) -> Description:
+def _validated(content: dict[str, Any]) -> Description:
     try:
         return Description.model_validate(content)
     except ValidationError as error:

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 from hasel_common.names import nearest_name
 from hasel_common.provenance import installed_version
@@ -15,11 +16,12 @@ from pydantic import ValidationError
 
 from hasel_sim.effects.base import Effect
 from hasel_sim.errors import ModelError, OwnCodeError
-from hasel_sim.model.description import Description, ParameterEntry
+from hasel_sim.model.description import Description
 from hasel_sim.model.model import Model
 from hasel_sim.model.model_parameters import constants, response_parameters, unit_of
 from hasel_sim.model.muscle_file import law_content, load_muscle
 from hasel_sim.model.muscle_law import MuscleLaw
+from hasel_sim.model.sections import ParameterEntry
 from hasel_sim.model.validation import implausible, names_in, sections_of, sentence_for
 from hasel_sim.parameter import Parameter
 
@@ -161,7 +163,7 @@ def model_text(model: Model, description: Description) -> str:
     return json.dumps([content, [effect.text for effect in model.effects]], sort_keys=True)
 
 
-def _content(model: Model, description: Description, folder: Path) -> dict:
+def _content(model: Model, description: Description, folder: Path) -> dict[str, Any]:
     content = json.loads(description.model_dump_json(exclude_none=True))
     content["effects"] = [_named_from(folder, effect) for effect in model.effects]
     content["parameters"] = {
@@ -170,8 +172,8 @@ def _content(model: Model, description: Description, folder: Path) -> dict:
     return content
 
 
-def _entry(parameter: Parameter, names: Iterable[str]) -> dict:
-    entry: dict = {"value": parameter.value, "unit": parameter.unit}
+def _entry(parameter: Parameter, names: Iterable[str]) -> dict[str, Any]:
+    entry: dict[str, Any] = {"value": parameter.value, "unit": parameter.unit}
     if parameter.lower > -float("inf"):
         entry["lower"] = parameter.lower
     if parameter.upper < float("inf"):
@@ -192,12 +194,12 @@ _KEYS = {
 }
 
 
-def is_former(content: dict) -> bool:
+def is_former(content: dict[str, Any]) -> bool:
     """Whether a file's content is of a former kind."""
     return isinstance(content.get("body"), dict) and "kind" in content["body"]
 
 
-def translated(content: dict) -> dict:
+def translated(content: dict[str, Any]) -> dict[str, Any]:
     """The content as a file of today. Raises ModelError for what a file of its kind could not say."""
     content, body = dict(content), dict(content["body"])
     kind = body.pop("kind")

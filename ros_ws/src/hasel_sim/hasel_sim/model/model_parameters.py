@@ -10,7 +10,7 @@ The muscles have parameters for how fast they contract, an amplitude for every l
 an onset wherever the drive passes levels at which no amplitude is known.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
@@ -196,7 +196,9 @@ def response_parameters(description: Description) -> dict[str, Parameter]:
 
 
 def amplitude_parameters(
-    tables: Iterable[AmplitudeTable], levels, known: Mapping[str, Parameter]
+    tables: Iterable[AmplitudeTable],
+    levels: np.ndarray | Sequence[float] | Mapping[str, np.ndarray],
+    known: Mapping[str, Parameter],
 ) -> dict[str, Parameter]:
     """An amplitude of every table for each level, those that are known as they are.
 

@@ -5,15 +5,15 @@ from collections.abc import Mapping
 from dataclasses import replace
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 from hasel_common.names import nearest_name
 from hasel_common.yaml_text import yaml_text
 from pydantic import Field, ValidationError
 
 from hasel_sim.errors import ModelError
-from hasel_sim.model.description import ParameterEntry
 from hasel_sim.model.muscle_law import PouchSection
-from hasel_sim.model.sections import NotNegative, Section
+from hasel_sim.model.sections import NotNegative, ParameterEntry, Section
 from hasel_sim.model.validation import names_in, sections_of, sentence_for
 from hasel_sim.muscle.muscle import POUCH, Muscle
 from hasel_sim.parameter import Parameter
@@ -117,7 +117,7 @@ def muscle_text(muscle: Muscle) -> str:
     return yaml_text(content)
 
 
-def law_content(muscle: Muscle) -> dict:
+def law_content(muscle: Muscle) -> dict[str, Any]:
     """The muscle section of a model file whose muscles are like this one, with the fitted constants in its pouch."""
     freed = {
         name.removeprefix(POUCH): value for name, value in muscle.values.items() if name.startswith(POUCH)
@@ -129,11 +129,11 @@ def law_content(muscle: Muscle) -> dict:
     return {"law": "peano_hasel", "pouch": {**_pouch(muscle), **freed}, "effects": effects}
 
 
-def _pouch(muscle: Muscle) -> dict:
+def _pouch(muscle: Muscle) -> dict[str, Any]:
     keys = [key for key in PouchSection.model_fields if key != "count"]
     return {"count": muscle.count} | {key: getattr(muscle.pouch, key.removesuffix("_m")) for key in keys}
 
 
-def _entry(p: Parameter) -> dict:
+def _entry(p: Parameter) -> dict[str, Any]:
     entry = {"value": p.value, "unit": p.unit, "lower": p.lower, "upper": p.upper, "free": p.free}
     return entry if p.standard_error is None else {**entry, "standard_error": p.standard_error}

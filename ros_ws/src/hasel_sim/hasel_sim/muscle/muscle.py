@@ -1,6 +1,7 @@
 # Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """A Peano-HASEL muscle: pouches in series, what acts on them, and its numbers; changed only by copying."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import SimpleNamespace
@@ -169,7 +170,12 @@ class Muscle(Parametrised):
         return self.count * self.populations[0][1].relaxed_length
 
 
-def _angle(pouch: Pouch, voltage: np.ndarray, load: np.ndarray, acting: list) -> np.ndarray:
+def _angle(
+    pouch: Pouch,
+    voltage: np.ndarray,
+    load: np.ndarray,
+    acting: Sequence[tuple[MuscleEffect, SimpleNamespace]],
+) -> np.ndarray:
     def opposing(angle: np.ndarray) -> np.ndarray:
         strain = pouch.contraction(angle) / pouch.relaxed_length
         return sum((effect.opposing(strain, p) for effect, p in acting), np.zeros_like(strain))

@@ -7,13 +7,17 @@ l_e = L_p - l_p, a plate capacitor of two films. Kellaris, Gopaluni Venkata, Rot
 Letters 29 (2019) 100449; the force follows from virtual work at constant voltage, F dx = V^2 dC / 2.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 from scipy.optimize import brentq
 
 from hasel_sim.errors import ModelError
+
+_Angle = TypeVar("_Angle", float, np.ndarray)
 
 VACUUM_PERMITTIVITY = 8.8541878128e-12
 """[F/m]"""
@@ -118,7 +122,7 @@ class Pouch:
         return np.clip(np.arccos(np.clip(cosine, 0.0, 1.0)), self.relaxed_angle, self.largest_angle)
 
 
-def bisect(function, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+def bisect(function: Callable[[np.ndarray], np.ndarray], low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """Where an increasing function of arrays changes its sign, between low and high; an end where it does not."""
     for _ in range(44):
         middle = 0.5 * (low + high)
@@ -127,6 +131,6 @@ def bisect(function, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     return 0.5 * (low + high)
 
 
-def _segment(angle):
+def _segment(angle: _Angle) -> _Angle:
     """alpha - sin alpha cos alpha, without cancellation at small angles."""
     return 0.5 * (2 * angle - np.sin(2 * angle))

@@ -96,7 +96,15 @@ def force_table(muscle: Muscle, rest_load: float, largest_voltage: float) -> For
 
 
 @njit(cache=True)
-def _swing(time, voltage, table, largest_square, largest_contraction, numbers, longest):
+def _swing(
+    time: np.ndarray,
+    voltage: np.ndarray,
+    table: np.ndarray,
+    largest_square: float,
+    largest_contraction: float,
+    numbers: tuple[float, float, float, float, float],
+    longest: float,
+) -> np.ndarray:
     load, mass, damping, slowness, lag = numbers
     x, speed, volts = 0.0, 0.0, 0.0
     out = np.zeros(len(time))

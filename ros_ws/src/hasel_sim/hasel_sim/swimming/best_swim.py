@@ -6,6 +6,7 @@ Speed, heading and power are those of `free_swim`, as differentiable functions o
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import torch
@@ -227,7 +228,7 @@ class _Swims:
     def _loss(self, of: SwimOf) -> torch.Tensor:
         return -of.speed if self.task.goal == "speed" else of.cost_of_transport
 
-    def constraints(self) -> list[dict]:
+    def constraints(self) -> list[dict[str, Any]]:
         """What is asked of turning and heading."""
         out = []
         for name in ("turning", "heading"):

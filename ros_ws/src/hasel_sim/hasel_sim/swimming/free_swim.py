@@ -131,7 +131,9 @@ def _means(time: np.ndarray, series: np.ndarray, ends: np.ndarray, frequency: fl
     return frequency * np.stack(parts, axis=1)
 
 
-def _forward(time, position, turned, start: float, end: float, frequency: float) -> float:
+def _forward(
+    time: np.ndarray, position: np.ndarray, turned: np.ndarray, start: float, end: float, frequency: float
+) -> float:
     """Mean speed [m/s] along the body's heading between two times, from means over whole periods."""
     periods = round((end - start) * frequency)
     bounds = start + np.arange(periods + 1) / frequency

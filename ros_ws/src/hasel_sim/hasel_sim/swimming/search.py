@@ -4,6 +4,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from hasel_common.names import nearest_name
@@ -182,7 +183,7 @@ def _places(count: int) -> np.ndarray:
     return np.array([0.5]) if count == 1 else 0.5 - 0.5 * np.cos(np.pi * np.arange(count) / (count - 1))
 
 
-def shape_limits(variables: Variables) -> list[dict]:
+def shape_limits(variables: Variables) -> list[dict[str, Any]]:
     """Constraints of x, for a minimiser: an outline keeps its area and half to twice its height, no spine is bare."""
 
     def heights(x: np.ndarray) -> tuple[np.ndarray, float]:
@@ -194,7 +195,7 @@ def shape_limits(variables: Variables) -> list[dict]:
         height, thickness = heights(x)
         return (height - _COVER * thickness) / height.max()
 
-    out: list[dict] = []
+    out: list[dict[str, Any]] = []
     start = heights(variables.start)[0]
     if OUTLINE in variables.vary:
         low, high = HALF_OR_DOUBLE
