@@ -5,7 +5,9 @@ import argparse
 import os
 import time
 from collections import defaultdict
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from hasel_common.endpoints import Role, subscription
@@ -69,7 +71,7 @@ class Soak:
         package, *words = NODES[name]
         self._processes.start(package, name, *(word.format(folder=self._folder) for word in words))
 
-    def _note(self, topic: str):
+    def _note(self, topic: str) -> Callable[[Any], None]:
         stamps = self._stamps[topic]
         return lambda message: stamps.append(nanoseconds(message.header.stamp))
 

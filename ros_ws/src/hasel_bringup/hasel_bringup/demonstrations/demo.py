@@ -7,13 +7,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from types import ModuleType
 
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_common.endpoints import Role, subscription
 from hasel_common.topics import DIAGNOSTICS, ERROR, SIMULATED
 from hasel_interfaces.msg import RunningError
 from hasel_interfaces.srv import LoadModel
-from hasel_muscle import command as bench_muscle
+from hasel_muscle import bench_muscle
 from hasel_recording import read_recording
 from hasel_sysid.command_line import fit, improve, measured_fish
 from hasel_sysid.command_line.running import MISLEADING
@@ -174,7 +175,7 @@ def _files(folder: Path, pattern: str) -> list[Path]:
     return files
 
 
-def _call(command, arguments: Sequence[str]) -> None:
+def _call(command: ModuleType, arguments: Sequence[str]) -> None:
     """Run one of the commands as a user would; what it says of misleading recordings is enough.
 
     Raises BringupError when it fails.
