@@ -11,11 +11,15 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from hasel_common.measured_bar import MeasuredBar
 
 from hasel_benchmark.errors import BenchmarkError
 from hasel_benchmark.process_cost import Took, timed
+
+if TYPE_CHECKING:  # the command's options are read without it
+    from distributed import Client
 
 WORKERS = (1, 2)
 BAR = 1.7
@@ -101,7 +105,7 @@ def _answer(
     return took, path.read_text()
 
 
-def _used_by(client) -> Callable[[], float]:
+def _used_by(client: "Client") -> Callable[[], float]:
     """Processor time of a cluster's workers until now [s]."""
     return lambda: sum(client.run(time.process_time).values())
 

@@ -26,6 +26,7 @@ from scipy.optimize import brentq
 from hasel_benchmark.bench_hidden.laboratory import seen
 from hasel_benchmark.bench_hidden.run_cases import answer
 from hasel_benchmark.benchmark_commands import BODIES, SIZES, told
+from hasel_benchmark.errors import BenchmarkError
 
 NOISES = (2e-5, 3e-4, 3e-3)
 _BEAM_DAMPING_S = 0.004
@@ -193,6 +194,10 @@ class FarOutcome:
 def run_case(case: FarCase, pool: Executor, only: Sequence[str] | None = None) -> FarOutcome:
     """What `improve` says of one case. only: names of the candidate effects (default: all)."""
     value = value_of(case)
+    if value is None:
+        raise BenchmarkError(
+            f"{case}: no plausible value of {case.effect} shifts the ringing so far; choose another shift."
+        )
     fitted, unseen = measure(case, value, pool)
     started = time.monotonic()
     found = answer(baseline(case.body), fitted, unseen, pool, only)

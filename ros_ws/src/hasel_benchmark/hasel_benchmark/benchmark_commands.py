@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from hasel_common.command_entry import command, in_a_sentence
 from hasel_common.node_parameter import user_arguments
@@ -168,7 +168,10 @@ def told(outcomes: Iterable[Any], file: Path | None, line: Callable[[Any], str] 
     return found
 
 
-def _list_of(kind: type) -> Callable[[str], tuple]:
+_Kind = TypeVar("_Kind")
+
+
+def _list_of(kind: Callable[[str], _Kind]) -> Callable[[str], tuple[_Kind, ...]]:
     return lambda text: tuple(kind(part) for part in text.split(","))
 
 

@@ -152,7 +152,9 @@ class LifecycleManager(Node):
         self._thread.join(timeout=self._answer_s)
         super().destroy_node()
 
-    def _serve(self, wish: Callable[[], None], answer: str) -> Callable:
+    def _serve(
+        self, wish: Callable[[], None], answer: str
+    ) -> Callable[[Trigger.Request, Trigger.Response], Trigger.Response]:
         def serve(_: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
             wish()
             summary = ", ".join(f"{name} {state.value}" for name, state in self._states.items())

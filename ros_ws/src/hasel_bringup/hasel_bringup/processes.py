@@ -38,7 +38,7 @@ class Processes:
         self._folder = folder
         folder.mkdir(parents=True, exist_ok=True)
         self._environment = {**os.environ, "PYTHONUNBUFFERED": "1", **environment}
-        self._running: dict[str, subprocess.Popen] = {}
+        self._running: dict[str, subprocess.Popen[bytes]] = {}
 
     def start(self, package: str, name: str, *arguments: str) -> None:
         """Start an executable."""

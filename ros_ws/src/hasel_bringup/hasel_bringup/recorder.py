@@ -8,6 +8,7 @@ import math
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import TypeAlias
 
 from hasel_common.declared_parameters import declare
 from hasel_common.endpoints import Role, subscription
@@ -24,6 +25,7 @@ from rcl_interfaces.srv import GetParameters, ListParameters
 from rclpy.client import Client
 from rclpy.node import Node
 from rclpy.parameter import parameter_value_to_python
+from rclpy.task import Future
 from std_srvs.srv import Trigger
 
 from hasel_bringup.bringup_parameters import RECORDER
@@ -34,6 +36,8 @@ PACKAGES = ("hasel_recording", "hasel_driver", "hasel_tracker", "hasel_sim", "ha
 _ASKED_EVERY_S = 1.0
 _INTERNAL = ("qos_overrides.", "start_type_description_service", "use_sim_time")
 _SECRETIVE = "hasel_virtual_camera"  # what it hides is not for recordings
+
+_Message: TypeAlias = SupplyState | BendingAngle | RunningError
 
 
 class RecorderNode(ManagedNode):
@@ -53,7 +57,7 @@ class RecorderNode(ManagedNode):
         self.create_service(Trigger, "recorder/start", partial(self._serve, self._start))
         self.create_service(Trigger, "recorder/stop", partial(self._serve, self._stop))
 
-    def _write(self, name: str, message) -> None:
+    def _write(self, name: str, message: _Message) -> None:
         if self._recorder is None or _is_unknown(message):
             return
         stamp_ns = nanoseconds(message.header.stamp)
@@ -83,15 +87,15 @@ class RecorderNode(ManagedNode):
     def _stop(self) -> str:
         if self._recorder is None:
             raise BringupError("Nothing is being recorded: start it first (recorder/start).")
-        self._finish(self._path)
+        self._finish(self._recorder, self._path)
         return str(self._path)
 
     @property
     def _part(self) -> Path:
         return self._path.with_name(f"{self._path.name}.part")
 
-    def _finish(self, path: Path) -> None:
-        recorder, self._recorder = self._recorder, None
+    def _finish(self, recorder: McapRecorder, path: Path) -> None:
+        self._recorder = None
         recorder.describe({**self._provenance(), **self._made_by})  # with what nodes have answered since
         recorder.close()
         self._part.rename(path)
@@ -99,7 +103,7 @@ class RecorderNode(ManagedNode):
     def deactivate(self) -> None:
         """Finish what is being recorded, as interrupted."""
         if self._recorder is not None:
-            self._finish(self._path.with_name(f"{self._path.stem}_interrupted.mcap"))
+            self._finish(self._recorder, self._path.with_name(f"{self._path.stem}_interrupted.mcap"))
 
     def _serve(
         self, action: Callable[[], str], _: Trigger.Request, response: Trigger.Response
@@ -127,7 +131,7 @@ def _path(folder: str, name: str) -> Path:
     return path.with_name(f"{name}.mcap")
 
 
-def _is_unknown(message) -> bool:
+def _is_unknown(message: _Message) -> bool:
     """Whether this is the state of a supply that does not know its voltage: no sample of it."""
     return isinstance(message, SupplyState) and not all(map(math.isfinite, message.commanded_voltage))
 
@@ -169,14 +173,14 @@ class OtherNodes:
         if not (lister.service_is_ready() and getter.service_is_ready()):
             return
 
-        def listed(future) -> None:
+        def listed(future: Future) -> None:
             names = [n for n in future.result().result.names if not n.startswith(_INTERNAL)]
             self._get(name, names)
 
         lister.call_async(ListParameters.Request()).add_done_callback(listed)
 
     def _get(self, name: str, names: list[str]) -> None:
-        def got(future) -> None:
+        def got(future: Future) -> None:
             values = map(parameter_value_to_python, future.result().values)
             self._values[name] = dict(zip(names, values, strict=False))
 

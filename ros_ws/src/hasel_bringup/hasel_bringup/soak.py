@@ -5,8 +5,10 @@ import argparse
 import os
 import time
 from collections import defaultdict
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import psutil
@@ -72,7 +74,7 @@ class Soak:
         package, *words = NODES[name]
         self._processes.start(package, name, *(word.format(folder=self._folder) for word in words))
 
-    def _note(self, topic: str):
+    def _note(self, topic: str) -> Callable[[Any], None]:
         stamps = self._stamps[topic]
         return lambda message: stamps.append(nanoseconds(message.header.stamp))
 

@@ -17,6 +17,7 @@ from datetime import datetime
 from functools import wraps
 from itertools import takewhile
 from pathlib import Path
+from typing import Any
 
 BAD_INPUT, UNEXPECTED, INTERRUPTED = 2, 70, 130
 _PERIOD_S = 0.5
@@ -40,7 +41,7 @@ def command(main: Callable[..., int | None]) -> Callable[..., int]:
     """
 
     @wraps(main)
-    def guarded(*arguments, **options) -> int:
+    def guarded(*arguments: Any, **options: Any) -> int:
         def work() -> int | None:
             given = arguments[0] if arguments and arguments[0] is not None else sys.argv[1:]
             if "--version" in takewhile(lambda each: each not in ("--", "--ros-args"), given):

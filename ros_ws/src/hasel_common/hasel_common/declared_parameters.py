@@ -26,12 +26,12 @@ def descriptor(parameter: NodeParameter, checked_elsewhere: bool = False) -> Par
     )
     if parameter.choices:
         told.additional_constraints = "one of " + ", ".join(parameter.choices)
-    if parameter.low is not None and isinstance(parameter.default, float):
-        span = FloatingPointRange(from_value=float(parameter.low), to_value=float(parameter.high))
-        told.floating_point_range = [span]
-    elif parameter.low is not None:
-        span = IntegerRange(from_value=int(parameter.low), to_value=int(parameter.high), step=1)
-        told.integer_range = [span]
+    if parameter.span is not None:
+        low, high = parameter.span
+        if isinstance(parameter.default, float):
+            told.floating_point_range = [FloatingPointRange(from_value=float(low), to_value=float(high))]
+        else:
+            told.integer_range = [IntegerRange(from_value=int(low), to_value=int(high), step=1)]
     return told
 
 

@@ -4,6 +4,7 @@
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from typing import Any
 
 import rclpy
 from rclpy._rclpy_pybind11 import InvalidHandle, RCLError
@@ -101,7 +102,7 @@ class ManagedNode(LifecycleNode):
 
     expected_errors: tuple[type[Exception], ...] = ()
 
-    def __init__(self, name: str, **options) -> None:
+    def __init__(self, name: str, **options: Any) -> None:
         super().__init__(name, **options)
         self.active = False
         self._starting = False
@@ -162,7 +163,7 @@ class ManagedNode(LifecycleNode):
         """Close everything; the node may be configured again."""
         return self.on_shutdown(state)
 
-    def _attempt(self, work) -> TransitionCallbackReturn:
+    def _attempt(self, work: Callable[[], None]) -> TransitionCallbackReturn:
         try:
             work()
         except self.expected_errors as error:

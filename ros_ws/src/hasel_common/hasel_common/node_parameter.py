@@ -27,6 +27,17 @@ class NodeParameter:
     choices: tuple[str, ...] = ()
     changeable: bool = False
 
+    def __post_init__(self) -> None:
+        if (self.low is None) != (self.high is None):
+            raise ValueError(
+                f"{self.name} has one end of a range, both or none were expected: give low and high."
+            )
+
+    @property
+    def span(self) -> tuple[float, float] | None:
+        """Lowest and highest value; None where any will do."""
+        return None if self.low is None or self.high is None else (self.low, self.high)
+
     @property
     def usage(self) -> tuple[str, Any, str]:
         """Name, default and meaning with unit and range, for `--help`."""

@@ -30,9 +30,9 @@ class _Reader(yaml.SafeLoader):
         for first, known in yaml.SafeLoader.yaml_implicit_resolvers.items()
     }
 
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict:
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         """A dictionary. Raises ConstructorError for a key that is there twice."""
-        known: dict[tuple, Any] = {}
+        known: dict[tuple[str, str], Any] = {}
         for key, value in node.value:
             name = (key.tag, str(key.value))
             if name in known:

@@ -2,7 +2,7 @@
 """What a node answers to --help, and which arguments it takes."""
 
 import pytest
-from hasel_common.node_parameter import answer_help, user_arguments
+from hasel_common.node_parameter import NodeParameter, answer_help, user_arguments
 
 PARAMETERS = [("rate", 1.5, "angles per second"), ("effects", [""], "added"), ("quiet", False, "says less")]
 
@@ -32,3 +32,11 @@ def test_arguments_for_ros_are_left_to_ros():
     given = ["a", "--ros-args", "-p", "rate:=3", "--help", "--", "b"]
     assert user_arguments(given) == ["a", "b"]
     assert answer_help("simulator", "Simulates.", PARAMETERS, given[1:5]) is None
+
+
+def test_a_range_has_two_ends():
+    """One end alone would never be checked."""
+    assert NodeParameter("rate", 120.0, "of the camera", "1/s", 1, 1000).span == (1, 1000)
+    assert NodeParameter("quiet", False, "says less").span is None
+    with pytest.raises(ValueError, match="rate has one end of a range"):
+        NodeParameter("rate", 120.0, "of the camera", "1/s", low=1)

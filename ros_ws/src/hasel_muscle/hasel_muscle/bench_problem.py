@@ -82,7 +82,7 @@ class BenchProblem(Problem):
     @cached_property
     def repeatability(self) -> float | None:
         """Standard deviation of lifts alike, by the answer's scale; None where no lift was repeated."""
-        groups: dict[tuple, list[float]] = {}
+        groups: dict[tuple[str, float, float], list[float]] = {}
         for run in self.runs:
             level, voltage, hold = (each[run.used] for each in (run.level, run.voltage, run.hold))
             for number in np.unique(hold[voltage != 0]):

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from hasel_sim.muscle.effect import muscle_catalogue
@@ -13,6 +14,7 @@ from hasel_sim.muscle.muscle import Muscle
 from hasel_sysid.estimation.fit import FittedModel
 from hasel_sysid.report.content import provenance
 from jinja2 import Environment, FunctionLoader, StrictUndefined
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from rich.table import Table
 
@@ -60,7 +62,9 @@ def stroke_table(
     return table
 
 
-def _rows(problem: BenchProblem, laws: Sequence[Muscle], mark: str) -> Iterator[tuple]:
+def _rows(
+    problem: BenchProblem, laws: Sequence[Muscle], mark: str
+) -> Iterator[tuple[float, tuple[str, ...], str]]:
     """Voltage [V], the other cells, and the mark."""
     for run in problem.runs:
         answers = [run.measured, *(run.predicted(law) for law in laws)]
@@ -126,7 +130,7 @@ def lift_table(swings: Swinging) -> Table:
     return table
 
 
-def to_json(result: BenchResult) -> dict:
+def to_json(result: BenchResult) -> dict[str, Any]:
     """The same for other programs."""
     found, rival, swings = result.found, result.rival, result.swings
     return {
@@ -207,7 +211,7 @@ def _lifts(problem: BenchProblem, unit: str, values: np.ndarray) -> tuple[np.nda
     return problem.levels[here][first], np.bincount(hold, values[here]) / np.bincount(hold)
 
 
-def _falling(axes, found: BenchImprovement, unit: str, factor: float) -> None:
+def _falling(axes: Axes, found: BenchImprovement, unit: str, factor: float) -> None:
     names = [stage_name(stage, number) for number, stage in enumerate(found.stages)]
     place = np.arange(len(names))
     for side, label, colour in ((-0.2, "fitted", "#1a73e8"), (0.2, "unseen", "#f29900")):
@@ -221,7 +225,7 @@ def _falling(axes, found: BenchImprovement, unit: str, factor: float) -> None:
     axes.legend(fontsize=8, frameon=False)
 
 
-def _force_strain(axes, muscle: Muscle, highest: float) -> None:
+def _force_strain(axes: Axes, muscle: Muscle, highest: float) -> None:
     top = muscle.contraction(np.zeros(1), np.array([highest]), np.zeros(1), 0.0)[0] / muscle.rest_length
     strain = np.linspace(0.0, top, 81)
     for share, colour in ((1.0, "#1a73e8"), (0.75, "#7baaf7"), (0.5, "#aecbfa")):

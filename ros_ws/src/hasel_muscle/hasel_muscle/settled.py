@@ -1,6 +1,7 @@
 # Copyright 2026 HASEL swimmer maintainers. SPDX-License-Identifier: Apache-2.0
 """From samples to settled frames: the law is one of balance, so what still rings or flows is left out."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -119,7 +120,7 @@ def _frames(recording: BenchRecording) -> tuple[np.ndarray, ...]:
     starts = np.flatnonzero(np.concatenate([[True], np.diff(number) > 0]))
     ends = [*starts[1:], len(number)]
 
-    def gathered(series: np.ndarray, how) -> np.ndarray:
+    def gathered(series: np.ndarray, how: Callable[[np.ndarray], np.floating]) -> np.ndarray:
         parts = (series[a:b] for a, b in zip(starts, ends, strict=True))
         known = (part[np.isfinite(part)] for part in parts)
         return np.array([how(part) if len(part) else np.nan for part in known])

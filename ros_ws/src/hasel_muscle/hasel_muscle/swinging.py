@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
+from typing import Any
 
 import numpy as np
 from hasel_sim.muscle.muscle import Muscle
@@ -82,7 +83,7 @@ class Swinging:
             f"({values}) is {seen} off, {alone} without{others if any(e.unseen for e in self.lifts) else ''}."
         )
 
-    def to_json(self) -> dict:
+    def to_json(self) -> dict[str, Any]:
         """Plain numbers."""
         return {
             "values": self.values,

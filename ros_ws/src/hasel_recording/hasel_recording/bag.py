@@ -56,7 +56,7 @@ class McapFile:
             return []
         encoding, schema = self.kinds[topic]
         found = schema.name if schema else "no type"
-        if found != type_name:
+        if schema is None or found != type_name:
             raise RecordingError(
                 f"{self.path}: topic {topic} holds {found}, but {type_name} is expected; remap the topic."
             )
@@ -85,8 +85,8 @@ class McapFile:
         """Return what a topic is called here: its name, or the same in another namespace where there is only that."""
         if topic in self.messages or topic not in TOPIC_TYPES:
             return topic
-        same = [name for name in self.messages if known_as(name) == topic and self.kinds[name][1]]
-        names = sorted(name for name in same if self.kinds[name][1].name == TOPIC_TYPES[topic])
+        same = [(name, self.kinds[name][1]) for name in self.messages if known_as(name) == topic]
+        names = sorted(name for name, kind in same if kind and kind.name == TOPIC_TYPES[topic])
         if len(names) > 1:
             raise RecordingError(
                 f"{self.path} has {' and '.join(names)}, of {len(names)} rigs: record one rig by itself "

@@ -6,7 +6,7 @@ import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from hasel_common.command_entry import command
 
@@ -63,7 +63,13 @@ def add_map_option(parser: argparse.ArgumentParser, example: str) -> None:
 class _Mapping(argparse.Action):
     """Collects the pairs of every --map."""
 
-    def __call__(self, parser, namespace, values, option_string=None) -> None:
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: Any,
+        option_string: str | None = None,
+    ) -> None:
         """Add the pairs of one --map."""
         try:
             setattr(namespace, self.dest, {**getattr(namespace, self.dest), **parse_map(values)})

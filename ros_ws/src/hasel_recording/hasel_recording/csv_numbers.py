@@ -26,7 +26,7 @@ NOTATIONS = (("", POINT), ("", ","), (",", POINT), (POINT, ","), *product((BLANK
 CLOCK = re.compile(r"(?:\d+:)?\d{1,2}:\d{2}(?:[.,]\d*)?")
 
 
-def _grammar(group: str, point: str) -> re.Pattern:
+def _grammar(group: str, point: str) -> re.Pattern[str]:
     digits = rf"(?:[1-9]\d{{0,2}}(?:{group}\d{{3}})+|\d+)" if group else r"\d+"
     return re.compile(rf"[+-]?(?:{digits}(?:{point}\d*)?|{point}\d+)(?:[eE][+-]?\d+)?")
 

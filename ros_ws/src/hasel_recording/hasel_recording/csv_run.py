@@ -33,7 +33,7 @@ def read_csv(path: Path, mapping: Mapping[str, str] | None = None, own_drive: bo
     numbers = CsvNumbers(text)
     time_s = numbers.times(columns.time)
     markers = _markers(columns, numbers)
-    sin_theta = _angle(columns, numbers, markers)
+    sin_theta = _angle(path, columns, numbers, markers)
     if not np.isfinite(sin_theta).any():
         raise RecordingError(
             f"{path} has no frame with an angle: fill in the column, or track the markers again."
@@ -78,11 +78,13 @@ def _markers(columns: Columns, numbers: CsvNumbers) -> np.ndarray | None:
     return np.column_stack(table).reshape(len(table[0]), -1, 2)
 
 
-def _angle(columns: Columns, numbers: CsvNumbers, markers: np.ndarray | None) -> np.ndarray:
+def _angle(path: Path, columns: Columns, numbers: CsvNumbers, markers: np.ndarray | None) -> np.ndarray:
     if columns.sin_theta:
         return numbers.column(columns.sin_theta, may_be_missing=True)
     if columns.theta:
         return np.sin(numbers.column(columns.theta, may_be_missing=True))
+    if markers is None:
+        raise RecordingError(f"{path} has no angle: it needs a column sin_theta or theta, or markers.")
     three = markers[:, [columns.marker_names.index(name) for name in MARKER_NAMES]]
     return sin_theta_from_markers(three * (1, -1) if columns.marker_unit == "px" else three)
 
@@ -142,7 +144,7 @@ def write_csv(recording: Recording, path: Path) -> None:
     if recording.markers is not None:
         names += marker_columns(recording.marker_names, recording.marker_unit)
         columns += list(recording.markers.reshape(len(recording.time_s), -1).T)
-    if recording.drive_time_s is not None:
+    if recording.drive_time_s is not None and recording.drive_values is not None:
         own = drive_path(path)
         metadata[DRIVE_KEY] = own.name
         drive_names = [TIME, *(channel.column for channel in recording.channels)]

@@ -278,5 +278,7 @@ def _measured(recording: Recording) -> Iterator[tuple[int, str, dict[str, Any]]]
 
 
 def _simulated(recording: Recording) -> Iterator[tuple[int, str, dict[str, Any]]]:
+    if recording.simulated_time_s is None or recording.simulated_sin_theta is None:
+        return
     for time, sine in zip(recording.simulated_time_s, recording.simulated_sin_theta.tolist(), strict=True):
         yield _nanoseconds(time), SIMULATED, bending_angle_message(sine)

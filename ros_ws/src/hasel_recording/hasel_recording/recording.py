@@ -83,7 +83,7 @@ class Recording:
     simulated_time_s, simulated_sin_theta: [k], what a simulator said during the run; None when not recorded.
     understood: what the reader made of columns that are not called as expected, one sentence each.
 
-    Raises RecordingError where drive or markers do not have one column per name.
+    Raises RecordingError where drive or markers do not have one column per name, or times come without what was then.
     """
 
     name: str
@@ -103,6 +103,14 @@ class Recording:
     understood: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        for what, times, values in (
+            ("exact drive", self.drive_time_s, self.drive_values),
+            ("simulated angle", self.simulated_time_s, self.simulated_sin_theta),
+        ):
+            if (times is None) != (values is None):
+                raise RecordingError(
+                    f"{self.name} has times or values of its {what}, but not both: give both, or neither."
+                )
         for signal in (self.drive_signal, self.drive_values):
             if signal is not None and signal.shape[1] != len(self.channels):
                 raise RecordingError(
@@ -173,7 +181,7 @@ class Recording:
 
     def recorded_drive(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the drive as it was recorded, ripple included, in the form of `drive`."""
-        if self.drive_time_s is not None:
+        if self.drive_time_s is not None and self.drive_values is not None:
             return self.drive_time_s, self.drive_values
         if self.drive_signal is not None:
             return self.time_s, self.drive_signal

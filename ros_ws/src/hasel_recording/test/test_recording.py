@@ -41,6 +41,14 @@ def test_any_channel_may_drive_a_body(driven):
         _ = run.voltage
 
 
+def test_instants_come_with_what_was_then(driven):
+    """Times of the drive or of the simulated angle without values, or values without times, are refused."""
+    for name in ("drive_time_s", "simulated_time_s", "simulated_sin_theta"):
+        alone = dict.fromkeys(("drive_time_s", "drive_values", "simulated_time_s", "simulated_sin_theta"))
+        with pytest.raises(RecordingError, match="but not both"):
+            replace(driven, **{**alone, name: np.zeros(3)})
+
+
 def test_every_signal_and_marker_has_a_name(driven):
     """Drive and markers need one column per name."""
     with pytest.raises(RecordingError, match="3 signals, but names 2 channels"):

@@ -4,6 +4,7 @@
 from collections.abc import Sequence
 from concurrent.futures import Executor, as_completed
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from hasel_common.progress import Workload
@@ -94,7 +95,7 @@ class RunComparison:
             else float("nan")
         )
 
-    def to_json(self) -> dict:
+    def to_json(self) -> dict[str, Any]:
         """Plain numbers and words."""
         return {
             "name": self.name,
@@ -172,7 +173,7 @@ class Comparison:
         """Error for every frequency."""
         return error_by_frequency([run.series for run in self.runs])
 
-    def to_json(self) -> dict:
+    def to_json(self) -> dict[str, Any]:
         """Everything but the series, as plain numbers and words."""
         return {
             "model": self.label,
@@ -202,7 +203,7 @@ class Comparison:
     __repr__ = __str__
 
 
-def _row(row: ConditionError, key: str) -> dict:
+def _row(row: ConditionError, key: str) -> dict[str, Any]:
     return {key: row.condition, "label": row.label, "runs": row.runs, "mae": row.mean_absolute_error}
 
 

@@ -172,7 +172,7 @@ def _columns(channels: Sequence[DriveChannel]) -> str:
 def load_experiments(
     paths: Iterable[str | Path],
     mapping: Mapping[str, str] | str | None = None,
-    drives: Sequence[str | Path] | None = None,
+    drives: Sequence[str | Path | None] | None = None,
     names: Sequence[str] | None = None,
 ) -> list[Experiment]:
     """Read recordings (.csv, .mcap) as experiments.

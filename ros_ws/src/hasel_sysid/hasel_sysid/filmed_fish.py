@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from hasel_recording import DriveChannel, Recording
-from hasel_recording.recording import sin_theta_from_markers
+from hasel_recording.recording import MARKER_NAMES, sin_theta_from_markers
 from hasel_sim.swimming.given_shape import Beat, Fish, beat_shape
 from scipy.optimize import minimize_scalar
 
@@ -79,7 +79,8 @@ def _run(path: Path, frequency: float) -> FilmedRun:
         channels=(MOTOR,),
         path=path,
     )
-    return FilmedRun(frequency, replace(bare, sin_theta=sin_theta_from_markers(bare.angle_markers)))
+    three = markers[:, [names.index(name) for name in MARKER_NAMES]]
+    return FilmedRun(frequency, replace(bare, sin_theta=sin_theta_from_markers(three)))
 
 
 def _markers(path: Path) -> np.ndarray:

@@ -34,8 +34,8 @@ def diagnose(problem: Problem, fit: FittedModel, only: Sequence[str] | None = No
     policy, effects = replace(POLICY, most_effects=1), effects_of(fit.model, only)
     found = Search(problem, fit, effects, policy, _laws(problem), with_constants=False).run()
     said = diagnosis(found, effects)
-    named = said.best is not None and said.best.verdict is Verdict.MISSING
-    described = goodness_of_fit((said.best.fit if named else fit).evaluation, said.noise)
+    named = said.best.fit if said.best is not None and said.best.verdict is Verdict.MISSING else None
+    described = goodness_of_fit((fit if named is None else named).evaluation, said.noise)
     return replace(said.seen_beside(described.adequate), goodness=described)
 
 
@@ -193,7 +193,7 @@ def _wrong_constant(found: Searched, policy: Policy) -> WrongConstant | None:
 
 def _conclude(stages: list[Stage], reason: str, nothing_else: bool) -> Improvement:
     """The verdict: is what was added a law, does it explain anything, and does the model describe its runs?"""
-    last, noise = stages[-1], stages[0].diagnosis.noise
+    last, noise = stages[-1], stages[0].diagnosed.noise
     against = against_law(last.fit, noise, last.effects)
     no_laws = tuple(dict.fromkeys(trend.parameter.partition(".")[0] for trend in against))
     contradictions = tuple(map(str, against))
@@ -219,7 +219,7 @@ def _judged(
     nothing_else: whether what the last one leaves looks like noise. Nothing is explained, or found not to be missing,
     by a model that does not describe its runs to the noise.
     """
-    said, last = stages[0].diagnosis, stages[-1]
+    said, last = stages[0].diagnosed, stages[-1]
     described = goodness_of_fit(last.fit.evaluation, said.noise)
     by_effects = [stage for stage in stages if not stage.constant]
     left = share_left(by_effects[0].mae_fit, by_effects[-1].mae_fit, said.noise)
@@ -260,9 +260,9 @@ def _why_the_last(
 def _why_here(found: Searched, policy: Policy, first: Stage) -> tuple[str, bool]:
     chance, order = found.last.chance, found.choice.in_order
     nothing_else = chance >= policy.level
-    looked_at = "effects that were tried" if first.diagnosis.not_tried else "listed effects"
+    looked_at = "effects that were tried" if first.diagnosed.not_tried else "listed effects"
     if not order:
-        described = goodness_of_fit(first.fit.evaluation, first.diagnosis.noise).adequate
+        described = goodness_of_fit(first.fit.evaluation, first.diagnosed.noise).adequate
         if nothing_else and described:
             return f"Nothing is missing: noise alone looks like this in {chance:.0%} of cases.", True
         if nothing_else:

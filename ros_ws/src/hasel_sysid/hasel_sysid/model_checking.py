@@ -123,7 +123,7 @@ def _labels(evaluation: Evaluation) -> dict[str, list[str]]:
             unit = evaluation.model.drive_unit
             level = f"{np.abs(run.schedule.signal).max(initial=0.0):.5g} {unit}"
         side = [""] * count
-        if voltage is not None:
+        if run.schedule is not None and voltage is not None:
             first, *others = run.schedule.channels
             names = {1: first, -1: " or ".join(others), 0: ""}
             side = [names[s] for s in driven_side(voltage)]

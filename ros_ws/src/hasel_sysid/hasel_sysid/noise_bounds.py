@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from hasel_sim.drive.schedule import DriveSchedule
 from scipy.optimize import minimize
 
 from hasel_sysid.noise import FEWEST, LONGEST_CORRELATION, NoiseModel, estimate_noise
@@ -60,7 +61,7 @@ def noise_between_periods(evaluation: Evaluation) -> NoiseModel | None:
     )
 
 
-def _frames_per_period(time: np.ndarray, schedule) -> int | None:
+def _frames_per_period(time: np.ndarray, schedule: DriveSchedule | None) -> int | None:
     cycle = drive_cycle(time, schedule.at(time)) if schedule is not None and len(time) > 1 else None
     return None if cycle is None else max(1, round(cycle.period / float(np.median(np.diff(time)))))
 

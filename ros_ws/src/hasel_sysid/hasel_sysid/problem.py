@@ -276,7 +276,7 @@ class LowFidelityProblem(Problem):
     def __init__(self, of: Problem, known: Evaluation | None = None) -> None:
         """known: a model, evaluated by `of`; without one nothing is known of the error, and none is added."""
         super().__init__(of.experiments, of.pool, of.measured_noise, of.time_limit, of.workload)
-        self.known, self._of, self._lower = known, of, of.low_fidelity
+        self._known, self._of, self._lower = known, of, of.low_fidelity
         self._error: np.ndarray | float = 0.0
         if known is None:
             return
@@ -290,11 +290,18 @@ class LowFidelityProblem(Problem):
         else:
             self._lower = _as_it_is
 
+    @property
+    def known(self) -> Evaluation:
+        """The evaluated model whose error is added back. Raises SysidError where none was given."""
+        if self._known is None:
+            raise SysidError("of no model is the low-fidelity error known; give one that was evaluated")
+        return self._known
+
     def of_runs(self, numbers: Sequence[int]) -> "LowFidelityProblem":
         """The same with some of its runs only."""
         out = copy(self)
         out._of = self._of.with_experiments([self.experiments[number] for number in numbers])
-        out.experiments, out.known = out._of.experiments, self.known.of_runs(numbers)
+        out.experiments, out._known = out._of.experiments, self.known.of_runs(numbers)
         if isinstance(self._error, np.ndarray):
             out._error = np.concatenate([self._error[self.known.runs == number] for number in numbers])
         return out

@@ -55,13 +55,13 @@ def size_of(state: SessionState) -> float:
     return work_of(state.shown.model, [each.run for each in state.experiments])
 
 
-def fitted(state: SessionState, pool: Executor, work: Workload) -> Step:
-    """What is being tried, else the current step, fitted."""
+def fitted(state: SessionState, pool: Executor, work: Workload) -> tuple[Step, FittedModel]:
+    """What is being tried, else the current step, fitted; and the fit that it holds."""
     shown = state.shown
     model = prepared(shown.model, state.experiments)
     result = identify(Problem(state.experiments, pool, workload=work), model, "least_squares")
     label, did = (shown.label, (*shown.did, FIT)) if state.trial else ("fit", (FIT,))
-    return evaluated(state, label, result.model, pool, lambda *_: work.check(), did, result)
+    return evaluated(state, label, result.model, pool, lambda *_: work.check(), did, result), result
 
 
 def with_effect(

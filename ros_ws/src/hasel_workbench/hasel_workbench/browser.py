@@ -127,7 +127,7 @@ class BrowserPage:
         """Of everything that it has loaded."""
         return self.run("performance.getEntriesByType('resource').map(each => each.name)")
 
-    def send(self, method: str, **parameters: Any) -> dict:
+    def send(self, method: str, **parameters: Any) -> dict[str, Any]:
         """A command of the protocol and its answer. Raises SysidError with what the browser says against it."""
         self._number += 1
         message = {"id": self._number, "method": method, "params": parameters}
@@ -140,7 +140,7 @@ class BrowserPage:
                 return answer.get("result", {})
             self._heard(answer)
 
-    def _heard(self, event: dict) -> None:
+    def _heard(self, event: dict[str, Any]) -> None:
         details = event.get("params", {})
         if event.get("method") == "Runtime.exceptionThrown":
             thrown = details["exceptionDetails"]
@@ -158,7 +158,7 @@ def find_browser() -> str | None:
     return next((path for path in map(shutil.which, _NAMES) if path), None)
 
 
-class Browser(AbstractContextManager):
+class Browser(AbstractContextManager["Browser"]):
     """As a context manager, ends the browser. Raises SysidError where none is installed, or it does not start."""
 
     def __init__(self, program: str | None = None) -> None:

@@ -33,7 +33,7 @@ def _serve(options: argparse.Namespace) -> None:
             "the workbench needs NiceGUI 3, which is not installed: `pip install 'nicegui>=3,<4'` into the environment "
             "of this workspace"
         )
-    from hasel_workbench.jobs import Jobs
+    from hasel_workbench.jobs import Jobs, Progress
     from hasel_workbench.live.rig import RunningRig
     from hasel_workbench.page.access import opening
     from hasel_workbench.page.server import serve
@@ -58,7 +58,7 @@ def _serve(options: argparse.Namespace) -> None:
         if options.rig and (why := rig.connect(options.namespace)):
             print(f"note: {why}", file=sys.stderr)
 
-        def begin(progress) -> None:
+        def begin(progress: Progress) -> None:
             if options.validate:
                 session.load(options.validate, True, progress)
             session.load(options.recordings, False, progress)

@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from hasel_sysid.comparison import RunComparison
@@ -27,7 +28,7 @@ class Curves:
     error: float
     error_before: float | None
 
-    def header(self) -> dict:
+    def header(self) -> dict[str, Any]:
         """What the numbers are, as plain words and numbers."""
         names = ("time", "measured", "simulated", "before")[: len(self.rows)]
         return {
@@ -54,9 +55,9 @@ def curves(state: SessionState, run: str) -> Curves:
         error_before = other.mean_absolute_error
         rows.append(state.current.simulations[number].sin_theta + other.series.offset - series.offset)
     driven: Sequence[tuple[float, float, int]] = ()
-    if series.drive_time is not None:
+    if series.drive is not None:
         ends = float(time[0]), float(time[-1])
-        driven = driven_stretches(series.drive_time, series.drive_values, *ends)
+        driven = driven_stretches(*series.drive, *ends)
     unseen = number >= len(state.experiments)
     return Curves(run, unseen, np.array(rows, dtype=np.float32), tuple(driven), error, error_before)
 

@@ -2,12 +2,14 @@
 """The moving body as one array of 32-bit numbers: nodes, strain and contraction, with the measured markers over it."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from hasel_sim.mesh.mesh import Mesh, reference_gradients
 from hasel_sim.model import Model
 from hasel_sim.model_mesh import model_mesh
 from hasel_sim.run import Simulation
+from hasel_sysid.errors import SysidError
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.report.shape import measured_tail
 
@@ -35,7 +37,7 @@ class Film:
     nodes: int
     muscles: int
 
-    def header(self) -> dict:
+    def header(self) -> dict[str, Any]:
         """What the numbers are, as plain words and numbers."""
         return {
             "run": self.run,
@@ -58,6 +60,8 @@ def film(model: Model, experiment: Experiment, simulation: Simulation, offset: f
     usual = float(np.median(np.diff(simulation.time))) if len(simulation.time) > 1 else 1.0
     every = max(1, round(1.0 / (_FRAMES_PER_SECOND * usual))) if usual > 0 else 1
     shown = np.arange(0, len(simulation.time), every)
+    if simulation.shapes is None:
+        raise SysidError(f"the simulation of {experiment.name} kept no shapes; simulate it with them")
     shapes = simulation.shapes[shown]
     measured = measured_markers(experiment, simulation.markers, offset, model)[shown]
     count = len(shapes)

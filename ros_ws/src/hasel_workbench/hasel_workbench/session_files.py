@@ -9,6 +9,7 @@ from dataclasses import replace
 from datetime import datetime
 from itertools import groupby
 from pathlib import Path
+from typing import Any
 
 from hasel_sim.model import save_model
 from hasel_sysid.errors import SysidError
@@ -16,7 +17,7 @@ from hasel_sysid.experiment import Experiment
 from hasel_sysid.report.content import ReportContent
 from hasel_sysid.report.from_improvement import next_run, ranked_rows, what_remains
 from hasel_sysid.report.from_results import comparison_content, parameter_rows
-from hasel_sysid.report.shape import simulated_shapes
+from hasel_sysid.report.shape import Shapes, simulated_shapes
 from hasel_sysid.report.write import write_report
 
 from hasel_workbench.jobs import Progress
@@ -112,13 +113,15 @@ def _loaded(experiments: Sequence[Experiment], reading: ReadingChoices) -> str:
 
 
 def _read(experiments: Sequence[Experiment], columns: Mapping[str, str], reading: ReadingChoices) -> str:
+    paths = []
     for each in experiments:
         if each.recording.path is None:
             raise SysidError(f"{each.name} is in no file, so no script can read it again; save it first")
-    parts = [f"        {str(each.recording.path.resolve())!r}," for each in experiments]
+        paths.append(each.recording.path)
+    parts = [f"        {str(path.resolve())!r}," for path in paths]
     if columns:
         parts.append(f"        columns={columns!r},")
-    drives = [reading.drives.get(str(each.recording.path)) for each in experiments]
+    drives = [reading.drives.get(str(path)) for path in paths]
     if any(drives):
         parts.append(f"        drives={[None if d is None else str(Path(d).resolve()) for d in drives]!r},")
     return "\n".join(["h.load(", *parts, "    )"])
@@ -158,7 +161,7 @@ def report_content(state: SessionState, pool: Executor) -> ReportContent:
         steps = (steps[0], *steps[1 - _MOST_MODELS :])
     comparisons = [replace(step.comparison, label=step.label) for step in steps]
 
-    def shapes(*given):
+    def shapes(*given: Any) -> Shapes | None:
         return pool.submit(simulated_shapes, *given).result()
 
     content = comparison_content(comparisons, detailed=-1, shapes_of=shapes)

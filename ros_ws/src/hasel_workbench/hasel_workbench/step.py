@@ -81,7 +81,7 @@ def predicted(step: Step, number: int, values: Mapping[str, float]) -> Predictio
     Raises ModelError for a parameter that the model has not got.
     """
     change = {name: value - step.model.parameter(name).value for name, value in values.items()}
-    evaluation = step.seen if number < len(step.experiments) else step.unseen
+    evaluation = step.seen if step.unseen is None or number < len(step.experiments) else step.unseen
     simulation, by = step.simulations[number], [change.get(name, 0.0) for name in evaluation.names]
     sin_theta = simulation.sin_theta + simulation.slopes @ by
     unseen = None if step.unseen is None else _error(step.unseen, change)

@@ -19,6 +19,7 @@ from hasel_sysid.command_line.inputs import chosen_model
 from hasel_sysid.comparison import with_amplitudes
 from hasel_sysid.errors import SysidError
 from hasel_sysid.expected_work import USUAL_SPEED, plan_of_diagnosis, plan_of_fit
+from hasel_sysid.experiment import Experiment
 from hasel_sysid.improvement import diagnose
 from hasel_sysid.problem import Problem
 
@@ -124,7 +125,7 @@ class Workbench:
         with self._change() as state:
             plan = plan_of_fit(acts.size_of(state))
             work = Workload(plan, usual_speed=USUAL_SPEED, tell=progress)
-            step = acts.fitted(state, self.pool, work)
+            step, _ = acts.fitted(state, self.pool, work)
             self._commit(replace(state, trial=step) if state.trial else self._kept(state, step))
 
     def diagnose(self, progress: Progress = silent) -> None:
@@ -134,11 +135,13 @@ class Workbench:
                 raise SysidError(f"'{state.trial.label}' is being tried; keep it or take it back first")
             plan = plan_of_diagnosis(acts.size_of(state), len(effects_of(state.current.model, self.effects)))
             work = Workload(plan, usual_speed=USUAL_SPEED, tell=progress)
-            if state.current.fit is None:
-                state = self._kept(state, acts.fitted(state, self.pool, work))
+            fit = state.current.fit
+            if fit is None:
+                step, fit = acts.fitted(state, self.pool, work)
+                state = self._kept(state, step)
                 self._commit(state)
             problem = Problem(state.experiments, self.pool, workload=work)
-            found = diagnose(problem, state.current.fit, self.effects)
+            found = diagnose(problem, fit, self.effects)
             self._commit(replace(state, diagnosis=found, diagnosed=state.at, suggestions=()))
 
     def switch_on(self, effect: str, progress: Progress = silent) -> None:
@@ -243,7 +246,13 @@ class Workbench:
         state = replace(state, experiments=fitted, unseen=others)
         self._commit(self._judged_anew(state, model, progress) if fitted else state)
 
-    def _regroup(self, state: SessionState, fitted: list, unseen: list, progress: Progress) -> None:
+    def _regroup(
+        self,
+        state: SessionState,
+        fitted: Sequence[Experiment],
+        unseen: Sequence[Experiment],
+        progress: Progress,
+    ) -> None:
         if not fitted:
             raise SysidError("no run to fit would be left; expected one at least: load another one first")
         state = replace(state, experiments=tuple(fitted), unseen=tuple(unseen))

@@ -60,7 +60,7 @@ def _outcomes_at(path: Path) -> dict[str, Outcome]:
     """Of an earlier run, by the name of their case. Raises BenchmarkError where there are none."""
     if path.is_dir():
         found = [outcome_in(file) for file in path.glob("**/*.json")]
-        known = {outcome.case: outcome for outcome in found}
+        known = {outcome.case: outcome for outcome in found if outcome is not None}
     else:
         known = _told_on(path)
     if not known:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from hasel_bringup.hidden_truth.hidden import both_signs, draw_hidden_values
 from hasel_common.names import nearest_name
+from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.model import load_model
 from hasel_sim.run import Run
 from hasel_sysid.candidates import candidate_effects
@@ -168,21 +169,29 @@ class SetUpFaultHidden:
         return set(every) if self.everywhere else {fitted[int(generator.integers(len(fitted)))]}
 
 
+def _schedule(run: Run) -> DriveSchedule:
+    if run.schedule is None:
+        raise BenchmarkError(
+            f"{run.name} is passive, but a fault of the drive needs one: choose another run."
+        )
+    return run.schedule
+
+
 def _commanded(run: Run, **otherwise: Any) -> Run:
-    return replace(run, schedule=replace(run.schedule, **otherwise))
+    return replace(run, schedule=replace(_schedule(run), **otherwise))
 
 
 def _dead(channel: int) -> Callable[[Run], Run]:
-    return lambda run: _commanded(run, signal=np.where(np.arange(2) == channel, 0.0, run.schedule.signal))
+    return lambda run: _commanded(run, signal=np.where(np.arange(2) == channel, 0.0, _schedule(run).signal))
 
 
 def _late(lag_s: float) -> Callable[[Run], Run]:
     """The camera's clock is ahead: what the body does is seen later than it was commanded."""
-    return lambda run: _commanded(run, time=run.schedule.time + lag_s)
+    return lambda run: _commanded(run, time=_schedule(run).time + lag_s)
 
 
 def _exchanged(run: Run) -> Run:
-    return _commanded(run, signal=run.schedule.signal[:, ::-1])
+    return _commanded(run, signal=_schedule(run).signal[:, ::-1])
 
 
 _OPPOSITE = ("wrong sign", "exchanged")

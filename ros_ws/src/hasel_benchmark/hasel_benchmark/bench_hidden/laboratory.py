@@ -70,12 +70,12 @@ def measure(
     fault = FAULTS[case.fault] if case.fault else None
     names = [run.name for run in runs]
     faulty = fault.runs(names[: len(fitted)], names, generator) if fault else set()
-    driven = [fault.drives(run) if run.name in faulty else run for run in runs]
+    driven = [fault.drives(run) if fault and run.name in faulty else run for run in runs]
     values, simulations = _as_far_as_it_goes(case, values, muscles, driven, pool)
     noises = [draw_noise(len(run.time), case.colour, generator) for run in runs]
     measured = []
     for run, simulation, noise in zip(runs, simulations, noises, strict=True):
-        sign = fault.sign if run.name in faulty else 1.0
+        sign = fault.sign if fault and run.name in faulty else 1.0
         angle = sign * simulation.sin_theta + noise + _OFFSET_RMS * generator.standard_normal()
         measured.append(seen(run, angle, exact_switches=not switch_on_frames))
     split = len(fitted)
@@ -124,12 +124,13 @@ def _half(identity: str, values: dict[str, float]) -> dict[str, float]:
 def seen(run: Run, sin_theta: np.ndarray, exact_switches: bool = False) -> Experiment:
     """A run as it is recorded: with the drive at the frames, or also at the instants at which it switched."""
     drive = run.schedule
+    exact = drive if exact_switches else None
     recording = Recording(
         run.name,
         run.time,
         sin_theta,
         drive_signal=None if drive is None else drive.at(run.time),
-        drive_time_s=drive.time if exact_switches else None,
-        drive_values=drive.signal if exact_switches else None,
+        drive_time_s=None if exact is None else exact.time,
+        drive_values=None if exact is None else exact.signal,
     )
     return Experiment(recording, run)

@@ -152,7 +152,7 @@ def _removed(error: tuple[float, float], floor: float) -> float:
     return (error[0] - error[1]) / excess if excess > 0 else np.nan
 
 
-def outcome_from_dict(content: dict) -> Outcome:
+def outcome_from_dict(content: dict[str, Any]) -> Outcome:
     """Read back what was kept as JSON."""
     lists = {
         name: tuple(content[name]) for name in ("hidden", "missing", "ranked", "mae_fitted", "mae_unseen")
@@ -162,7 +162,7 @@ def outcome_from_dict(content: dict) -> Outcome:
     return Outcome(**{**content, **lists, "groups": groups, "estimates": estimates})
 
 
-def judge(case: Case, laboratory: Laboratory, answer: dict, seconds: float) -> Outcome:
+def judge(case: Case, laboratory: Laboratory, answer: dict[str, Any], seconds: float) -> Outcome:
     """answer: what `improve --json` writes; seconds: how long it took."""
     stages, verdict = answer["stages"], answer["verdict"]
     return Outcome(
@@ -192,7 +192,9 @@ def _told_by(case: Case) -> dict[str, Any]:
     return {"case": case.name, "hidden": case.effects, **own}
 
 
-def _estimates(values: dict[str, dict[str, float]], fitted: dict[str, dict]) -> tuple[Estimate, ...]:
+def _estimates(
+    values: dict[str, dict[str, float]], fitted: dict[str, dict[str, Any]]
+) -> tuple[Estimate, ...]:
     """Parameters that have a value without effect; one that has none (a relaxation time) says nothing of its size."""
     own = [
         (f"{identity}.{p.name}", values[identity][p.name])

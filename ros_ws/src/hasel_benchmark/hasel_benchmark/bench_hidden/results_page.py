@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict
+from typing import Any
 
 import numpy as np
 from hasel_bringup.hidden_truth.truth import NUMERICS
@@ -15,7 +16,7 @@ _KEPT_OF_A_BAR = ("what", "value", "least", "most", "met", "interval", "cases")
 _WORDS = {True: "yes", False: "**no**", None: ""}
 
 
-def as_json(outcomes: Sequence[Outcome]) -> dict:
+def as_json(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     """Bars, confusion matrix and outcomes of every setting of the truth."""
     return {
         name: {
@@ -28,7 +29,7 @@ def as_json(outcomes: Sequence[Outcome]) -> dict:
     }
 
 
-def outcomes_of(content: dict) -> dict[str, Outcome]:
+def outcomes_of(content: dict[str, Any]) -> dict[str, Outcome]:
     """Read back the outcomes that `as_json` wrote, by the names of their cases."""
     found = [outcome_from_dict(one) for setting in content.values() for one in setting["outcomes"]]
     return {outcome.case: outcome for outcome in found}

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from dataclasses import asdict, replace
 from pathlib import Path
+from typing import Any
 
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model, load_model
@@ -21,11 +22,11 @@ from hasel_benchmark.bench_hidden.hidden_cases import Case
 from hasel_benchmark.bench_hidden.laboratory import Laboratory, measure
 from hasel_benchmark.bench_hidden.outcome import Outcome, failed, judge, outcome_from_dict
 
-Explain = Callable[[Laboratory, Executor], dict]
+Explain = Callable[[Laboratory, Executor], dict[str, Any]]
 """What is judged: from measurements to the content of `improve --json`."""
 
 
-def explain(laboratory: Laboratory, pool: Executor) -> dict:
+def explain(laboratory: Laboratory, pool: Executor) -> dict[str, Any]:
     """The content of `improve --json` for these measurements, starting from the default swimmer."""
     return answer(load_model("swimmer"), laboratory.fitted, laboratory.unseen, pool)
 
@@ -36,7 +37,7 @@ def answer(
     unseen: Sequence[Experiment],
     pool: Executor,
     only: Sequence[str] | None = None,
-) -> dict:
+) -> dict[str, Any]:
     """The content of `improve --json` for these experiments, starting from a model; only: candidate effects."""
     return improve(Problem(fitted, pool), prepared(model, fitted), Problem(unseen, pool), only).to_json()
 
@@ -46,7 +47,9 @@ def outcome_in(file: Path) -> Outcome | None:
     return outcome_from_dict(json.loads(file.read_text())["outcome"]) if file.is_file() else None
 
 
-def run_case(case: Case, explain: Explain, pool: Executor, cores: int = 1) -> tuple[Outcome, dict, dict]:
+def run_case(
+    case: Case, explain: Explain, pool: Executor, cores: int = 1
+) -> tuple[Outcome, dict[str, Any], dict[str, Any]]:
     """Outcome, hidden values and the answer of one case; a failure to simulate or to explain is an outcome too.
 
     cores: how many the pool has, for the record.
@@ -100,9 +103,9 @@ def run_cases(
 
 def _beside_each_other(
     cases: Sequence[Case], explain: Explain, pool: Executor, at_once: int
-) -> Iterator[tuple[Case, tuple[Outcome, dict, dict]]]:
+) -> Iterator[tuple[Case, tuple[Outcome, dict[str, Any], dict[str, Any]]]]:
     waiting = list(reversed(cases))
-    running: dict[Future, Case] = {}
+    running: dict[Future[tuple[Outcome, dict[str, Any], dict[str, Any]]], Case] = {}
     while waiting or running:
         while waiting and len(running) < at_once:
             case = waiting.pop()
@@ -112,7 +115,7 @@ def _beside_each_other(
             yield running.pop(future), future.result()
 
 
-def _keep(case: Case, outcome: Outcome, values: dict, answer: dict, folder: Path) -> None:
+def _keep(case: Case, outcome: Outcome, values: dict[str, Any], answer: dict[str, Any], folder: Path) -> None:
     content = {"case": asdict(case), "hidden_values": values, "outcome": asdict(outcome), "answer": answer}
     unfinished = folder / f"{case.name}.part"
     unfinished.write_text(json.dumps(content, indent=1))

@@ -43,11 +43,11 @@ class Bar:
     @property
     def bar(self) -> str:
         """The bar in words."""
-        if self.least is not None and self.most is not None:
-            return f"{self._text(self.least)}–{self._text(self.most)}"
-        if self.least is None and self.most is None:
-            return "–"
-        return f"≥ {self._text(self.least)}" if self.most is None else f"≤ {self._text(self.most)}"
+        if self.least is None:
+            return "–" if self.most is None else f"≤ {self._text(self.most)}"
+        if self.most is None:
+            return f"≥ {self._text(self.least)}"
+        return f"{self._text(self.least)}–{self._text(self.most)}"
 
     @property
     def measured(self) -> str:
@@ -183,9 +183,7 @@ def _times(outcomes: Sequence[Outcome]) -> list[Bar]:
     return found
 
 
-def _share(
-    what: str, held: Sequence[bool | None], least: float | None = None, most: float | None = None
-) -> Bar:
+def _share(what: str, held: Sequence[bool], least: float | None = None, most: float | None = None) -> Bar:
     if not held:
         return Bar(what, None, least, most, 0)
     interval = wilson_interval(sum(held), len(held))

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from types import ModuleType
 
 from diagnostic_msgs.msg import DiagnosticArray
 from hasel_common.endpoints import Role, subscription
@@ -174,7 +175,7 @@ def _files(folder: Path, pattern: str) -> list[Path]:
     return files
 
 
-def _call(command, arguments: Sequence[str]) -> None:
+def _call(command: ModuleType, arguments: Sequence[str]) -> None:
     """Run one of the commands as a user would; what it says of misleading recordings is enough.
 
     Raises BringupError when it fails.

@@ -141,7 +141,7 @@ class Session:
         if not_tried := found["verdict"]["not_tried"]:
             self._say(f"In the time for this demonstration not tried: {', '.join(not_tried)}.")
 
-    def _found(self) -> dict:
+    def _found(self) -> dict[str, Any]:
         return json.loads((self._folder / "improve.json").read_text(encoding="utf-8"))
 
     def _watch(self) -> None:
@@ -211,7 +211,7 @@ def _count(planned: Sequence[BoxRun]) -> str:
     return f"{runs} and {unseen} that the fit will not see" if unseen else runs
 
 
-def _in_words(found: dict) -> str:
+def _in_words(found: dict[str, Any]) -> str:
     stage = found["stages"][-1]
     parts = [
         f"{name} = {value_with_error(parameter['value'], parameter['std'], parameter['unit'])}"

@@ -11,6 +11,8 @@ from hasel_sim.model import Model
 from hasel_sim.run import Run
 from hasel_sim.simulate import simulate
 
+from hasel_bringup.errors import BringupError
+
 
 @dataclass(frozen=True)
 class Instant:
@@ -43,7 +45,12 @@ class CameraClock:
         self.newest_ns = None
 
     def until(self, stamp_ns: int, voltage: np.ndarray) -> list[Instant]:
-        """From the last state, whose voltage holds until then, to this one; nothing for one that is no later."""
+        """From the last state, whose voltage holds until then, to this one; nothing for one that is no later.
+
+        Raises BringupError before a run.
+        """
+        if self.newest_ns is None:
+            raise BringupError("No run has begun: begin one with its first state.")
         if stamp_ns <= self.newest_ns:
             return []
         frames = self.frames(self._next_ns, stamp_ns)

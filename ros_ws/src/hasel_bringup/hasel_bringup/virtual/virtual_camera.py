@@ -9,7 +9,9 @@ import os
 import queue
 import threading
 import time
+from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import cv2
 import numpy as np
@@ -62,7 +64,7 @@ class VirtualCameraNode(Node):
         )
         self._frame_id = frame_of(self, "camera")
         self._images = publisher(self, CompressedImage, IMAGES, Role.SAMPLES)
-        self._events: queue.SimpleQueue = queue.SimpleQueue()
+        self._events: queue.SimpleQueue[Callable[[], object]] = queue.SimpleQueue()
         self._tracked = 0
         self.real_time, sentence = self._judge_speed()
         self.get_logger().info(sentence)
@@ -76,7 +78,7 @@ class VirtualCameraNode(Node):
             Trigger, "camera/reveal", partial(self._tell, str(self._secret)), callback_group=slow
         )
 
-    def _value(self, name: str):
+    def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
 
     def _judge_speed(self) -> tuple[bool, str]:

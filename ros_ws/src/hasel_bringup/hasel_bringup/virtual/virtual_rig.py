@@ -9,6 +9,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from hasel_common.declared_parameters import declare, words
@@ -47,7 +48,7 @@ class VirtualBodyNode(Node):
         self._angles = publisher(self, BendingAngle, MEASURED, Role.SAMPLES)
         subscription(self, SupplyState, STATE, self._on_state, Role.EVERY_SAMPLE)
 
-    def _value(self, name: str):
+    def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
 
     def _warn(self, sentence: str) -> None:
@@ -70,7 +71,7 @@ def supply_and_driver(namespace: str) -> Iterator[Callable[[], None]]:
 
     namespace: of the driver, such as /hasel.
     """
-    processes: list[subprocess.Popen] = []
+    processes: list[subprocess.Popen[bytes]] = []
 
     def check() -> None:
         if any(process.poll() is not None for process in processes):
@@ -109,11 +110,11 @@ def supply_and_driver(namespace: str) -> Iterator[Callable[[], None]]:
                     process.wait()
 
 
-def _module(*words: str, stdout: int | None = None) -> subprocess.Popen:
+def _module(*words: str, stdout: int | None = None) -> subprocess.Popen[bytes]:
     return subprocess.Popen([sys.executable, "-m", *words], stdin=subprocess.DEVNULL, stdout=stdout)
 
 
-def _await_port(port: Path, board: subprocess.Popen) -> None:
+def _await_port(port: Path, board: subprocess.Popen[bytes]) -> None:
     end = time.monotonic() + _PATIENCE_S
     while not port.exists():
         if time.monotonic() > end or board.poll() is not None:

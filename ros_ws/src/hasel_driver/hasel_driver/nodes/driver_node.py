@@ -7,6 +7,7 @@ import signal
 import sys
 import threading
 import time
+from typing import Any
 
 import rclpy
 from hasel_common.command_entry import end_at_once_with_parent
@@ -58,7 +59,7 @@ LAST_STATE_S = 0.2  # for which the end waits until the last state has been hear
 class DriverNode(LifecycleNode):
     """Unconfigured: port closed. Inactive: telemetry. Active: may be armed, by the service `arm` only."""
 
-    def __init__(self, **options) -> None:
+    def __init__(self, **options: Any) -> None:
         super().__init__("hasel_driver", **{"namespace": NAMESPACE, **options})
         self._link: SupplyLink | None = None
         self._lifecycle_active = False

@@ -106,7 +106,7 @@ class DriverServices:
         node: Node,
         group: CallbackGroup,
         link: Callable[[], SupplyLink | None],
-        unchanging: AbstractContextManager,
+        unchanging: AbstractContextManager[object],
         check_arming: Callable[[], None],
         surroundings: HostSurroundings,
         claim: Claim,

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from hasel_common.endpoints import Role
 from hasel_common.managed_node import quiet_at_shutdown
@@ -17,8 +18,10 @@ from hasel_interfaces.action import RunExperiment
 from hasel_interfaces.msg import SupplyState
 from hasel_recording.errors import RecordingError
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action.server import ServerGoalHandle
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
+from rclpy.subscription import Subscription
 
 from hasel_driver.nodes.experiment_goal import plan_of
 from hasel_driver.nodes.experiment_recording import ExperimentRecording, chosen_path, reserve, reserve_unique
@@ -107,7 +110,7 @@ class ExperimentServer:
         self._node, self._link, self._group = node, link, group
         self._state_topic = node.resolve_topic_name(relative(STATE))
         self._recording: ExperimentRecording | None = None
-        self._watched: list = []
+        self._watched: list[Subscription] = []
         self._place = OneAtATime()
         self._server = ActionServer(
             node,
@@ -144,8 +147,8 @@ class ExperimentServer:
         if recording is not None and message.commanded_voltage[0] == message.commanded_voltage[0]:
             recording.write(self._state_topic, message)
 
-    def _writer(self, topic: str) -> Callable:
-        def write(message) -> None:
+    def _writer(self, topic: str) -> Callable[[Any], None]:
+        def write(message: Any) -> None:
             recording = self._recording
             if recording is not None:
                 recording.write(topic, message)
@@ -155,7 +158,7 @@ class ExperimentServer:
     def _accept(self, _: RunExperiment.Goal) -> GoalResponse:
         return GoalResponse.ACCEPT if self._place.promise() else GoalResponse.REJECT
 
-    def _execute(self, goal_handle) -> RunExperiment.Result:
+    def _execute(self, goal_handle: ServerGoalHandle) -> RunExperiment.Result:
         result = RunExperiment.Result()
         try:
             with self._place.taken(), self._cleared_at_its_end():
@@ -181,7 +184,9 @@ class ExperimentServer:
             if recording is not None:
                 recording.close()
 
-    def _run(self, plan: ExperimentPlan, goal_handle, result: RunExperiment.Result) -> list[str]:
+    def _run(
+        self, plan: ExperimentPlan, goal_handle: ServerGoalHandle, result: RunExperiment.Result
+    ) -> list[str]:
         """What went wrong, in words; nothing if the run and its recording are complete."""
         link = self._link()
         if link is None:
@@ -206,7 +211,11 @@ class ExperimentServer:
         return [f"the recording lacks: {text}" for text in recording.missing(progress.elapsed_s)]
 
     def _follow(
-        self, link: SupplyLink, goal_handle, plan: ExperimentPlan, recording: ExperimentRecording
+        self,
+        link: SupplyLink,
+        goal_handle: ServerGoalHandle,
+        plan: ExperimentPlan,
+        recording: ExperimentRecording,
     ) -> ExperimentProgress:
         """Until the run is over; cancelled where its client asks, or is gone, or nothing more can be recorded."""
         client = ClientWatch(self._node)
@@ -242,7 +251,7 @@ def _message_class(type_name: str) -> type:
     return getattr(importlib.import_module(f"{package}.{kind}"), name)
 
 
-def _conclude(goal_handle, success: bool) -> None:
+def _conclude(goal_handle: ServerGoalHandle, success: bool) -> None:
     if goal_handle.is_cancel_requested:
         goal_handle.canceled()
     elif success:

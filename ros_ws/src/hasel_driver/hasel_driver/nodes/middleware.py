@@ -15,7 +15,7 @@ from collections.abc import Callable, MutableMapping
 from pathlib import Path
 from typing import Any
 
-from rclpy._rclpy_pybind11 import Subscription
+from rclpy._rclpy_pybind11 import Subscription, WaitSet
 from rclpy.callback_groups import CallbackGroup
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
@@ -141,7 +141,9 @@ class IdentifiedSubscription(Waitable):
         raw: bool = False,
     ) -> None:
         super().__init__(group)
-        self._read = (lambda data: data) if raw else (lambda data: deserialize_message(data, kind))
+        self._read: Callable[[bytes], Any] = (
+            (lambda data: data) if raw else (lambda data: deserialize_message(data, kind))
+        )
         self._on_message = on_message
         check_is_valid_msg_type(kind)  # loads what rcl needs of it
         self._allocator = _rcutils.rcutils_get_default_allocator()
@@ -172,11 +174,11 @@ class IdentifiedSubscription(Waitable):
         """One subscription."""
         return NumberOfEntities(num_subs=1)
 
-    def add_to_wait_set(self, wait_set) -> None:
+    def add_to_wait_set(self, wait_set: WaitSet) -> None:
         """Called by the executor."""
         self._index = wait_set.add_subscription(self._subscription)
 
-    def is_ready(self, wait_set) -> bool:
+    def is_ready(self, wait_set: WaitSet) -> bool:
         """Called by the executor."""
         return wait_set.is_ready("subscription", self._index)
 
@@ -201,5 +203,5 @@ class IdentifiedSubscription(Waitable):
     def __enter__(self) -> None:
         self._subscription.__enter__()
 
-    def __exit__(self, *error) -> None:
+    def __exit__(self, *error: object) -> None:
         self._subscription.__exit__(*error)

@@ -153,9 +153,9 @@ class Claim:
             if holder is not None and holder.publisher == publisher:
                 holder.heard_s, holder.name = now_s, name  # which the graph may have told only now
                 return True, False
-            named = holder is not None and holder.name == name != UNNAMED
-            back = named and now_s - holder.heard_s > HOLDER_SILENT_S
-            if holder is None or back:
+            if holder is None or (
+                holder.name == name != UNNAMED and now_s - holder.heard_s > HOLDER_SILENT_S
+            ):  # nobody's, or it is back
                 self._holder = _Holder(publisher, name, now_s)
                 return True, True
             return False, False

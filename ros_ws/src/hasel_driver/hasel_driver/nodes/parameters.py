@@ -13,6 +13,7 @@ from hasel_driver.protocol.limits import limits_of
 
 if TYPE_CHECKING:  # commands that need the table only do without rclpy
     from rclpy.node import Node
+    from rclpy.parameter import Parameter
 
 LOWERABLE = "maximum_voltage"  # the one that may be changed, downwards, while it is in use
 FOLDERS = {"state_folder", "recording_directory", "waveform_directory", "history_file"}
@@ -31,10 +32,10 @@ class DriverParameter(NodeParameter):
             "number",
         ):
             raise LimitError(f"{self.name} is {value!r}, a {self._kind(self.default)} was expected.")
-        if self.low is not None and not self.low <= float(value) <= self.high:  # nor NaN
-            raise LimitError(
-                f"{self.name} is {value} {self.unit}, {self.low:g} to {self.high:g} was expected."
-            )
+        if self.span is not None:
+            low, high = self.span
+            if not low <= float(value) <= high:  # nor NaN
+                raise LimitError(f"{self.name} is {value} {self.unit}, {low:g} to {high:g} was expected.")
         if self.choices and value not in self.choices:
             near = nearest(str(value).lower(), self.choices, similarity=0.4)
             hint = f" Did you mean {near}?" if near else ""
@@ -156,7 +157,7 @@ def declare(node: "Node", in_use: Callable[[], bool], lower: Callable[[float], N
         )
         parameter.check(node.get_parameter(parameter.name).value)
 
-    def check(changes) -> SetParametersResult:
+    def check(changes: "Sequence[Parameter]") -> SetParametersResult:
         try:
             for change in changes:
                 if change.name in TABLE:
@@ -169,7 +170,7 @@ def declare(node: "Node", in_use: Callable[[], bool], lower: Callable[[float], N
     node.add_on_set_parameters_callback(check)
 
 
-def values(node: "Node") -> dict:
+def values(node: "Node") -> dict[str, Any]:
     """The present value of every parameter; whole numbers as floats where floats are meant."""
     return {
         parameter.name: parameter.convert(node.get_parameter(parameter.name).value)
@@ -223,7 +224,7 @@ def check_files(node_name: str, full_name: str, arguments: Sequence[str]) -> Non
             )
 
 
-def _sections(tree: dict, above: str = "") -> Iterator[str]:
+def _sections(tree: dict[str, Any], above: str = "") -> Iterator[str]:
     """The full names of the nodes that a parameter file speaks of."""
     for key, content in tree.items():
         name = f"{above}/{str(key).strip('/')}"

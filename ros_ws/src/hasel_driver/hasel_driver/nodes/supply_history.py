@@ -17,6 +17,7 @@ import threading
 from collections.abc import Callable
 from datetime import datetime, timezone
 from pathlib import Path
+from typing import Any
 
 from hasel_driver.protocol.faults import Fault, FaultCode
 from hasel_driver.protocol.limits import MUSCLE_NAMES
@@ -42,14 +43,14 @@ class SupplyHistory:
         self.faults = self.breakdowns = 0
         self.leakage_a: list[float | None] = [None, None]
         self._count_the_past()
-        self._entries: queue.SimpleQueue[dict | None] = queue.SimpleQueue()
+        self._entries: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._write, name="history", daemon=True)
         self._thread.start()
 
     def take(self, status: SupplyStatus) -> None:
         """Look at a status; note a new fault, and leakage at a voltage that has long stood still."""
         if status.fault is not None and status.fault != self._fault:
-            self._note_fault(status)
+            self._note_fault(status.fault, status)
         self._fault = status.fault
         for channel in range(2):
             self._watch_leakage(channel, status)
@@ -67,8 +68,7 @@ class SupplyHistory:
         self._entries.put(None)
         self._thread.join(timeout=2.0)
 
-    def _note_fault(self, status: SupplyStatus) -> None:
-        fault = status.fault
+    def _note_fault(self, fault: Fault, status: SupplyStatus) -> None:
         self.faults += 1
         self.breakdowns += fault.code in BREAKDOWNS
         self._note(

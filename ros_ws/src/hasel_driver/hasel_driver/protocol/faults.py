@@ -5,6 +5,7 @@ import json
 from dataclasses import asdict, dataclass, replace
 from enum import IntEnum
 from pathlib import Path
+from typing import Any
 
 LATCHED_FILE = "latched_faults.json"
 
@@ -144,7 +145,7 @@ class FaultStore:
         beside.write_text(json.dumps(entries, indent=1))
         beside.replace(self._path)
 
-    def _entries(self) -> dict:
+    def _entries(self) -> dict[str, Any]:
         if self._path is None or not self._path.is_file():
             return {}
         try:

@@ -112,7 +112,7 @@ class DrivenExperiment:
                 self._drive_began_s = self._clock()
                 self._begin_drive()
         elif self._drive_ended_s is None:
-            self._drive(status.mode)
+            self._drive(status.mode, self._drive_began_s)
         elif self._clock() >= self._drive_ended_s + self.plan.rest_s:
             self._finish(self._missed())
 
@@ -140,8 +140,8 @@ class DrivenExperiment:
             " as this machine was late: run it again with less to do, or with rows further apart"
         )
 
-    def _drive(self, mode: Mode) -> None:
-        driven_s = self._clock() - self._drive_began_s
+    def _drive(self, mode: Mode, began_s: float) -> None:
+        driven_s = self._clock() - began_s
         duration_s = self.plan.waveform.duration_s
         if not self._on_board:
             self._hold(driven_s)

@@ -106,7 +106,7 @@ class SafetyProcess:
             without_realtime=self._without_realtime,
         )
 
-    def _answer(self, number: int, done: Future) -> Answer:
+    def _answer(self, number: int, done: Future[Any]) -> Answer:
         error = done.exception()
         if error is not None and not isinstance(error, Exception):
             raise error

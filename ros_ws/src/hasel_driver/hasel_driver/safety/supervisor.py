@@ -105,7 +105,8 @@ class Supervisor:
         now_s = self._clock()
         reading = self._fresh_reading(now_s)
         if reading is None:
-            silent_s = now_s - self._reading.time_s if self.fault is None and self._at_rest() else 0.0
+            at_rest = self._reading_at_rest() if self.fault is None else None
+            silent_s = 0.0 if at_rest is None else now_s - at_rest.time_s
             mode = Mode.STANDBY if silent_s else Mode.FAULT
             unknown = SupplyStatus(now_s, mode, self.fault, None, UNKNOWN, UNKNOWN, UNKNOWN)
             return replace(unknown, silent_s=silent_s, note=self._note)
@@ -355,8 +356,12 @@ class Supervisor:
 
     def _at_rest(self) -> bool:
         """Nothing is armed, and the board's last word, however old, is that."""
+        return self._reading_at_rest() is not None
+
+    def _reading_at_rest(self) -> Reading | None:
+        """The board's last word, however old, where nothing is armed and it says so too."""
         reading = self._reading if self.connected and not self._armed_wanted else None
-        return reading is not None and not reading.mode.may_be_live
+        return reading if reading is not None and not reading.mode.may_be_live else None
 
     def _fresh_reading(self, now_s: float) -> Reading | None:
         if self._reading is None or not self.connected or now_s - self._reading.time_s > STALE_S:

@@ -75,7 +75,7 @@ class SupplyLink:
 
     def __init__(self, parameters: Mapping[str, Any], on_snapshot: Callable[[Snapshot], None]) -> None:
         self._on_snapshot = on_snapshot
-        self._answers: dict[int, Future] = {}
+        self._answers: dict[int, Future[Answer]] = {}
         self._numbers = itertools.count(1)
         self._sending, self._news = threading.Lock(), threading.Condition()
         self._ended = False

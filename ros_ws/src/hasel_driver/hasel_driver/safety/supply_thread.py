@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from hasel_driver.protocol.faults import Fault, FaultCode, RefusedError
 from hasel_driver.protocol.status import SupplyStatus
@@ -23,6 +23,8 @@ STATUS_PERIOD_S = 0.1  # when no readings come
 HOST_STALL_S = 0.3
 LAST_WORD_S = 0.3  # within which the supply should prove its output grounded at the end
 ENDED = "The supply's thread has ended: clean up and configure the node."
+
+_T = TypeVar("_T")
 
 
 def request_realtime(priority: int, thread: int = 0) -> str | None:
@@ -47,7 +49,7 @@ def request_realtime(priority: int, thread: int = 0) -> str | None:
 class _Expectation:
     condition: Callable[[], bool]
     deadline_s: float
-    future: Future
+    future: Future[bool]
 
 
 class SupplyThread(threading.Thread):
@@ -64,7 +66,7 @@ class SupplyThread(threading.Thread):
         self.supervisor = supervisor
         self._supply = supply
         self._on_status, self._on_step = on_status, on_step
-        self._requests: queue.SimpleQueue[tuple[Callable[[], Any], Future]] = queue.SimpleQueue()
+        self._requests: queue.SimpleQueue[tuple[Callable[[], Any], Future[Any]]] = queue.SimpleQueue()
         self._expectations: list[_Expectation] = []
         self._wake_reader, self._wake_writer = os.pipe()
         os.set_blocking(self._wake_reader, False)
@@ -75,22 +77,22 @@ class SupplyThread(threading.Thread):
         self._closing = threading.Lock()
         self._status_s = 0.0
 
-    def call(self, request: Callable[[], Any]) -> Future:
+    def call(self, request: Callable[[], _T]) -> Future[_T]:
         """Run `request` in this thread as soon as possible; its result or exception is the future's."""
-        future: Future = Future()
+        future: Future[_T] = Future()
         self._requests.put((request, future))
         self._wake()
         if self._ended.is_set():
             self._refuse_requests()
         return future
 
-    def expect(self, condition: Callable[[], bool], timeout_s: float) -> Future:
+    def expect(self, condition: Callable[[], bool], timeout_s: float) -> Future[bool]:
         """A future that becomes True once `condition` holds, False after `timeout_s`."""
-        future: Future = Future()
+        future: Future[bool] = Future()
         deadline_s = time.monotonic() + timeout_s
         begun = self.call(lambda: self._expectations.append(_Expectation(condition, deadline_s, future)))
 
-        def refuse(done: Future) -> None:
+        def refuse(done: Future[None]) -> None:
             if done.exception():
                 future.set_exception(done.exception())
 

@@ -268,8 +268,9 @@ class HaselSupply(Supply):
         measured = (
             f"{report.measured[0]} and {report.measured[1]} V" if code is FaultCode.NOT_GROUNDED else ""
         )
-        in_pulse = self._pulse is not None and code in NEED_PROOF
-        pulse = self._pulse.without_load(report.measured) if in_pulse else ""
+        pulse = ""
+        if self._pulse is not None and code in NEED_PROOF:
+            pulse = self._pulse.without_load(report.measured)
         return Fault(code, "; ".join(filter(None, (measured, pulse))))
 
 

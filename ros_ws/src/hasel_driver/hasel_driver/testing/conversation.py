@@ -3,6 +3,7 @@
 
 import time
 from collections.abc import Callable
+from typing import Any
 
 from hasel_driver.protocol import wire
 from hasel_driver.protocol.status import Mode
@@ -110,7 +111,7 @@ class Conversation:
         self.until(lambda: any(event.words[0] == "BOOT" for event in self.events), cut_off=True)
 
     def _take(self, cut_off: bool = False) -> None:
-        kinds: dict[type, list] = {wire.Event: self.events, wire.Telemetry: self.reports}
+        kinds: dict[type, list[Any]] = {wire.Event: self.events, wire.Telemetry: self.reports}
         kinds[wire.Reply] = self._replies
         for line in self._lines.feed(self._port.read()):
             if cut_off and (begin := line.find(b"!BOOT")) > 0:

@@ -17,12 +17,12 @@ GROUNDING_TIMES_S: dict[str, list[float]] = {}
 REPEATED: list[str] = []
 
 
-def pytest_configure(config):
+def pytest_configure(config: pytest.Config) -> None:
     """Explain the marker."""
     config.addinivalue_line("markers", "rounds(few, many): gives the argument `rounds`, `many` in slow tests")
 
 
-def pytest_generate_tests(metafunc):
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """One body for the quick and the slow version of a test."""
     marker = metafunc.definition.get_closest_marker("rounds")
     if marker is not None:
@@ -33,7 +33,7 @@ def pytest_generate_tests(metafunc):
         )
 
 
-def pytest_runtest_protocol(item, nextitem):
+def pytest_runtest_protocol(item: pytest.Function, nextitem: pytest.Item | None) -> bool | None:
     """Repeat a failed test against the clock if the machine itself was late meanwhile, and only then."""
     if not SUPPLIES & set(item.fixturenames):
         return None
@@ -53,7 +53,7 @@ def pytest_runtest_protocol(item, nextitem):
     return True
 
 
-def pytest_terminal_summary(terminalreporter):
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     """What was measured over many rounds, and what was repeated."""
     for name, times_s in GROUNDING_TIMES_S.items():
         if len(times_s) >= MANY:

@@ -4,6 +4,7 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 from hasel_driver.protocol.faults import DriverError, FaultCode
 from hasel_driver.protocol.limits import DISCHARGED_V, Voltages
@@ -31,7 +32,7 @@ class Kind:
     virtual_only: bool = False
 
 
-def _kind(name: str, inject: str, codes: set[FaultCode], **options) -> Kind:
+def _kind(name: str, inject: str, codes: set[FaultCode], **options: Any) -> Kind:
     return Kind(name, tuple(inject.split()), frozenset(codes), **options)
 
 

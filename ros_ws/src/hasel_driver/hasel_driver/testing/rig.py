@@ -10,9 +10,10 @@ import time
 import tty
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from hasel_driver.protocol import wire
+from hasel_driver.protocol.faults import DriverError
 from hasel_driver.protocol.limits import Limits, Voltages
 from hasel_driver.protocol.status import Ground, Mode, SupplyStatus
 from hasel_driver.safety.supervisor import Supervisor
@@ -73,6 +74,13 @@ def firmware_command(build: Path) -> list[str]:
     return [str(build / "simulate"), str(build / "hasel_supply.elf")]
 
 
+def _pipes(process: subprocess.Popen[str]) -> tuple[IO[str], IO[str]]:
+    """Standard input and output of a process that was started with a pipe for each."""
+    if process.stdin is None or process.stdout is None:
+        raise DriverError("The supply's process was started without pipes: give it one for input and output.")
+    return process.stdin, process.stdout
+
+
 class Rig:
     """Starts `command`, which speaks as `virtual_supply` does on its standard input and output.
 
@@ -84,6 +92,7 @@ class Rig:
         self._process = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1
         )
+        self._input, self._output = _pipes(self._process)
         self._answers: queue.Queue[list[str]] = queue.Queue()
         self._ports: queue.Queue[str] = queue.Queue()
         self.wire: list[tuple[float, int, int]] = []  # (monotonic time [s], voltages [V]) after `trace`
@@ -102,7 +111,7 @@ class Rig:
         return next(filter(None, [request_realtime(PRIORITY, thread) for thread in threads]), None)
 
     def _listen(self) -> None:
-        for line in self._process.stdout:
+        for line in self._output:
             words = line.split()
             if words[:1] in (["live"], ["dead"]):
                 self.changes.append((float(words[1]), words[0] == "live"))
@@ -117,7 +126,7 @@ class Rig:
 
     def say(self, word: str) -> None:
         """Inject a fault."""
-        self._process.stdin.write(word + "\n")
+        self._input.write(word + "\n")
 
     def replug(self) -> None:
         """Put the cable back; `port` changes."""

@@ -228,7 +228,9 @@ class DriverProcess:
             text=True,
         )
         self.log: list[str] = []
-        self._reader = threading.Thread(target=lambda: self.log.extend(self.process.stdout), daemon=True)
+        self._reader = threading.Thread(
+            target=lambda: self.log.extend(self.process.stdout or ()), daemon=True
+        )
         self._reader.start()
 
     def arm(self) -> None:

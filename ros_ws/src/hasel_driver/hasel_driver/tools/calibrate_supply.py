@@ -169,7 +169,7 @@ def measure(
     probe: Callable[[float], float],
     agree: Callable[[float], bool],
     maximum_v: float = Limits().maximum_voltage_v,
-    listen: Callable[[Callable[[str], None]], AbstractContextManager] = nullcontext,
+    listen: Callable[[Callable[[str], None]], AbstractContextManager[object]] = nullcontext,
 ) -> CalibrationTable:
     """Put each voltage [V] on the channel if `agree(asked)`, and ask `probe(asked)` for what is there in truth [V].
 

@@ -153,6 +153,8 @@ class ConsoleLink:
         message = Actuation(voltage=list(voltage_v))
         message.header.frame_id = frame_of(self._node, "supply")
         message.header.stamp = self._node.get_clock().now().to_msg()
+        if self._commands is None:
+            raise RefusedError("Nothing is commanded now: do it within `commanding`.")
         self._commands.publish(message)
 
     def close(self) -> None:

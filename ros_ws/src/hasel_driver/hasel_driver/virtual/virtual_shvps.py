@@ -4,6 +4,7 @@
 import argparse
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 from hasel_common.command_entry import command
@@ -68,7 +69,7 @@ class VirtualShvps:
         return f"{value:g}"
 
 
-def serve(board: VirtualShvps, port: PseudoTerminal, running) -> None:
+def serve(board: VirtualShvps, port: PseudoTerminal, running: Callable[[], bool]) -> None:
     """Keep `board` going in real time while `running()`."""
     last_s = time.monotonic()
     while running():

@@ -5,6 +5,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from typing import Any
 
 from hasel_sysid.estimation.fit import FittedModel
 from hasel_sysid.model_checking import GoodnessOfFit
@@ -201,7 +202,7 @@ class Diagnosis:
     __repr__ = __str__
 
 
-def diagnosis_json(diagnosis: Diagnosis) -> dict:
+def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
     """The machine-readable form of a diagnosis."""
     return {
         "noise_floor": diagnosis.measured.mean_absolute,
@@ -212,7 +213,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict:
     }
 
 
-def _noise_json(noise: NoiseModel) -> dict:
+def _noise_json(noise: NoiseModel) -> dict[str, Any]:
     """What is known of the noise; an upper bound says that nothing in the recordings shows it alone."""
     return {
         "standard_deviation": noise.standard_deviation,
@@ -222,7 +223,7 @@ def _noise_json(noise: NoiseModel) -> dict:
     }
 
 
-def _ranked(finding: Finding) -> dict:
+def _ranked(finding: Finding) -> dict[str, Any]:
     return {
         "effect": finding.effect,
         "probability": finding.probability,

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from itertools import combinations, product
+from typing import Any
 
 import numpy as np
 from hasel_common.progress import Workload
@@ -55,7 +56,7 @@ class Manoeuvre:
     load_factor: float | None = None
     channels: tuple[DriveChannel, ...] = HASEL_PAIR
 
-    def goal(self) -> dict:
+    def goal(self) -> dict[str, Any]:
         """Fields of a RunExperiment goal; for channels other than the rig's two voltages, the same in their unit."""
         fields = {key: getattr(self, key) for key in ("frequency", "periods", "waveform")}
         if self.channels != HASEL_PAIR:
@@ -138,8 +139,8 @@ def rivals(diagnosis: Diagnosis, fit: Callable[[Model], Model] | None = None) ->
     """
     fitted = _refitted(diagnosis)
     rest = [finding.effect for finding in diagnosis.findings if finding.effect not in fitted]
-    for effect in rest if fit is not None else ():
-        if len(fitted) >= 2:
+    for effect in rest:
+        if fit is None or len(fitted) >= 2:
             break
         try:
             fitted[effect] = fit(with_effect(diagnosis.fit.model, diagnosis, effect))
@@ -192,7 +193,7 @@ class Suggestion:
     difference: float
     pairs: dict[tuple[str, str], float]
 
-    def to_json(self) -> dict:
+    def to_json(self) -> dict[str, Any]:
         """For machines: the run as a RunExperiment goal, and the differences in units of the noise."""
         pairs = [{"effects": list(pair), "difference": size} for pair, size in self.pairs.items()]
         return {"run": self.manoeuvre.goal(), "difference": self.difference, "pairs": pairs}
@@ -242,7 +243,7 @@ def suggest(
         for group, pending in zip(_alike(library), futures, strict=True):
             simulated = {name: future.result() for name, future in pending.items()}
             for index, manoeuvre in enumerate(group):
-                series = {name: each[index] for name, each in simulated.items() if each[index] is not None}
+                series = {name: one for name, each in simulated.items() if (one := each[index]) is not None}
                 if len(series) == len(coarse):
                     found.append(_suggestion(manoeuvre, series, noise))
                 for model in coarse.values():

@@ -4,6 +4,7 @@
 from collections.abc import Collection, Sequence
 from dataclasses import asdict, dataclass
 from enum import Enum
+from typing import Any
 
 import numpy as np
 from hasel_sim.effects.base import Effect
@@ -12,6 +13,7 @@ from hasel_sim.parameter import value_with_error
 
 from hasel_sysid.answer.diagnosis import Diagnosis, diagnosis_json
 from hasel_sysid.answer.set_up import SetUpFault
+from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation.fit import FittedModel
 from hasel_sysid.model_checking import GoodnessOfFit
 from hasel_sysid.policy import POLICY
@@ -86,6 +88,13 @@ class Stage:
     constant: str = ""
 
     @property
+    def diagnosed(self) -> Diagnosis:
+        """The diagnosis of what it leaves. Raises SysidError where it was not diagnosed."""
+        if self.diagnosis is None:
+            raise SysidError("this stage was not diagnosed; diagnose what it leaves first")
+        return self.diagnosis
+
+    @property
     def added(self) -> tuple[str, ...]:
         """What it has beyond the fitted first model."""
         return (*self.effects, *filter(None, [self.constant]))
@@ -135,7 +144,7 @@ class WrongConstant:
 
     __repr__ = __str__
 
-    def to_json(self) -> dict:
+    def to_json(self) -> dict[str, Any]:
         """For `improve --json`."""
         p = self.parameter
         return {
@@ -191,7 +200,7 @@ class Improvement:
     @property
     def diagnosis(self) -> Diagnosis:
         """The first diagnosis, on the baseline."""
-        return self.stages[0].diagnosis
+        return self.stages[0].diagnosed
 
     @property
     def not_tried(self) -> list[str]:
@@ -199,7 +208,7 @@ class Improvement:
         diagnoses = [stage.diagnosis for stage in self.stages if stage.diagnosis is not None]
         return sorted({effect for diagnosis in diagnoses for effect in diagnosis.not_tried})
 
-    def to_json(self) -> dict:
+    def to_json(self) -> dict[str, Any]:
         """The machine-readable form that `improve --json` writes."""
         return {
             **diagnosis_json(self.diagnosis),
@@ -238,7 +247,7 @@ def table_of_models(models: Sequence[ComparedModel]) -> str:
     return "\n".join([TABLE_HEAD, *map(str, models)])
 
 
-def _compared(model: ComparedModel) -> dict:
+def _compared(model: ComparedModel) -> dict[str, Any]:
     return {
         "effects": list(model.effects),
         "elpd": model.elpd,
@@ -250,7 +259,7 @@ def _compared(model: ComparedModel) -> dict:
     }
 
 
-def _stage(stage: Stage) -> dict:
+def _stage(stage: Stage) -> dict[str, Any]:
     return {
         "effects": list(stage.effects),
         "constant": stage.constant or None,

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from hasel_sim.errors import SimulationError
 from hasel_sim.model import Model
 
+from hasel_sysid.errors import SysidError
 from hasel_sysid.estimation.least_squares import bounded_change, values_and_bounds
 from hasel_sysid.experiment import Experiment
 from hasel_sysid.policy import POLICY
@@ -220,6 +221,8 @@ def _inverted(experiment: Experiment) -> Experiment:
 
 
 def _driven_by(experiment: Experiment, time: np.ndarray, signal: np.ndarray) -> Experiment:
+    if experiment.run.schedule is None:
+        raise SysidError(f"{experiment.name} is passive; expected a run that is driven")
     schedule = replace(experiment.run.schedule, time=time, signal=signal)
     return replace(experiment, run=replace(experiment.run, schedule=schedule))
 

@@ -115,7 +115,7 @@ def _finding(found: Searched, effect: Candidate, beside: Names, noise: NoiseMode
         Finding,
         name,
         units={path: p.unit for path, p in zip(effect.names, effect.parameters, strict=True)},
-        source=effect.effect.source,
+        source=None if effect.effect is None else effect.effect.source,
         plausible=(first.lower, first.upper),
         null=first.null,
         winner=" and ".join(sorted(beside)) if beside and name not in beside else None,
@@ -188,7 +188,7 @@ def _leading(effect: Candidate, expected: Mapping[str, tuple[float, float]]) -> 
         for name, p in effect.sizes.items()
         if name in expected and p.typical != p.null
     }
-    return max(reached, key=reached.get, default=None)
+    return max(reached, key=reached.__getitem__, default=None)
 
 
 def _imitated(base: FittedModel, seen: Screened) -> float:

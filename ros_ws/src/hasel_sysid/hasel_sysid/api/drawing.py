@@ -126,10 +126,9 @@ def draw_stages(stages: Sequence[Stage], noise_floor: float) -> Picture:
     axis = figure.add_subplot()
     place = np.arange(len(stages))
     axis.bar(place - 0.2, [stage.mae_fit for stage in stages], 0.38, color=FITTED, label="fitted runs")
-    if all(stage.mae_validation is not None for stage in stages):
-        axis.bar(
-            place + 0.2, [stage.mae_validation for stage in stages], 0.38, color=UNSEEN, label="unseen runs"
-        )
+    unseen = [stage.mae_validation for stage in stages if stage.mae_validation is not None]
+    if len(unseen) == len(stages):
+        axis.bar(place + 0.2, unseen, 0.38, color=UNSEEN, label="unseen runs")
     axis.axhline(noise_floor, color=NOISE, linestyle="--", linewidth=1.0, label="noise floor")
     axis.set_xticks(place, ["fitted", *("+ " + stage.added[-1] for stage in stages[1:])])
     axis.set_ylabel("mean |Δ sin θ|")

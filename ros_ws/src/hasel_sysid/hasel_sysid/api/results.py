@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import SupportsIndex, overload
 
 from hasel_sim.model import Model
 
@@ -20,10 +21,17 @@ _MOST_SAID = 8
 class Recordings(tuple[Experiment, ...]):
     """Recordings that were read; a tuple, so that they can be chosen from by number and added."""
 
-    def __getitem__(self, which):
+    @overload
+    def __getitem__(self, which: SupportsIndex) -> Experiment: ...
+
+    @overload
+    def __getitem__(self, which: slice) -> "Recordings": ...
+
+    def __getitem__(self, which: SupportsIndex | slice) -> "Experiment | Recordings":
         """One of them, or some of them for a slice."""
-        found = super().__getitem__(which)
-        return Recordings(found) if isinstance(which, slice) else found
+        if isinstance(which, slice):
+            return Recordings(super().__getitem__(which))
+        return super().__getitem__(which)
 
     def __add__(self, other: Sequence[Experiment]) -> "Recordings":  # type: ignore[override]
         return Recordings((*self, *other))

@@ -194,7 +194,7 @@ def _names(effects: Iterable[str] | str) -> tuple[str, ...]:
     )
 
 
-def _flat(given: Any, kinds: tuple[type, ...], expected: str) -> list:
+def _flat(given: Any, kinds: tuple[type, ...], expected: str) -> list[Any]:
     """One of these kinds, or several however nested, as a list. Raises SysidError for anything else."""
     if isinstance(given, kinds):
         return [given]

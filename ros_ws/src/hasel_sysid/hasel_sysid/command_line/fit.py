@@ -5,6 +5,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from hasel_common.progress import progress_bar
 from hasel_sim.errors import ClusterError, SimulationError
@@ -95,7 +96,7 @@ def _finish(
     print(f"Wrote {path} and {report}, and its figures as SVG.")
 
 
-def _fit_json(result: FittedModel) -> dict:
+def _fit_json(result: FittedModel) -> dict[str, Any]:
     names = result.evaluation.names
     parameters = {
         name: {

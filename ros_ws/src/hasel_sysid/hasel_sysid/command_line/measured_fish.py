@@ -6,6 +6,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from hasel_recording.csv_run import write_csv
@@ -42,7 +43,7 @@ class ComparedFilm:
         """Simulated minus measured speed [m/s]."""
         return self.simulated - self.seen.beat.speed
 
-    def to_json(self) -> dict:
+    def to_json(self) -> dict[str, Any]:
         """Plain numbers and words."""
         beat = self.seen.beat
         return {
@@ -84,7 +85,7 @@ class FishComparison:
             f"the {unseen} others. Published: {published}."
         )
 
-    def to_json(self) -> dict:
+    def to_json(self) -> dict[str, Any]:
         """Plain numbers and words."""
         return {
             "form_drag": self.form_drag,

@@ -12,7 +12,7 @@ from concurrent.futures import Executor
 from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import numpy as np
 from hasel_common.command_entry import in_a_sentence
@@ -45,11 +45,18 @@ def told(work: Callable[[argparse.Namespace], int | None]) -> Callable[[argparse
     return run
 
 
-def _show_warning(message, category, filename, lineno, file=None, line=None) -> None:
+def _show_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
     print(f"warning: {message}", file=sys.stderr)
 
 
-def write_json(content: dict, path: Path) -> None:
+def write_json(content: dict[str, Any], path: Path) -> None:
     """Write a JSON file; NaN and infinity, which JSON does not know, become null."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(json.dumps(_plain(content), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")

@@ -52,7 +52,7 @@ def _unit(recording: Recording, values: np.ndarray) -> list[DataFinding]:
         ]
         channel = next((c for c in recording.channels if c.quantity == quantity), None)
         largest = float(np.abs(own).max()) if own else 0.0
-        if largest == 0 or least < largest <= most:
+        if channel is None or largest == 0 or least < largest <= most:
             continue
         evidence = f"the largest {quantity} is {channel.shown(largest)}"
         advice = f"is it in {others}? then say so at the end of the column's name"

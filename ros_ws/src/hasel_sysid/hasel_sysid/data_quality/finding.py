@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import Any
 
 
 class Severity(str, Enum):
@@ -32,7 +33,7 @@ class DataFinding:
         """The finding without its recording."""
         return f"{self.fault}: {self.evidence}; {self.advice}" + ("" if self.advice.endswith("?") else ".")
 
-    def to_json(self) -> dict:
+    def to_json(self) -> dict[str, Any]:
         """Plain words and numbers."""
         return {
             "fault": self.fault,

@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from hasel_common.provenance import without_provenance
@@ -62,7 +63,7 @@ class Summary:
         found = found or ([] if self.misfit else ["  looks in order"])
         return "\n".join([str(self.recording.path or self.recording.name), *rows, *found])
 
-    def to_json(self) -> dict:
+    def to_json(self) -> dict[str, Any]:
         """Plain words and numbers."""
         return {
             "name": self.recording.name,

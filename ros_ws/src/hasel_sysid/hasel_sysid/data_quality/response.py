@@ -86,7 +86,7 @@ def _sides(time: np.ndarray, moved: np.ndarray, cycle: DriveCycle) -> list[DataF
         return []
     low, high = np.percentile(moved, [2, 98])
     reach = {"upper": float(high), "lower": float(-low)}
-    weak = min(reach, key=reach.get)
+    weak = min(reach, key=reach.__getitem__)
     strong = max(reach.values())
     if strong < _SMALLEST_MOTION or reach[weak] > _DEAD * strong:
         return []

@@ -54,6 +54,8 @@ def _fit_adam(problem: Problem, model: Model, steps: int) -> FittedModel:
         for g, slope, u in zip(groups, gradient, unit, strict=True):
             g.grad = torch.tensor(slope * u, dtype=torch.float64)
         optimiser.step()
+    if best is None:
+        raise SysidError(f"{steps} steps of Adam find nothing; expected one at least")
     return replace(fitted_model(best, steps), method="Adam (the seed paper's procedure)")
 
 

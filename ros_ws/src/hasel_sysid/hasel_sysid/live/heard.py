@@ -4,7 +4,7 @@
 from collections import deque
 from collections.abc import Sequence
 from datetime import datetime
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from hasel_recording import Recording
@@ -82,15 +82,19 @@ class _Series:
         self.epoch = epoch
         self.unknown_from: int | None = None
         self.stamps: list[int] = []
-        self.values: list = []
+        self.values: list[Any] = []
 
-    def add(self, stamp_ns: int, value) -> None:
+    def add(self, stamp_ns: int, value: Any) -> None:
         if not self.stamps or stamp_ns > self.stamps[-1]:
             self.stamps.append(stamp_ns)
             self.values.append(value)
             self.unknown_from = None
         if len(self.stamps) > _MOST_MESSAGES:
             del self.stamps[: _MOST_MESSAGES // 10], self.values[: _MOST_MESSAGES // 10]
+
+
+_Sampled = tuple[np.ndarray, np.ndarray]
+"""Times [s] [n] and what was then."""
 
 
 class _Run(NamedTuple):
@@ -183,7 +187,7 @@ def _met(states: _Series, angles: _Series, reset_ns: float) -> list[_Run]:
     ]
 
 
-def _part(origin: int, drive: tuple, measured: tuple, begin: float, stop: float) -> Recording:
+def _part(origin: int, drive: _Sampled, measured: _Sampled, begin: float, stop: float) -> Recording:
     """What happened from `begin` to `stop` [s], counted from `begin`."""
     (drive_time, drive_voltage), (time, sin_theta) = drive, measured
     driven, seen = (begin <= drive_time) & (drive_time <= stop), (begin <= time) & (time <= stop)

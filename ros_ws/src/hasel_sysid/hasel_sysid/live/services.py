@@ -2,7 +2,7 @@
 """The fit and the diagnosis that the node's services ask for, and all results as ROS messages."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 
@@ -92,7 +92,9 @@ def error_message(stamp_ns: int, error: RunningError, frame_id: str) -> msg.Runn
     )
 
 
-def parameter_messages(model: Model, at_bound=(), undetermined=()) -> list[msg.NamedParameter]:
+def parameter_messages(
+    model: Model, at_bound: Collection[str] = (), undetermined: Collection[str] = ()
+) -> list[msg.NamedParameter]:
     """Every free parameter of a model."""
     parameters = [model.parameters[name] for name in model.free]
     return [

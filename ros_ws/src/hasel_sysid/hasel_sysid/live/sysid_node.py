@@ -5,7 +5,7 @@ import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from hasel_common.declared_parameters import declare, words
 from hasel_common.diagnostics import Diagnostics, Level, Part
@@ -16,7 +16,7 @@ from hasel_common.progress import HowFar, LogLines, Workload
 from hasel_common.topics import DIAGNOSIS, ERROR, FIT, MEASURED, NAMESPACE, SIMULATED, STATE
 from hasel_interfaces.msg import BendingAngle, Diagnosis, Fit, RunningError, SupplyState
 from hasel_interfaces.srv import Diagnose, FitModel
-from hasel_recording import RecordingError
+from hasel_recording import Recording, RecordingError
 from hasel_sim.errors import HaselSimError
 from hasel_sim.live.live_simulator import live_model, within
 from hasel_sim.live.simulator_interface import rig_voltage, to_nanoseconds
@@ -40,6 +40,8 @@ from hasel_sysid.live.services import (
     status,
 )
 from hasel_sysid.live.sysid_parameters import PARAMETERS
+
+_Response = TypeVar("_Response", FitModel.Response, Diagnose.Response)
 
 
 class SysidNode(ManagedNode):
@@ -102,7 +104,7 @@ class SysidNode(ManagedNode):
         work = self._work
         return "" if work is None else str(work.now()) or "the request that came last"
 
-    def _value(self, name: str):
+    def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
 
     def _on_state(self, message: SupplyState) -> None:
@@ -184,10 +186,10 @@ class SysidNode(ManagedNode):
     def _model(self) -> Model:
         return live_model(self._value("model"), words(self, "effects"))[0]
 
-    def _recordings(self, paths: list[str]):
+    def _recordings(self, paths: list[str]) -> list[Recording]:
         return chosen_recordings(paths, [] if paths else self._heard.recordings())
 
-    def _serve(self, action, response):
+    def _serve(self, action: Callable[[], str], response: _Response) -> _Response:
         """Answer with what `action` returns, one at a time; errors become sentences."""
         if not self.active:
             response.success, response.message = (

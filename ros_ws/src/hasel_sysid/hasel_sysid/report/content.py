@@ -108,7 +108,9 @@ def known_errors(stages: Sequence[StageRow]) -> dict[str, list[tuple[str, float]
         "fitted runs": [(stage.label, stage.error) for stage in stages],
         "unseen runs": [(stage.label, stage.error_unseen) for stage in stages],
     }
-    known = {name: [row for row in rows if row[1] is not None] for name, rows in errors.items()}
+    known = {
+        name: [(label, error) for label, error in rows if error is not None] for name, rows in errors.items()
+    }
     return {name: rows for name, rows in known.items() if rows}
 
 

@@ -132,16 +132,16 @@ def conditions_figures(comparisons: Sequence[Comparison]) -> list[go.Figure]:
 
 def phase_map_figure(runs: Sequence[RunComparison]) -> go.Figure | None:
     """Mean residual per run and phase; None when no run has a cycle."""
-    shown = [run for run in runs if run.analysis.profile is not None]
+    shown = [(run, run.analysis.profile) for run in runs if run.analysis.profile is not None]
     if not shown:
         return None
-    values = np.array([run.analysis.profile.mean for run in shown])
+    values = np.array([profile.mean for _, profile in shown])
     largest = float(np.nanmax(np.abs(values))) or 1.0
-    phase = shown[0].analysis.profile.phase * 100
+    phase = shown[0][1].phase * 100
     figure = go.Figure(
         go.Heatmap(
             x=phase,
-            y=[run.name for run in shown],
+            y=[run.name for run, _ in shown],
             z=values,
             zmin=-largest,
             zmax=largest,

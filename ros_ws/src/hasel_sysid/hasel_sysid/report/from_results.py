@@ -40,10 +40,8 @@ def overlays(comparisons: Sequence[Comparison]) -> tuple[RunOverlay, ...]:
                 series.level_text if series.level else "",
                 series.frequency,
                 ()
-                if series.drive_time is None
-                else driven_stretches(
-                    series.drive_time, series.drive_values, series.time[0], series.time[-1]
-                ),
+                if series.drive is None
+                else driven_stretches(*series.drive, series.time[0], series.time[-1]),
             )
         )
     return tuple(shown)

@@ -48,21 +48,23 @@ class Shapes:
 
 def simulated_shapes(model: Model, runs: Sequence[RunComparison]) -> Shapes | None:
     """Of the most strongly driven run that repeats, in its first cycle; None where there is none."""
-    driven = [run.series for run in runs if run.series.cycle is not None and run.series.level > 0]
+    driven = [
+        (run.series, run.series.cycle, run.series.drive)
+        for run in runs
+        if run.series.cycle is not None and run.series.drive is not None and run.series.level > 0
+    ]
     if not driven:
         return None
-    series = max(driven, key=lambda each: each.level)
-    early = series.time <= series.time[0] + min(series.cycle.period, _LONGEST_S)
+    series, cycle, drive = max(driven, key=lambda each: each[0].level)
+    early = series.time <= series.time[0] + min(cycle.period, _LONGEST_S)
     ends = {0, int(np.argmax(series.simulated[early])), int(np.argmin(series.simulated[early]))}
     chosen = sorted(ends)
     wanted = series.time[chosen]
-    schedule = DriveSchedule(
-        series.drive_time, series.drive_values, tuple(channel.name for channel in series.channels)
-    )
+    schedule = DriveSchedule(*drive, tuple(channel.name for channel in series.channels))
     # as many beside each other as there are runs: for them the loops are loaded already, for one alone not
     cases = [(model, Run(series.name, wanted, schedule))] * min(len(runs), LANES[-1])
     found = simulate_many(cases, keep_shapes=True)[0]
-    if isinstance(found, HaselSimError):
+    if isinstance(found, HaselSimError) or found.shapes is None:
         return None
     markers = found.markers[:, :3]
     measured = markers.copy()

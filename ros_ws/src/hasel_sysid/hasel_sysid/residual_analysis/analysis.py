@@ -157,8 +157,11 @@ class WhereItFails:
         if len(self.profile) == 0 or np.nanmax(self.profile) < _STANDS_OUT * np.nanmean(self.profile):
             return None
         at = float(self.phase[int(np.nanargmax(self.profile))])
-        run = next(run.run for run in self.runs if run.profile is not None)
-        side = run.cycle.side
+        run, side = next(
+            (each.run, each.run.cycle.side)
+            for each in self.runs
+            if each.profile is not None and each.run.cycle is not None
+        )
         one, other = _channel_names(run)
         first, second = (one, other) if side[0] > 0 else (other, one)
         alternates = bool(np.any(side != side[0]))

@@ -3,6 +3,7 @@
 
 from dataclasses import asdict, dataclass
 from enum import Enum
+from typing import Any
 
 _OUT_OF_PROPORTION = 5.0
 """A model that moves so many times less is no scale for a percentage."""
@@ -124,7 +125,7 @@ class Failure:
     def __str__(self) -> str:
         return f"{self.where}: {self.predicate} (rms {self.size:.2g} of sin θ)."
 
-    def to_json(self) -> dict:
+    def to_json(self) -> dict[str, Any]:
         """Plain numbers and words."""
         return {
             "kind": self.component.kind.value,

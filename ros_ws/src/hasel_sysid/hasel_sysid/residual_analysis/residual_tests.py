@@ -107,10 +107,11 @@ def drive_dependence(run: RunSeries) -> DriveDependence | None:
     The band is Bartlett's for two correlated series: variance of the correlation = sum of the products of both
     autocorrelations over n, widened for looking at many lags.
     """
-    if run.drive_time is None or len(run.time) < 20:
+    if run.drive is None or len(run.time) < 20:
         return None
-    net = net_drive(comparable(run.drive_values, run.channels))
-    command = held(run.drive_time, net, run.time + 1e-9)
+    drive_time, drive_values = run.drive
+    net = net_drive(comparable(drive_values, run.channels))
+    command = held(drive_time, net, run.time + 1e-9)
     command = command - command.mean()
     residual = run.residual
     scale = np.sqrt(float(command @ command) * float(residual @ residual))

@@ -28,6 +28,13 @@ class RunSeries:
     channels: tuple[DriveChannel, ...] = HASEL_PAIR
 
     @property
+    def drive(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Times [s] [m] and values [m, channels] of the drive; None for a passive body."""
+        if self.drive_time is None or self.drive_values is None:
+            return None
+        return self.drive_time, self.drive_values
+
+    @property
     def offset(self) -> float:
         """Mean of measured minus simulated, the nuisance of the run."""
         return float((self.measured - self.simulated).mean())
@@ -45,9 +52,10 @@ class RunSeries:
     @cached_property
     def cycle(self) -> DriveCycle | None:
         """The drive's cycle; None for a passive body or a drive that does not repeat."""
-        if self.drive_time is None:
+        if self.drive is None:
             return None
-        return drive_cycle(self.drive_time, comparable(self.drive_values, self.channels))
+        time, values = self.drive
+        return drive_cycle(time, comparable(values, self.channels))
 
     @property
     def levels(self) -> dict[str, float]:

@@ -116,6 +116,8 @@ def upper_against_lower(run: RunSeries, aligned: Alignment) -> Component | None:
 
     A body that only one channel bends has two sides merely because its offset is taken out.
     """
+    if run.drive_values is None:
+        return None
     side = driven_side(comparable(run.drive_values, run.channels))
     if not (np.any(side > 0) and np.any(side < 0)):
         return None

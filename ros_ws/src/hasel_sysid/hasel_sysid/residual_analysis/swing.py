@@ -26,7 +26,9 @@ class Swing:
         return self.decay / np.hypot(self.decay, 2 * np.pi * self.frequency)
 
 
-def swing_at(time: np.ndarray, offset, cosine, sine, frequency, decay) -> np.ndarray:
+def swing_at(
+    time: np.ndarray, offset: float, cosine: float, sine: float, frequency: float, decay: float
+) -> np.ndarray:
     """The damped oscillation at times [s] [n] after the release."""
     angle = 2 * np.pi * frequency * time
     return offset + np.exp(-decay * time) * (cosine * np.cos(angle) + sine * np.sin(angle))

@@ -36,10 +36,12 @@ class Elpd:
     def over(self, other: "Elpd") -> "Difference":
         """By how much this model predicts better than another."""
         by_run = self.densities - other.densities
-        few = self.powers is None or len(by_run) < POLICY.fewest_runs
+        powers = None if len(by_run) < POLICY.fewest_runs else self.powers
         by_noise = float(np.linalg.norm(self.residual - other.residual))
-        error = by_noise if few else max(_scatter(by_run, self.powers), by_noise)
-        return Difference(float(by_run.sum()), error, by_noise, not few and bool((by_run > 0).all()))
+        error = by_noise if powers is None else max(_scatter(by_run, powers), by_noise)
+        return Difference(
+            float(by_run.sum()), error, by_noise, powers is not None and bool((by_run > 0).all())
+        )
 
 
 @dataclass(frozen=True)

@@ -214,7 +214,9 @@ def _uncertain(changes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 @njit(cache=True)
-def _filtered(columns, white, variances, correlations):  # pragma: no cover  (compiled)
+def _filtered(
+    columns: np.ndarray, white: float, variances: np.ndarray, correlations: np.ndarray
+) -> np.ndarray:  # pragma: no cover  (compiled)
     """What no earlier frame predicts of columns [frames, n], over its standard deviation (a Kalman filter)."""
     frames, count = columns.shape
     parts = len(variances)

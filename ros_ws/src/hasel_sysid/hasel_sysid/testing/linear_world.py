@@ -45,7 +45,9 @@ def smooth_series(generator: np.random.Generator, runs: np.ndarray) -> np.ndarra
     return series
 
 
-def unlike_series(seed: int, names: Iterable[str] = "abcdefghij", runs: np.ndarray | None = None) -> dict:
+def unlike_series(
+    seed: int, names: Iterable[str] = "abcdefghij", runs: np.ndarray | None = None
+) -> dict[str, np.ndarray]:
     """A series [frames] for every name, unlike each other."""
     generator = np.random.default_rng(seed)
     return {name: smooth_series(generator, run_numbers() if runs is None else runs) for name in names}
@@ -81,7 +83,9 @@ class LinearWorld:
         chosen = sorted(names)
         columns = np.column_stack([self._base, *(self.series[name] for name in chosen)])
         amounts = np.linalg.lstsq(columns, self.measured, rcond=None)[0]
-        model = with_made_up(self._model, *(self.candidates[name].effect for name in chosen))
+        model = with_made_up(
+            self._model, *(effect for name in chosen if (effect := self.candidates[name].effect) is not None)
+        )
         paths = [f"{name}.size" for name in chosen]
         unit = model.values[_OWN]
         amounts[0], columns[:, 0] = unit * amounts[0], columns[:, 0] / unit

@@ -3,13 +3,14 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 from hasel_recording import Recording
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.effects.base import Effect, EffectParameter, ObservationEffect
 from hasel_sim.errors import SimulationError
-from hasel_sim.model import Model, Parameter
+from hasel_sim.model import Model, Parameter, load_model
 from hasel_sim.parallel import SerialExecutor
 from hasel_sim.run import Run, Simulation
 
@@ -38,6 +39,12 @@ def with_made_up(model: Model, *effects: Effect) -> Model:
     sizes = {f"{effect.id}.{p.name}": p for effect in effects for p in effect.parameters}
     parameters = {name: Parameter(name, p.null, p.unit, p.lower, p.upper) for name, p in sizes.items()}
     return replace(model, effects=(*model.effects, *effects), parameters={**model.parameters, **parameters})
+
+
+@cache
+def _swimmer() -> Model:
+    """What nobody asks about where no model is given."""
+    return load_model("swimmer")
 
 
 def made_up_evaluation(
@@ -94,7 +101,16 @@ def evaluation_of_runs(
         for n, (run, length) in enumerate(zip(runs, lengths, strict=True))
     )
     frames = tuple(np.ones((length, 1), dtype=bool) for length in lengths)
-    return Evaluation(model, names, simulations, residual, slopes, of_runs, np.zeros(len(runs)), frames)
+    return Evaluation(
+        _swimmer() if model is None else model,
+        names,
+        simulations,
+        residual,
+        slopes,
+        of_runs,
+        np.zeros(len(runs)),
+        frames,
+    )
 
 
 def made_up_fit(model: Model, error: float, at_bound: tuple[str, ...] = ()) -> FittedModel:

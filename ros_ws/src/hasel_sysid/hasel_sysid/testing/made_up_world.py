@@ -3,7 +3,7 @@
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -146,6 +146,10 @@ class MadeUpWorld:
         return self._known[name]
 
 
+def _drive_at_frames(run: Run) -> np.ndarray | None:
+    return None if run.schedule is None else run.schedule.at(run.time)
+
+
 class MadeUpProblem(Problem):
     """Measured runs of a made-up world; models are evaluated in it, with central differences for derivatives."""
 
@@ -153,7 +157,7 @@ class MadeUpProblem(Problem):
         self, world: MadeUpWorld, measured: Sequence[np.ndarray], most_evaluations: float = math.inf
     ) -> None:
         experiments = [
-            Experiment(Recording(run.name, run.time, series, drive_signal=run.schedule.at(run.time)), run)
+            Experiment(Recording(run.name, run.time, series, drive_signal=_drive_at_frames(run)), run)
             for run, series in zip(world.runs, measured, strict=True)
         ]
         super().__init__(experiments, SerialExecutor())
@@ -225,7 +229,7 @@ class TwoMeasured(Experiment):
 class TwoSimulated(Simulation):
     """other: of the second angle."""
 
-    other: Simulation | None = None
+    other: Simulation = field(kw_only=True)
 
     @property
     def outputs(self) -> np.ndarray:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from hasel_tracker.calibration.camera_calibration import CameraCalibration
+from hasel_tracker.errors import TrackerError
 from hasel_tracker.offline.tracked_run import track_frames
 from hasel_tracker.sources.frame import Frame
 from hasel_tracker.sources.video_source import VideoSource
@@ -147,7 +148,15 @@ def pictures(renderer: Renderer, condition: Condition, count: int) -> Iterator[R
             truth.append((frame.time_s, frame.markers_px, frame.markers_m, frame.sin_theta))
         writer.close()
         for decoded, known in zip(VideoSource(path, threads=1), truth, strict=True):
-            yield RenderedFrame(decoded.image, *known)
+            yield RenderedFrame(image_of(decoded), *known)
+
+
+def image_of(frame: Frame) -> np.ndarray:
+    """Its image, decoded where need be. Raises TrackerError where there is none."""
+    image = frame.decoded().image
+    if image is None:
+        raise TrackerError(f"Frame {frame.index} has no picture: give it an image or its JPEG code.")
+    return image
 
 
 def exact_calibration(view: CameraView) -> CameraCalibration:

@@ -13,6 +13,7 @@ from hasel_tracker.sources.video_source import VideoSource
 from hasel_tracker.tracking.bending_tracker import BendingTracker
 from hasel_tracker.video.video_writer import H264Writer
 
+from hasel_tracker_lab.bench.accuracy import image_of
 from hasel_tracker_lab.scenes.lab_scene import LabFrame
 from hasel_tracker_lab.scenes.scene_catalogue import LabCase
 
@@ -67,7 +68,8 @@ def measure_honesty(
                 valid += seen
                 errors.append(run.markers_px[index] - picture.dots_px)
                 sines.append(off)
-                said.append(run.sin_theta_std[index])
+                if run.sin_theta_std is not None:
+                    said.append(run.sin_theta_std[index])
     if not sines:
         return Honesty(case.name, total, due, 0, wrong, *[float("nan")] * 3)
     squared = (np.array(errors) ** 2).sum(axis=2)
@@ -91,4 +93,6 @@ def _pictures(case: LabCase, seed: int, count: int) -> Iterator[LabFrame]:
             truth.append(frame)
         writer.close()
         for decoded, known in zip(VideoSource(path, threads=1), truth, strict=True):
-            yield LabFrame(decoded.image, *(getattr(known, n) for n in list(known.__dataclass_fields__)[1:]))
+            yield LabFrame(
+                image_of(decoded), *(getattr(known, n) for n in list(known.__dataclass_fields__)[1:])
+            )

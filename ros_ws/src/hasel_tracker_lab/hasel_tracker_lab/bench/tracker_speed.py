@@ -14,7 +14,7 @@ from hasel_tracker.tracking import DEFAULT_METHOD
 from hasel_tracker.tracking.bending_tracker import BendingTracker, TrackedFrame
 from hasel_tracker.tracking.doubt import AGREEING_FRAMES
 
-from hasel_tracker_lab.bench.accuracy import CONDITIONS, FRAME_RATE_HZ, renderer_for
+from hasel_tracker_lab.bench.accuracy import CONDITIONS, FRAME_RATE_HZ, image_of, renderer_for
 from hasel_tracker_lab.scenes.lab_scene import LabScene
 from hasel_tracker_lab.scenes.lab_swimmer import DARK, LabSwimmer
 
@@ -74,12 +74,12 @@ def _rate(frames: list[Frame], method: str, repeats: int) -> float:
     tracker = BendingTracker(method=method)
     step_s = 1.0 / FRAME_RATE_HZ
     for number in range(AGREEING_FRAMES + 1):
-        tracker.update(frames[0].decoded().image, (number - AGREEING_FRAMES) * step_s)
+        tracker.update(image_of(frames[0]), (number - AGREEING_FRAMES) * step_s)
     times = []
     order = (frames[1:] + frames[-2::-1]) * repeats if repeats > 1 else frames[1:]
     for number, frame in enumerate(order, start=1):
         start = time.thread_time()
-        tracked = tracker.update(frame.decoded().image, number * step_s)
+        tracked = tracker.update(image_of(frame), number * step_s)
         times.append(time.thread_time() - start)
         if not tracked.valid:
             break
@@ -121,7 +121,8 @@ def measure_latency(frames: int = 120) -> Latency:
         return Frame(number, number / CAMERA_HZ, jpeg=next(back_and_forth), stamp_ns=time.time_ns())
 
     def publish(frame: Frame, _: TrackedFrame) -> None:
-        late.append((time.time_ns() - frame.stamp_ns) * 1e-9)
+        if frame.stamp_ns is not None:
+            late.append((time.time_ns() - frame.stamp_ns) * 1e-9)
 
     live = LiveTracker(BendingTracker(), publish, decode_threads=DECODE_THREADS, read=read)
     live.start()

@@ -6,6 +6,7 @@ from functools import cached_property, lru_cache
 
 import cv2
 import numpy as np
+from hasel_tracker.errors import TrackerError
 
 NOISE_MARGIN_PX = 64
 
@@ -162,4 +163,7 @@ def compress(image: np.ndarray, jpeg_quality: int) -> np.ndarray:
     if jpeg_quality == 0:
         return image
     _, encoded = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, jpeg_quality])
-    return cv2.imdecode(encoded, cv2.IMREAD_COLOR)
+    decoded = cv2.imdecode(encoded, cv2.IMREAD_COLOR)
+    if decoded is None:
+        raise TrackerError("OpenCV cannot read its own JPEG picture: install it anew.")
+    return decoded

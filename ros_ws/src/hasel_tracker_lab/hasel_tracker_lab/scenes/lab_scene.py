@@ -8,6 +8,7 @@ from functools import cached_property
 import cv2
 import numpy as np
 
+from hasel_tracker_lab.rendering.camera_model import compress
 from hasel_tracker_lab.scenes.lab_swimmer import NAVY, LabSwimmer
 from hasel_tracker_lab.scenes.lab_things import Thing
 from hasel_tracker_lab.scenes.painting import Canvas
@@ -44,8 +45,7 @@ class LabCamera:
             noisy = light + random.normal(0.0, self.noise_levels, light.shape)
             image = np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
         if self.jpeg_quality:
-            coded = cv2.imencode(".jpg", image, [cv2.IMWRITE_JPEG_QUALITY, self.jpeg_quality])[1]
-            return cv2.imdecode(coded, cv2.IMREAD_COLOR)
+            return compress(image, self.jpeg_quality)
         if self.half_colour:
             image = _half_colour(image)
         return image

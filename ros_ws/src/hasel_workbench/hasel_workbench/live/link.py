@@ -78,7 +78,7 @@ class RigLink:
         if not self._experiments.server_is_ready():
             raise SysidError("nobody offers run_experiment; start the driver first")
 
-        def shown(message) -> None:
+        def shown(message: Any) -> None:
             self._share = message.feedback.progress
 
         self._share = 0.0

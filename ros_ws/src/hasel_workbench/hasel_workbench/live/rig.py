@@ -94,7 +94,7 @@ class RunningRig:
             return self.link.load(model)
         self._own.start(model)
         try:
-            self._await_simulator(progress)
+            self._await_simulator(self._own, progress)
         except BaseException:
             self._own.close()
             raise
@@ -110,12 +110,12 @@ class RunningRig:
     def _hears(self, kind: str) -> bool:
         return self.link is not None and time.monotonic() - self.link.heard_at[kind] < _SILENT_S
 
-    def _await_simulator(self, progress: Progress) -> None:
+    def _await_simulator(self, own: "OwnSimulator", progress: Progress) -> None:
         """Until it offers its services and, where a supply drives it, something was simulated."""
         end, begin = time.monotonic() + _START_S, self.stream.count["simulated"]
         while not self.has_simulator or (self.is_there and self.stream.count["simulated"] == begin):
             progress("the simulator starts", 0.0)
-            self._own.check()
+            own.check()
             if time.monotonic() > end:
                 raise SysidError(f"no simulator was heard within {_START_S:g} s of its start")
             time.sleep(_LOOK_S)
@@ -129,7 +129,7 @@ class OwnSimulator:
 
     def __init__(self, namespace: str, domain: int | None = None) -> None:
         self._namespace, self._domain = namespace, domain
-        self._process: subprocess.Popen | None = None
+        self._process: subprocess.Popen[bytes] | None = None
         self._log = Path()
 
     def start(self, model: Path) -> None:

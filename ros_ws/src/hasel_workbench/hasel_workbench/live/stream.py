@@ -3,13 +3,14 @@
 
 import threading
 from collections import deque
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from hasel_recording import Recording, write_recording
 from hasel_sysid.live.heard import Heard
-from hasel_sysid.live.running_error import Epochs, Pairing, RunningError, RunningErrors, StreamEpoch
+from hasel_sysid.live.running_error import Epochs, Pair, Pairing, RunningError, RunningErrors, StreamEpoch
 
 _LATE_S, _GAP_S, _RESET_S = 0.5, 0.1, 2.0
 WINDOW_S = 5.0
@@ -27,7 +28,9 @@ class LiveStream:
     def __init__(self) -> None:
         epochs = Epochs()
         self._epoch = {kind: StreamEpoch(epochs, _LATE_S) for kind in KINDS}
-        self._samples: dict[str, deque] = {kind: deque(maxlen=_KEPT) for kind in KINDS}
+        self._samples: dict[str, deque[tuple[float, float, float]]] = {
+            kind: deque(maxlen=_KEPT) for kind in KINDS
+        }
         self.count = dict.fromkeys(KINDS, 0)
         self._pairing, self._heard = Pairing(_GAP_S), Heard(_RESET_S)
         self._errors = RunningErrors(_RESET_S, WINDOW_S)
@@ -90,6 +93,6 @@ class LiveStream:
         rows = [samples[index] for index in range(len(samples) - new, len(samples))]
         return np.array(rows, dtype=np.float32).reshape(-1, 3)
 
-    def _paired(self, pairs) -> None:
+    def _paired(self, pairs: Iterable[Pair]) -> None:
         for pair in pairs:
             self.error = self._errors.add(pair)

@@ -2,11 +2,11 @@
 """Tables, sliders, cards and the waterfall as plain HTML, so that a screen reader and a keyboard find their way."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from html import escape
 
 import numpy as np
-from hasel_sim.parameter import value_with_error
+from hasel_sim.parameter import Parameter, value_with_error
 from hasel_sysid.comparison import RunComparison
 from hasel_sysid.report.wording import change_text, error_text
 from nicegui import ui
@@ -118,10 +118,10 @@ def card_text(card: Card) -> str:
     return f"{said}<dl>{listed}</dl>"
 
 
-def parameter_table(before, after) -> str:
+def parameter_table(before: Mapping[str, Parameter], after: Mapping[str, Parameter]) -> str:
     """Values of the first step's and of the shown model, side by side."""
 
-    def shown(parameter) -> str:
+    def shown(parameter: Parameter) -> str:
         return value_with_error(parameter.value, parameter.standard_error, parameter.unit)
 
     rows = "".join(
@@ -140,9 +140,12 @@ _WIDTH, _HEIGHT, _LEFT, _TOP, _BOTTOM = 360, 210, 6, 36, 42
 
 def waterfall_svg(falling: Waterfall) -> str:
     """Fitted and, where there are any, unseen runs at one scale; what is being tried is hatched."""
-    groups = [("fitted runs", "fitted", [s.error for s in falling.stages])]
-    if all(stage.error_unseen is not None for stage in falling.stages):
-        groups.append(("unseen runs", "unseen", [s.error_unseen for s in falling.stages]))
+    groups: list[tuple[str, str, list[float]]] = [
+        ("fitted runs", "fitted", [s.error for s in falling.stages if s.error is not None])
+    ]
+    unseen = [s.error_unseen for s in falling.stages if s.error_unseen is not None]
+    if len(unseen) == len(falling.stages):
+        groups.append(("unseen runs", "unseen", unseen))
     highest = max(error for *_, errors in groups for error in errors)
     drawn = "".join(_group(*group, highest, falling) for group in groups)
     return f'<div class="wb-waterfalls">{drawn}</div>'

@@ -12,6 +12,7 @@ from hasel_sysid.report.wording import percent
 from nicegui import ui
 
 from hasel_workbench.cards import Card, sliders
+from hasel_workbench.jobs import Progress
 from hasel_workbench.live.rig import goal_line
 from hasel_workbench.page.html import (
     button,
@@ -203,7 +204,7 @@ class HistoryPanel:
             return
         markup(f"<code>{escape(line)}</code>")
 
-        def work(progress) -> None:
+        def work(progress: Progress) -> None:
             page.jobs.say("positive", page.rig.run(suggestion.manoeuvre, progress))
 
         self._start = button("Start it on the rig", lambda: page.do("run on the rig", work))
@@ -212,7 +213,7 @@ class HistoryPanel:
     def _export(self) -> None:
         session = self._page.session
 
-        def work(progress) -> None:
+        def work(progress: Progress) -> None:
             session.export(None, progress)
             session.version += 1  # the links to the files
 

@@ -5,6 +5,7 @@ import asyncio
 import json
 import reprlib
 from collections import OrderedDict
+from collections.abc import Awaitable, Callable
 from typing import Any
 
 import numpy as np
@@ -86,7 +87,7 @@ def add_routes(app: FastAPI, session: Workbench, rig: RunningRig) -> None:
 class _InASentence(APIRoute):
     """What is not as the route's types say is refused with status 400, what cannot be answered with 409."""
 
-    def get_route_handler(self):
+    def get_route_handler(self) -> Callable[[Request], Awaitable[Response]]:
         answer = super().get_route_handler()
 
         async def answered(request: Request) -> Response:
@@ -119,7 +120,7 @@ def _bytes(content: bytes) -> Response:
     return Response(content, media_type="application/octet-stream", headers={"Cache-Control": "no-store"})
 
 
-def packet(header: dict, numbers: np.ndarray) -> bytes:
+def packet(header: dict[str, Any], numbers: np.ndarray) -> bytes:
     """Length of the header (little-endian, 4 bytes), the header as JSON padded with blanks to a multiple of four bytes,
     and the numbers, little-endian, row by row.
     """

@@ -11,6 +11,7 @@ from hasel_sim.model import Model
 from nicegui import ui
 
 from hasel_workbench.curves import failure_map
+from hasel_workbench.jobs import Progress
 from hasel_workbench.live.stream import WINDOW_S
 from hasel_workbench.page.html import button, failure_map_table, markup, runs_table, section
 from hasel_workbench.state import Unread
@@ -228,7 +229,7 @@ class LivePanel:
     def _model(self) -> None:
         page = self._page
 
-        def work(progress) -> None:
+        def work(progress: Progress) -> None:
             page.jobs.say("positive", page.rig.load(page.session.model_file(), progress))
 
         page.do("the simulator takes the model", work)
