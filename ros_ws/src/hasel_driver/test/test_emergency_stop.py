@@ -217,8 +217,8 @@ def test_a_stop_that_no_monitor_can_see_is_no_success(driver, shared_rig, ros):
     assert not answer.success, answer
     assert "treat it as live" in answer.message.lower()
     shared_rig.say("recover")
+    ros.wait(lambda: ros.trigger("clear_fault").success)
     ros.wait(lambda: ros.state.ground == ros.state.GROUND_COMMANDED)
-    assert ros.trigger("clear_fault").success
 
 
 def test_deactivating_a_charged_output_is_a_fault(driver, shared_rig, ros):
