@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip("rclpy", reason="ROS 2 is not there")
 
 from hasel_common.managed_node import node_alone
-from hasel_driver.nodes.parameters import check_files, declare
+from hasel_driver.nodes.parameters import TABLE, check_files, declare
 from hasel_driver.protocol.faults import LimitError
 from rclpy.parameter import Parameter
 
@@ -28,6 +28,21 @@ def test_where_files_are_is_said_at_the_start_only(node, name):
     """Nobody on the network moves them, the port closed or not."""
     (result,) = node.set_parameters([Parameter(name, value="/etc")])
     assert (result.successful, "given at the start" in result.reason) == (False, True)
+
+
+def test_what_is_in_use_may_be_set_to_what_it_is():
+    """`ros2 param load` of the node's own dump changes nothing while it drives; what differs is refused."""
+    node = node_alone("parameters")
+    try:
+        lowered: list[float] = []
+        declare(node, lambda: True, lowered.append)
+        same = [Parameter(name, value=node.get_parameter(name).value) for name in TABLE]
+        refused = [result.reason for result in node.set_parameters(same) if not result.successful]
+        (other,) = node.set_parameters([Parameter("slew_rate", value=100e3)])
+        assert (refused, lowered, other.successful) == ([], [], False)
+    finally:
+        node.destroy_node()
+        node.context.try_shutdown()
 
 
 def test_parameters_that_together_ground_too_late_are_refused(node):

@@ -144,6 +144,8 @@ TABLE = {parameter.name: parameter for parameter in PARAMETERS}
 def declare(node: "Node", in_use: Callable[[], bool], lower: Callable[[float], None]) -> None:
     """Declare every parameter; while `in_use` none can be changed, but for the limit handed to `lower`.
 
+    What is set to what it is changes nothing, and is taken.
+
     Raises:
         LimitError: a value given at the start is out of range, or a name is misspelt.
     """
@@ -160,7 +162,7 @@ def declare(node: "Node", in_use: Callable[[], bool], lower: Callable[[float], N
     def check(changes: "Sequence[Parameter]") -> SetParametersResult:
         try:
             for change in changes:
-                if change.name in TABLE:
+                if change.name in TABLE and change.value != node.get_parameter(change.name).value:
                     _check_change(TABLE[change.name], change.value, in_use(), lower)
             limits_of(values(node) | {change.name: change.value for change in changes})
         except DriverError as error:
