@@ -33,7 +33,7 @@ def read_csv(path: Path, mapping: Mapping[str, str] | None = None, own_drive: bo
     numbers = CsvNumbers(text)
     time_s = numbers.times(columns.time)
     markers = _markers(columns, numbers)
-    sin_theta = _angle(path, columns, numbers, markers)
+    sin_theta = _angle(columns, numbers, markers)
     if not np.isfinite(sin_theta).any():
         raise RecordingError(
             f"{path} has no frame with an angle: fill in the column, or track the markers again."
@@ -46,7 +46,7 @@ def read_csv(path: Path, mapping: Mapping[str, str] | None = None, own_drive: bo
         time_s=time_s,
         drive_signal=values,
         sin_theta=sin_theta,
-        markers=markers,
+        markers=markers if columns.markers else None,
         marker_unit=columns.marker_unit,
         channels=channels,
         marker_names=columns.marker_names or MARKER_NAMES,
@@ -70,21 +70,19 @@ def drive_columns(
     return as_meant(channels, values, text.metadata, str(text.path))
 
 
-def _markers(columns: Columns, numbers: CsvNumbers) -> np.ndarray | None:
+def _markers(columns: Columns, numbers: CsvNumbers) -> np.ndarray:
     """Return the markers [n, m, 2]; NaN where one was not seen."""
     if not columns.markers:
-        return None
+        return np.empty((0, 0, 2))
     table = [numbers.column(column, may_be_missing=True) for column in columns.markers]
     return np.column_stack(table).reshape(len(table[0]), -1, 2)
 
 
-def _angle(path: Path, columns: Columns, numbers: CsvNumbers, markers: np.ndarray | None) -> np.ndarray:
+def _angle(columns: Columns, numbers: CsvNumbers, markers: np.ndarray) -> np.ndarray:
     if columns.sin_theta:
         return numbers.column(columns.sin_theta, may_be_missing=True)
     if columns.theta:
         return np.sin(numbers.column(columns.theta, may_be_missing=True))
-    if markers is None:
-        raise RecordingError(f"{path} has no angle: it needs a column sin_theta or theta, or markers.")
     three = markers[:, [columns.marker_names.index(name) for name in MARKER_NAMES]]
     return sin_theta_from_markers(three * (1, -1) if columns.marker_unit == "px" else three)
 
