@@ -96,7 +96,7 @@ class Solid:
         _, gradients, areas = reference_gradients(nodes[mesh.elements], quadrature_order)
         self._nodes = len(nodes)
         self.gradients, self.areas = np.ascontiguousarray(gradients), np.ascontiguousarray(areas)
-        self.stretch = np.ascontiguousarray(np.broadcast_to(material.rest_stretch, areas.shape)[..., None])
+        self.stretch = np.array(np.broadcast_to(material.rest_stretch, areas.shape)[..., None], order="C")
         lame = material.lame
         if plane_stress:
             lame = 2 * material.shear * lame / (lame + 2 * material.shear)

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from hasel_sim.drive.schedule import DriveSchedule
 from hasel_sim.dynamics.integrator import Stepper
+from hasel_sim.dynamics.time_loop import integrate
 from hasel_sim.effects.base import DriveEffect, EffectParameter, ObservationEffect
 from hasel_sim.effects.registry import catalogue
 from hasel_sim.live.live_simulator import Arrival, LiveSimulator
@@ -150,6 +151,15 @@ def test_a_body_at_rest_is_not_stepped_until_the_drive_changes(swimmer, monkeypa
     assert 0.45 < len(steps) / every < 0.55  # 0.5 s until it is at rest, and 0.5 s driven
     assert np.abs(np.array(list(heard.values())) - whole(swimmer, stamps, voltage)).max() < 1e-6
     assert max(heard.values()) > 0.1
+
+
+def test_a_live_body_steps_in_the_loops_that_runs_have_compiled(swimmer):
+    """Whoever starts a rig for the first time does not wait for another compilation of them."""
+    stamps, voltage = frames(2.0, 0.1)
+    whole(swimmer, stamps, voltage)
+    known = list(integrate.signatures)
+    live(LiveSimulator(swimmer), stamps, voltage)
+    assert integrate.signatures == known
 
 
 def test_messages_out_of_order_leave_the_motion_alone(swimmer):
