@@ -5,7 +5,8 @@ models = {nothing: the baseline}, and every candidate alone as far as it can win
 repeat
     about = the likeliest of the models
     table = every set of at most three candidates, to first order about it
-    new   = what the table holds to be better than any model, else parts of the answer, else rivals of the answer
+    new   = what the table holds to be better than any model, else parts of the answer, else its rivals: what may stand
+            in a member's place, to first order about each part
     stop where there is none, or fit the first few of it
 """
 
