@@ -228,7 +228,7 @@ class LiveError:
     """
 
     def __init__(self, model: Path, folder: Path) -> None:
-        self._model, self._folder = model, folder
+        self._model, self._folder = model.resolve(), folder.resolve()
         self._processes = Processes(folder, ALONE)
         self._connected = False
         self._last, self._compared = RunningError(), 0
@@ -256,7 +256,7 @@ class LiveError:
 
     def load(self, model: Path) -> None:
         """Let the running simulator go on with another model. Raises BringupError when it refuses."""
-        answer = self._rig.call(LoadModel, "load_model", _PATIENCE_S, model=str(model))
+        answer = self._rig.call(LoadModel, "load_model", _PATIENCE_S, model=str(model.resolve()))
         if not answer.success:
             raise BringupError(answer.message)
 
