@@ -8,6 +8,7 @@ above 1.5 mm everywhere. The gradient by all coefficients comes from one adjoint
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import torch
@@ -39,7 +40,7 @@ class BestOutline:
         )
 
 
-def constraints(start: np.ndarray) -> list[dict]:
+def constraints(start: np.ndarray) -> list[dict[str, Any]]:
     """Area kept, nowhere higher than the start, nowhere lower than LOWEST; all linear in the coefficients."""
     powers = np.arange(len(start))
     rows = np.linspace(0, 1, 41)[:, None] ** powers

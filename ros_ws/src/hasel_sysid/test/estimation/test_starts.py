@@ -52,6 +52,17 @@ def test_a_scale_is_begun_below_and_above_one_and_a_signed_size_to_either_side()
     assert min(signed) < 0.0 < max(signed) and 0.0 not in signed
 
 
+def test_a_start_goes_where_it_explains_as_far_as_proportion_is_believed():
+    """A tenth to twice its typical size; to the other side only what may be there."""
+    damping = starts(candidate("material_damping"))[0]
+    (typical,) = damping.values.values()
+    sizes = [next(iter(damping.where_it_explains(a).values.values())) for a in (0.01, 0.5, 5.0, -1.0)]
+    assert sizes == pytest.approx([0.1 * typical, 0.5 * typical, 2.0 * typical, typical])
+    bend = starts(candidate("pre_bend"))[0]
+    (curvature,) = bend.values.values()
+    assert list(bend.where_it_explains(-0.5).values.values()) == pytest.approx([-0.5 * curvature])
+
+
 @pytest.mark.parametrize("name", catalogue())
 def test_no_start_leaves_a_range(name):
     """Whatever its size, time or place."""
